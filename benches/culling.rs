@@ -1,4 +1,5 @@
-//! Measures what culling gains: `cargo bench --bench culling`. See README.md beside this file.
+//! Measures how much time culling saves: `cargo bench --bench culling`. See README.md beside this
+//! file.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -23,22 +24,22 @@ use pinhole::{
 
 use self::one_by_one::one_by_one;
 
-/// Number of rounds. The best one counts, since other work on the machine only makes a round
+/// Number of rounds. The fastest round counts, since other work on the machine only makes a round
 /// slower.
 const ROUNDS: usize = 3;
 
 /// Way of tracing samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
-    /// Each sample by itself.
+    /// Each sample is traced by itself.
     OneByOne,
-    /// As `render` does, with culling.
+    /// As `render` traces them, with culling.
     Culled,
 }
 
 const WAYS: [Way; 2] = [Way::OneByOne, Way::Culled];
 
-/// Examples that are rendered in both ways: some suit culling, others do not.
+/// Names of examples that are rendered in both ways: some suit culling, others do not.
 const SCENES: [&str; 5] = [
     "scatter",
     "near_and_far",
@@ -109,16 +110,16 @@ fn main() {
     exact();
 }
 
-/// A floor of which nearly every pixel sees many squares.
+/// Scene with a floor of which nearly every pixel sees many squares.
 const DENSE: &str = "camera { eye (0.3, 2, 5) lookat (7, 1.8, -30) } checkerboard { square 0.001 }";
 
-/// Returns the element of Weyl's sequence with an irrational step at an index, scaled to −size/2 to
-/// size/2.
+/// Returns an element of a Weyl sequence between −`size`/2 and `size`/2: the fractional part of
+/// `index`·`step`, for an irrational `step`, scaled.
 fn place(index: u32, step: f64, size: f64) -> f64 {
     ((f64::from(index) * step).fract() - 0.5) * size
 }
 
-/// Returns a point; the points of all indices are spread over the whole picture.
+/// Returns the centre of an object. The centres of all indices are spread over the whole picture.
 fn center(index: u32) -> [f64; 3] {
     [
         place(index, 0.618_033_988_749_895, 12.0),
@@ -127,7 +128,7 @@ fn center(index: u32) -> [f64; 3] {
     ]
 }
 
-/// Returns a scene of spheres about a pixel in size, all over the picture.
+/// Returns a scene of `count` spheres, each about a pixel in size, spread over the whole picture.
 fn tiny(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -137,9 +138,9 @@ fn tiny(count: u32) -> String {
     text
 }
 
-/// Returns a scene of triangles that are two hundred times as long as wide, in all directions and
-/// on top of each other: even a small part of the picture has very many candidates. Culling may be
-/// up to three times as slow here as tracing one by one.
+/// Returns a scene of `count` triangles in all directions, two hundred times as long as wide, that
+/// overlap each other. Even a small part of the picture has very many candidates, so culling may be
+/// up to three times as slow as tracing one by one.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -168,7 +169,8 @@ fn example(name: &str) -> Scene {
     read(&fs::read_to_string(path).expect("the example is there"))
 }
 
-/// Returns a scene with a picture of this width, 16 to 9, and this many samples per pixel.
+/// Returns the scene with a picture of this width and an aspect ratio of 16:9, and `per_pixel`
+/// samples per pixel.
 fn sized(scene: &Scene, width: u32, method: Method, per_pixel: u64) -> Scene {
     let mut scene = scene.clone();
     (scene.image.width, scene.image.height) = (width, width * 9 / 16);
@@ -185,7 +187,7 @@ fn control(threads: Option<NonZero<usize>>) -> Control<'static> {
     }
 }
 
-/// Returns a function that renders a scene in one of the ways, on one thread.
+/// Returns a function that renders the scene in the given way on one thread.
 fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     let [width, height] = [scene.image.width, scene.image.height];
     let (world, sampling) = (
@@ -202,9 +204,9 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     }
 }
 
-/// Measures what certain decisions cost: rays per CPU second by the formulas of a textbook, which
-/// are right except in hard cases, by tracing one by one, and by `render`, in turns. All three
-/// place the samples.
+/// Measures what correct decisions cost in hard cases. Compares the rays per CPU second of three
+/// ways, in turns: the formulas of a textbook, which are wrong in hard cases only, tracing one by
+/// one, and `render`. All three generate the sample points.
 fn price() {
     const SECONDS: f64 = 2.0;
     let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);
@@ -258,8 +260,8 @@ fn textbook(scene: &Scene) -> impl Fn() {
     }
 }
 
-/// Measures what the exact picture of figure 9.9 costs, compared with few samples per pixel one by
-/// one, in turns, with and without a far plane.
+/// Measures what the exact picture of figure 9.9 costs, with and without a far plane. Compares its
+/// time, in turns, with that of tracing few samples per pixel one by one.
 fn exact() {
     const FEW: [u64; 3] = [1, 2, 4];
     println!("one thread; exact by the time of so many samples a pixel one by one, random");
@@ -304,9 +306,9 @@ fn exact() {
     }
 }
 
-/// Renders figure 9.9 on one thread and ends, for measurements of whole processes. Arguments: a
-/// way, a method, the picture's width, samples per pixel, and the number of pictures. The way
-/// `None` prepares everything and renders nothing. Prints the CPU time of the pictures alone.
+/// Renders figure 9.9 on one thread and returns, for measurements of the whole process. `arguments`
+/// are the way, the method, the picture's width, samples per pixel, and the number of pictures. The
+/// way `None` prepares everything and renders nothing. Prints the CPU time of the pictures alone.
 fn once(arguments: &[String]) {
     let [way, method, numbers @ ..] = arguments else {
         panic!("--once WAY METHOD WIDTH SAMPLES TIMES");

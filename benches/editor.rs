@@ -1,7 +1,7 @@
 //! Measures how long an editor waits: `cargo bench --bench editor`. See README.md beside this file.
 //!
-//! The server runs as for an editor. Time is taken from before a message is written until its
-//! answer is read.
+//! The server runs as it does for an editor. Each time starts before a message is written and ends
+//! when the answer has been read.
 
 use std::{
     env,
@@ -19,10 +19,10 @@ mod spheres;
 
 const OBJECTS: usize = 1000;
 
-/// Number of times that each request is made.
+/// Number of repetitions of a request.
 const ROUNDS: u32 = 200;
 
-/// Number of times that a slow request is made.
+/// Number of repetitions of a slow request.
 const FEW: u32 = 10;
 
 const URI: &str = "file:///spheres.scn";
@@ -99,9 +99,9 @@ fn main() {
     tokens_in_one_line();
 }
 
-/// Measures formatting a text with a block per line, and the diagnostics after the editor has
-/// applied the edits. The edits are sent back as changes from the last to the first, so that none
-/// moves the position of another.
+/// Measures the formatting of a text with one block per line, and the diagnostics after the editor
+/// has applied the edits. The edits are sent back as changes, from the last to the first, so that
+/// no change moves the position of another.
 fn formatted() {
     let text = spheres(OBJECTS, Layout::Lines);
     let mut server = Server::start(&text);
@@ -157,7 +157,7 @@ fn tokens_in_one_line() {
     in_one_line(&line, FEW);
 }
 
-/// Measures what an editor waits for in a text of one line.
+/// Measures the answers that an editor waits for in a text of one line.
 fn in_one_line(line: &str, rounds: u32) {
     let mut server = Server::start(line);
     let mut letters = Letters::at(0, 0);
@@ -200,7 +200,7 @@ impl Letters {
         }
     }
 
-    /// Sends the next change, and reads the diagnostics.
+    /// Sends the next change, and reads the diagnostics that follow.
     fn next(&mut self, server: &mut Server) {
         self.version += 1;
         let place = json!({ "line": self.line, "character": self.column });
@@ -216,7 +216,7 @@ impl Letters {
     }
 }
 
-/// Measures an action, repeated many times.
+/// Runs `done` as many times as `rounds`, and prints its times.
 fn show(name: &str, rounds: u32, mut done: impl FnMut()) {
     let times = (0..rounds).map(|_| {
         let start = Instant::now();
@@ -242,7 +242,7 @@ struct Server {
 }
 
 impl Server {
-    /// Starts the server and opens a text.
+    /// Starts the server and opens a text in it.
     fn start(text: &str) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
             .arg("lsp")
@@ -274,8 +274,8 @@ impl Server {
         message.write(&mut self.input).expect("the server reads");
     }
 
-    /// Reads the bytes of the next message. They are not parsed, as the client's own time does not
-    /// count.
+    /// Reads the bytes of the next message. They are not parsed, so that the client's own time is
+    /// not measured.
     fn read(&mut self) -> Vec<u8> {
         let mut header = String::new();
         while !header.ends_with("\r\n\r\n") {

@@ -1,9 +1,9 @@
-//! Measures how well `diff` names mistakes: runs the built program on the corpus of
+//! Measures how well `diff` names mistakes: runs the program on the corpus of
 //! `tests/integration/grade`.
 //!
-//! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; `-- --all` judges every size and
-//! sampling. `-- --write FOLDER` writes the pictures, their scenes and `truth.json` instead of
-//! judging them. `--program FILE` runs another program.
+//! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; with `-- --all`, pictures of
+//! all sizes and ways of sampling. `-- --write FOLDER` writes the pictures, their scenes and
+//! `truth.json` instead of judging them. `--program FILE` tests another program.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -28,7 +28,7 @@ use mistakes::{GROUPS, Mistake, OF_THE_OBJECTS};
 use serde_json::{Value, json};
 use textbook::{SAMPLINGS, Sampling};
 
-/// Sizes of pictures.
+/// Sizes of pictures, in pixels.
 const SIZES: [[u32; 2]; 3] = [[96, 64], [320, 180], [640, 360]];
 
 fn main() {
@@ -57,7 +57,7 @@ fn main() {
     for count in 0..4 {
         for &size in &sizes {
             for &sampling in &samplings {
-                // Pairs and triples of one size.
+                // Pairs and triples of mistakes are tested in one size only.
                 if count > 1 && size != SIZES[1] {
                     continue;
                 }
@@ -80,7 +80,8 @@ fn main() {
     }
 }
 
-/// Returns sets of `count` mistakes: none, single ones, and pairs and triples of different groups.
+/// Returns sets of `count` mistakes: no mistake and single ones, or pairs or triples of mistakes
+/// from different groups.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
@@ -100,8 +101,9 @@ fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     }
 }
 
-/// Returns the pictures with `count` mistakes, of one size and sampling, in which each mistake is
-/// visible: the picture without the mistake differs by more than the step that rounding may cost.
+/// Returns pictures with sets of `count` mistakes, all of one size and sampling. A picture is
+/// returned only if each of its mistakes is visible: without that mistake, the picture differs by
+/// more than the 8-bit step that rounding may explain.
 fn cases(
     count: usize,
     [width, height]: [u32; 2],
@@ -121,7 +123,7 @@ fn cases(
         let names: Vec<_> = set.iter().map(|one| one.title()).collect();
         let whole = case(scene, &names);
         let picture = whole.picture();
-        // Truncated bytes differ by one step.
+        // With the mistake `cut_off`, bytes are truncated, so they differ by a single step.
         let least = u8::from(!names.contains(&"cut_off"));
         let is_seen = |left_out: usize| {
             let mut others = names.clone();
@@ -130,7 +132,7 @@ fn cases(
             let mut bytes = picture.as_raw().iter().zip(other.as_raw());
             bytes.any(|(a, b)| a.abs_diff(*b) > least)
         };
-        // A transposed picture may not have the scene's size.
+        // A transposed picture may have another size than the scene.
         let is_whole = picture.dimensions() == (width, height);
         (is_whole && (0..names.len()).all(is_seen)).then_some(whole)
     };
@@ -139,7 +141,7 @@ fn cases(
     sets.filter_map(|(scene, set)| seen(scene, set)).collect()
 }
 
-/// Prints a row of the table: how many cases are judged correctly.
+/// Judges the cases and prints a row of the table: how many of them are judged correctly.
 fn judge(program: &str, of: &str, cases: &[Case]) {
     let folder = tempfile::tempdir().expect("a folder for pictures");
     let (mut right, mut time) = (0, Duration::ZERO);
@@ -156,7 +158,7 @@ fn judge(program: &str, of: &str, cases: &[Case]) {
     println!("| {of} | {right} of {count} | {seconds:.2} |");
 }
 
-/// Returns the program's answer about a picture, and the time that it takes.
+/// Returns the program's answer about a case, and the time that it took.
 fn ask(program: &str, case: &Case, folder: &Path) -> (Value, Duration) {
     let (picture, scene) = (folder.join("a.png"), folder.join("a.scn"));
     case.picture().save(&picture).expect("a picture");
@@ -184,7 +186,8 @@ fn named_mistakes(answer: &Value) -> String {
     format!("{} {}", answer["verdict"], named.join("; "))
 }
 
-/// Writes a picture and its scene. Returns the mistakes in it.
+/// Writes a case's picture and scene into `folder`. Returns a JSON object with the mistakes in the
+/// picture.
 fn write(case: &Case, folder: &Path) -> Value {
     let name: String = case
         .title

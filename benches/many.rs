@@ -1,9 +1,9 @@
-//! Measures how the time for preparing and rendering grows with the number of objects: `cargo bench
+//! Measures how preparation and rendering times grow with the number of objects: `cargo bench
 //! --bench many`. See README.md beside this file.
 //!
-//! `-- --write COUNT` writes a scene of this many small spheres to standard output instead, and `--
+//! `-- --write COUNT` writes a scene of COUNT small spheres to standard output instead. `--
 //! --phases COUNT…` prints the CPU seconds of each phase once, and the memory that the world takes.
-//! With `--cube` the spheres are in a cube instead of all over the picture.
+//! With `--cube`, the spheres are in a cube rather than all over the picture.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -78,7 +78,7 @@ fn picture(world: &World, scene: &Scene) {
     black_box(film).expect("there is memory for it");
 }
 
-/// Prints the CPU seconds of each phase, and the bytes of the world per object.
+/// Prints the CPU seconds of each phase, and the bytes that the world takes per object.
 fn phases(scene: &Scene) {
     const RENDERS: u32 = 4;
     let count = scene.objects.len();
@@ -108,7 +108,7 @@ fn phases(scene: &Scene) {
     );
 }
 
-/// Returns the resident memory of the process, in bytes; 0 on systems without /proc.
+/// Returns the resident memory of the process, in bytes; 0 on systems without `/proc`.
 fn resident_bytes() -> f64 {
     let statm = fs::read_to_string("/proc/self/statm").unwrap_or_default();
     let pages = statm.split_whitespace().nth(1);

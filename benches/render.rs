@@ -1,5 +1,6 @@
-//! Measures, for each method, what placing points, threads and files take in proportion to the
-//! plain path: `cargo bench --bench render`. See README.md beside this file.
+//! Compares, for each method, the time of generating sample points, of rendering on one or more
+//! threads, and of writing files with the time of tracing sample by sample: `cargo bench --bench
+//! render`. See README.md beside this file.
 
 use std::{env, hint::black_box, io::Cursor, num::NonZero, thread, time::Instant};
 
@@ -23,8 +24,8 @@ const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 720;
 const PER_PIXEL: u64 = 16;
 
-/// Number of runs. The shortest time counts, since other work on the machine only makes a time
-/// longer.
+/// Number of runs. The shortest time counts, since other work on the machine only makes a run
+/// slower.
 const RUNS: usize = 5;
 
 fn main() {
@@ -90,7 +91,7 @@ fn main() {
     );
 }
 
-/// Returns the shortest time of each function in seconds, measured in turns.
+/// Returns the shortest time of each function, in seconds. The functions run in turns.
 fn least<const N: usize>(mut what: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut least = [f64::INFINITY; N];
     for _ in 0..RUNS {
@@ -103,8 +104,7 @@ fn least<const N: usize>(mut what: [&mut dyn FnMut(); N]) -> [f64; N] {
     least
 }
 
-/// Places all sample points, and does only as much with them as keeps the compiler from dropping
-/// them.
+/// Generates all sample points and returns their sum, so that the compiler cannot remove the work.
 fn points(scene: &Scene) -> f64 {
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     let mut sum = DVec2::ZERO;
@@ -118,7 +118,7 @@ fn points(scene: &Scene) -> f64 {
     sum.element_sum()
 }
 
-/// Traces each sample by itself.
+/// Renders the scene sample by sample on one thread.
 fn plain(scene: &Scene) -> Film {
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     one_by_one(&World::new(scene), &sampling, Area::whole(WIDTH, HEIGHT))

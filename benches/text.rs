@@ -25,7 +25,7 @@ use self::{
 
 mod spheres;
 
-/// pest's parser of the same grammar, the unit of all other times.
+/// pest's parser of the same grammar. All times are given as multiples of its time.
 mod grammar {
     #[derive(pest_derive::Parser)]
     #[grammar = "grammar/scn.pest"]
@@ -34,7 +34,7 @@ mod grammar {
 
 const OBJECTS: usize = 10_000;
 
-/// Number of rounds. The best one counts, since other work on the machine only makes a round
+/// Number of rounds. The fastest round counts, since other work on the machine only makes a round
 /// slower.
 const ROUNDS: usize = 20;
 
@@ -79,7 +79,7 @@ fn main() {
     }
 }
 
-/// Parses a few kilobytes at a time, as the parser does, and drops the result.
+/// Parses a few kilobytes at a time, as the parser does. Returns the number of items.
 fn chunks(text: &str) -> usize {
     const CHUNK: usize = 4096;
     let (mut at, mut items) = (0, 0);
@@ -93,8 +93,8 @@ fn chunks(text: &str) -> usize {
     items
 }
 
-/// Prints how long each stage takes as a multiple of the first, measured in turns, so that other
-/// work on the machine slows down all of them.
+/// Measures the stages in turns, so that other work on the machine slows down all of them. Prints
+/// the time of each stage as a multiple of the first stage's.
 fn ratios(layout: Layout, stages: &[(&str, &dyn Fn())]) {
     let mut best = vec![Duration::MAX; stages.len()];
     for _ in 0..ROUNDS {

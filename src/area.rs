@@ -2,16 +2,16 @@
 
 use std::{fmt, str::FromStr};
 
-/// A rectangle of pixels; its origin is the picture's top left corner.
+/// A rectangle of pixels. Columns and rows are counted from the picture's top left corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Area {
     /// Leftmost column.
     pub x: u32,
     /// Topmost row.
     pub y: u32,
-    /// How many columns it has.
+    /// Number of columns.
     pub width: u32,
-    /// How many rows it has.
+    /// Number of rows.
     pub height: u32,
 }
 
@@ -50,7 +50,7 @@ impl Area {
             && other.rows().start < self.rows().end
     }
 
-    /// Returns the smallest area that contains both.
+    /// Returns the smallest area that contains both areas.
     pub fn with(self, other: Self) -> Self {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
         Self {
@@ -61,19 +61,20 @@ impl Area {
         }
     }
 
-    /// Returns the columns and rows of the pixels in the picture, row by row.
+    /// Returns the column and row of each pixel, row by row.
     pub fn iter(self) -> impl Iterator<Item = (u32, u32)> {
         (0..self.height)
             .flat_map(move |row| (0..self.width).map(move |column| (self.x + column, self.y + row)))
     }
 
-    /// Returns the index of a pixel of the area, counted row by row.
+    /// Returns the index of a pixel within the area, counted row by row. `x` and `y` are the
+    /// pixel's column and row in the picture.
     pub fn index(self, x: u32, y: u32) -> usize {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
 
-    /// Returns the tiles of the area: squares of this side from its top left corner on, cut off at
-    /// its edges; row by row.
+    /// Returns the tiles of the area, row by row: squares of side `side`, in pixels, from the
+    /// area's top left corner on, cut off at its right and bottom edges.
     pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |length: u32| (0..length).step_by(side as usize);
         starts(self.height).flat_map(move |top| {
@@ -86,8 +87,8 @@ impl Area {
         })
     }
 
-    /// Returns the squares of this side that meet the area, in a grid from the picture's top left
-    /// corner; row by row.
+    /// Returns the squares of a grid from the picture's top left corner that overlap the area, row
+    /// by row. `side` is a square's side in pixels; squares are not cut off.
     pub fn grid(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |start: u32, length: u32| {
             (start - start % side..start + length).step_by(side as usize)
@@ -97,7 +98,7 @@ impl Area {
             .flat_map(move |y| starts(self.x, self.width).map(move |x| Self { x, y, ..square }))
     }
 
-    /// Returns the intersection of two areas; it has no pixels if they do not meet.
+    /// Returns the intersection of two areas. It has no pixels if they do not overlap.
     pub fn common(self, other: Self) -> Self {
         let (x, y) = (self.x.max(other.x), self.y.max(other.y));
         let length = |end: u64, other_end: u64, start: u32| {
@@ -111,7 +112,7 @@ impl Area {
         }
     }
 
-    /// Returns the area relative to the corner of one that contains it.
+    /// Returns the area relative to the top left corner of `outer`, which must contain it.
     pub fn within(self, outer: Self) -> Self {
         Self {
             x: self.x - outer.x,
@@ -120,8 +121,8 @@ impl Area {
         }
     }
 
-    /// Returns four parts of nearly equal size; two, if the area has only one row or column, and
-    /// the area itself if it is a pixel.
+    /// Returns the area's quarters, which have nearly equal sizes. An area of one row or one column
+    /// has two parts, and a pixel one.
     pub fn quarters(self) -> impl Iterator<Item = Self> {
         let halves = |length: u32| [(0, length / 2), (length / 2, length - length / 2)];
         let (columns, rows) = (halves(self.width), halves(self.height));
@@ -136,12 +137,13 @@ impl Area {
         quarters.filter(|quarter| quarter.width > 0 && quarter.height > 0)
     }
 
-    /// Returns the pixel in the middle; of an even number, the second of the two.
+    /// Returns the pixel in the middle of the area. Of an even number of columns or rows, the
+    /// second of the two middle ones is taken.
     pub fn middle(self) -> Self {
         Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
     }
 
-    // As u64, so that an area from a user cannot overflow.
+    // Ends are `u64`, so that an area from user input cannot overflow.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)
     }
@@ -151,14 +153,14 @@ impl Area {
     }
 }
 
-/// `X,Y,W,H`
+/// Writes `X,Y,W,H`.
 impl fmt::Display for Area {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{},{},{}", self.x, self.y, self.width, self.height)
     }
 }
 
-/// Parses `X,Y,W,H`, four whole numbers. Returns an error if W or H is 0.
+/// Parses `X,Y,W,H`, four whole numbers. Fails if W or H is 0.
 impl FromStr for Area {
     type Err = String;
 

@@ -1,14 +1,14 @@
 //! Cancellation of work whose result is no longer wanted.
 //!
-//! A flag requests it and stays set until the work has ended. Long work checks the flag regularly
-//! and, once it is set, skips the rest; the partial result is useless, and [`Cancelled`] is
-//! returned instead of it.
+//! A flag requests cancellation and stays set until the work has ended. Long work checks the flag
+//! regularly and skips the rest once it is set. The partial result is useless, so [`Cancelled`] is
+//! returned instead.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use thiserror::Error;
 
-/// Error of cancelled work.
+/// Error of work that was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("interrupted")]
 pub struct Cancelled;
@@ -16,13 +16,13 @@ pub struct Cancelled;
 /// Flag of work that is never cancelled.
 pub(crate) static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// Returns whether the work is cancelled.
+/// Returns whether the flag `cancel` is set.
 #[inline]
 pub(crate) fn is_set(cancel: &AtomicBool) -> bool {
     cancel.load(Ordering::Relaxed)
 }
 
-/// Returns a result, or an error if the work was cancelled.
+/// Returns the result `made`, or an error if the flag `cancel` is set.
 pub fn unless_set<T>(cancel: &AtomicBool, made: T) -> Result<T, Cancelled> {
     if is_set(cancel) {
         Err(Cancelled)

@@ -1,4 +1,4 @@
-//! Colours: sRGB, as the language has them, and linear light, as the film averages it.
+//! Colours: sRGB, as in the scene language, and linear light, as the film averages it.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::math::{Double, Real};
 /// An sRGB colour; each channel is a number from 0 to 255, and may have a fraction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Color {
-    /// Red, green and blue, encoded, 0 to 255.
+    /// Red, green and blue, encoded as sRGB, 0 to 255.
     pub srgb: [f64; 3],
 }
 
@@ -17,14 +17,14 @@ impl Color {
     /// Black.
     pub const BLACK: Self = Self::from_bytes([0, 0, 0]);
 
-    /// Makes a colour of three bytes.
+    /// Makes a colour from the bytes of red, green and blue.
     pub const fn from_bytes([r, g, b]: [u8; 3]) -> Self {
         Self {
             srgb: [r as f64, g as f64, b as f64],
         }
     }
 
-    /// Returns the nearest bytes.
+    /// Returns the channels rounded to the nearest bytes; halves are rounded up.
     pub fn to_bytes(self) -> [u8; 3] {
         // A channel lies in 0..=255, so the conversion only rounds.
         self.srgb.map(|channel| channel.round() as u8)
@@ -34,7 +34,8 @@ impl Color {
     pub fn to_linear(self) -> [f64; 3] {
         self.srgb.map(|channel| {
             if channel.fract() == 0.5 {
-                // A tie must stay a tie, which is rounded up.
+                // A channel halfway between two bytes must stay halfway after encoding, to be
+                // rounded up.
                 half_byte(channel as u8)
             } else {
                 srgb_to_linear(channel / 255.0)
@@ -43,7 +44,7 @@ impl Color {
     }
 }
 
-/// Formats the nearest hex code, `#rrggbb` in lower case.
+/// Writes the nearest hex code, `#rrggbb` in lower case.
 impl fmt::Display for Color {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [r, g, b] = self.to_bytes();
@@ -60,11 +61,11 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
     }
 }
 
-/// Returns the linear light from which on the nearest byte is k + 1: the least `f64` that is not
-/// below the light of k + 1/2, for k below 255.
+/// Returns the linear light from which on the nearest byte is `k` + 1: the least `f64` that is not
+/// below the light of `k` + 1/2, for `k` < 255.
 ///
-/// The powers of the curve are rational, so integers can decide: L − x^2.4 has the same sign as L^5
-/// − x^12.
+/// The exponents of the sRGB curve are rational, so integers can decide: L − x^2.4 has the same
+/// sign as L^5 − x^12.
 pub fn half_byte(k: u8) -> f64 {
     let mut light = srgb_to_linear((f64::from(k) + 0.5) / 255.0);
     while !is_below_half(light.next_down(), k) {
@@ -76,11 +77,12 @@ pub fn half_byte(k: u8) -> f64 {
     light
 }
 
-/// Returns whether linear light, greater than 0 and not subnormal, is darker than that of k + 1/2.
+/// Returns whether linear light is darker than the light of `k` + 1/2. `light` is positive and not
+/// subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // Double-double first: integers would take half the time of a small picture. In units of its
-    // rounding, the relative errors are at most 4 and 11 for the powers on the left, 1 for their
-    // product, 11 for the right side and 1 for the difference: less than 32.
+    // Double-double is tried first, since integers would take half the time of a small picture. In
+    // units of its rounding, the relative errors are at most 4 and 11 for the powers on the left, 1
+    // for their product, 11 for the right side, and 1 for the difference: less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -98,15 +100,15 @@ fn is_below_half(light: f64, k: u8) -> bool {
     }
 }
 
-/// Returns whether linear light is darker than that of k + 1/2, decided with integers.
+/// Returns whether linear light is darker than the light of `k` + 1/2, decided with integers.
 fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let exponent = (light.to_bits() >> 52) as usize;
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
     // light = significand / 2^shift
     let shift = 1075 - exponent;
-    // Number of half steps; white has 510.
+    // The value 2k + 1 counts half steps of 8-bit sRGB, of which white has 510.
     let halves = 2 * u32::from(k) + 1;
-    // 0.04045 is slightly more than 20 half steps.
+    // The straight piece of the curve ends at 0.04045, slightly more than 20 half steps.
     if halves <= 20 {
         // L < c/12.92 with c = halves/510
         significand * 65_892u32 < UBig::from(10 * halves) << shift
@@ -118,7 +120,8 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
 }
 
 /// Encodes one channel of linear light, from 0 to 1, as sRGB, from 0 to 1: the inverse of
-/// [`srgb_to_linear`]. Below 0 the straight piece is continued, and above 1 the curve.
+/// [`srgb_to_linear`]. Light below 0 continues the straight piece of the curve, and light above 1
+/// the power.
 pub fn linear_to_srgb(light: f64) -> f64 {
     if light <= 0.04045 / 12.92 {
         12.92 * light
@@ -127,12 +130,13 @@ pub fn linear_to_srgb(light: f64) -> f64 {
     }
 }
 
-/// Converts a channel from 0 to 1 to one from 0 to 255.
+/// Converts a channel from 0 to 1 to a whole number from 0 to 255, as text.
 pub fn in_bytes(part: f64) -> String {
     (part * 255.0).round().to_string()
 }
 
-/// Converts the channels of a colour to 0 to 255 if they may be written from 0 to 1.
+/// Converts the channels of a written colour to 0 to 255 if all are at most 1. Otherwise returns
+/// them as they are written.
 pub fn whole_parts(written: &str) -> String {
     if !are_shares(&[written]) {
         return written.to_owned();
@@ -145,8 +149,8 @@ pub fn whole_parts(written: &str) -> String {
     bytes
 }
 
-/// Returns whether the channels of a colour, as they are written, may range from 0 to 1; from 0 to
-/// 255 they would be another colour.
+/// Returns whether all channels of a written colour are numbers up to 1. They may then be meant as
+/// 0 to 1, although the language would read them as 0 to 255.
 pub fn are_shares(parts: &[&str]) -> bool {
     let separates = |c: char| c == ',' || c.is_whitespace();
     let parts = parts.iter().flat_map(|part| part.split(separates));

@@ -1,9 +1,11 @@
-//! The list of problems, and its two forms: for people and for programs.
+//! Problems of a scene, and their two output formats: for people and for programs.
 //!
-//! In: [`Diagnostic`]s, which the stages make where a problem arises, with the edits that may help.
-//! Out: the same in the order of the text, as a terminal shows them or as lines of JSON. The caller
-//! decides where to print them, and in which style.
+//! In: [`Diagnostic`]s, which each stage makes where a problem arises, with possible fixes. Out:
+//! the diagnostics in the order of the text, as a report for a terminal or as lines of JSON. The
+//! caller decides where to print them, and in which style.
 
+#[cfg(feature = "cli")]
+mod excerpt;
 mod fix;
 mod problems;
 #[cfg(feature = "cli")]
@@ -27,7 +29,7 @@ use crate::source::{Source, SourceId, Sources, Span, sort_by_span};
 pub enum Severity {
     /// The scene cannot be read.
     Error,
-    /// The scene can be read, but is perhaps not the one that was meant.
+    /// The scene can be read, but may differ from what the author meant.
     Warning,
 }
 
@@ -41,33 +43,34 @@ impl Severity {
     }
 }
 
-/// A problem of a scene: what is wrong, where, and a way out.
+/// A problem of a scene: what is wrong, where, and how to solve it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Its severity.
+    /// Whether the problem is an error or a warning.
     pub severity: Severity,
     /// The code of the kind of problem, such as `pinhole::unknown_field`.
     pub code: String,
-    /// What is wrong, in the scene's own words; a sentence that stands alone.
+    /// What is wrong, in the words of the scene: a sentence that can be understood alone.
     pub message: String,
-    /// What to do about it.
+    /// Advice on how to solve the problem.
     pub help: Option<String>,
-    /// The places that explain the problem; the first one is the place to jump to.
+    /// The places that explain the problem, the primary one first.
     pub labels: Vec<Label>,
-    /// The fixes, the likeliest first.
+    /// The fixes, the most probable one first.
     pub fixes: Vec<Fix>,
-    /// Whether the text at the place to jump to can be left out without any change of meaning.
+    /// Whether the text at the primary place can be left out without any change of meaning.
     pub is_needless: bool,
-    /// Whether the problem is one of syntax, whatever the names mean.
+    /// Whether the problem is a violation of the grammar, regardless of what the names in the text
+    /// mean.
     pub is_of_syntax: bool,
 }
 
 /// A place with a short explanation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Label {
-    /// The place.
+    /// The labelled place.
     pub span: Span,
-    /// The explanation.
+    /// The explanation of the place.
     pub message: String,
 }
 
@@ -78,7 +81,7 @@ impl Diagnostic {
     }
 }
 
-/// Sorts diagnostics by the place to jump to: those of the file come before those of the arguments.
+/// Sorts diagnostics by their primary places: those in the file before those in the arguments.
 pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
     sort_by_span(diagnostics, |diagnostic| {
         let first = diagnostic.labels.first();
@@ -89,7 +92,7 @@ pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
     });
 }
 
-/// Returns every diagnostic as a line of JSON, as the command line's contract says.
+/// Returns each diagnostic as a line of JSON, in the documented format of the command line.
 pub fn json_lines(diagnostics: &[Diagnostic], sources: &Sources) -> String {
     let lines = diagnostics.iter().map(|it| to_json(it, sources));
     lines.map(|line| format!("{line}\n")).collect()
@@ -133,7 +136,7 @@ pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
     })
 }
 
-/// Returns a place in the text as JSON; for an argument, with its name.
+/// Returns a span as JSON: offset and length in bytes and, for a `--set` argument, its name.
 fn place(span: Span, source: &Source) -> Value {
     let (offset, length) = (span.start, span.end - span.start);
     match span.source {
@@ -142,15 +145,15 @@ fn place(span: Span, source: &Source) -> Value {
     }
 }
 
-/// Clamps a span to its source and to character boundaries, so that no printer reaches past the
-/// text.
+/// Clamps a span to its source and to character boundaries, so that every printer can slice the
+/// text by the result.
 fn clamp(span: Span, source: &Source) -> Span {
     let start = source.floor_char_boundary(span.start);
     let end = source.floor_char_boundary(span.end.max(start));
     Span::new(span.source, start, end)
 }
 
-/// Returns the number of errors and warnings, such as `2 errors, 1 warning`.
+/// Returns the numbers of errors and warnings as text, such as `2 errors, 1 warning`.
 pub fn summary(diagnostics: &[Diagnostic]) -> String {
     let cut = usize::from(diagnostics.iter().any(|d| d.message == problems::LEFT_OUT));
     let errors = diagnostics.iter().filter(|d| d.is_error()).count() - cut;

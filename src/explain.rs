@@ -1,19 +1,20 @@
-//! Explanations of the diagnostic codes: a page for each, with a wrong scene, the right one, and
-//! the reason for the rule.
+//! Explanations of the diagnostic codes. Each code has a page with a wrong scene, the corrected
+//! one, and the reason for the rule.
 //!
-//! The pages are the files in `grammar/codes`, Markdown of a fixed form: a title, a description of
+//! The pages are the files in `grammar/codes`, Markdown in a fixed form: a title, a description of
 //! the mistake, and the sections *Wrong*, *Right* and *Why*. The tests compare the codes of the
-//! stages with the pages, and read the scenes: a wrong one must have that mistake and no other, a
-//! right one none. The caller decides how a page is shown (terminal, editor).
+//! stages with the pages and read the scenes: a wrong scene must have the page's mistake and no
+//! other, a right scene none. The caller decides how a page is shown (terminal, editor).
 
 /// The reference of the language, as Markdown.
 pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 
-/// Conversion of a scene of a program whose z points away from the viewer, or up.
+/// How to convert a scene of a program with left-handed coordinates or with z upwards, as Markdown.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// Names that other programs use, with the heading of the reference or the word of the language
-/// that explains them. Text behind a colon is the start of an item or paragraph there.
+/// Words that other programs use, each with a heading of the reference or a word of the language
+/// that explains it. After a heading, `: ` and a text name the item or paragraph there that starts
+/// with this text.
 pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop", "repetition"),
     ("repeat", "repetition"),
@@ -106,7 +107,7 @@ pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("ball.x", "limits: A part of a vector"),
 ];
 
-/// Returns the section of the reference with a heading, whatever its case.
+/// Returns the section of the reference with a heading, ignoring case; `None` if there is none.
 pub fn section(heading: &str) -> Option<&'static str> {
     let is_heading = |line: &str| line.starts_with("## ");
     let mut start = None;
@@ -127,8 +128,8 @@ pub fn section(heading: &str) -> Option<&'static str> {
     start.and_then(|start| LANGUAGE.get(start..).map(str::trim_end))
 }
 
-/// Returns the item or paragraph of a section that starts with some words, with the section's
-/// heading and a reference to the rest. Returns `None` if there is none.
+/// Returns the section's heading, the item or paragraph in it that starts with `words`, and a
+/// reference to the rest of the section. Returns `None` if the section or the item does not exist.
 pub fn part(heading: &str, words: &str) -> Option<String> {
     let section = section(heading)?;
     let lines = section.lines();
@@ -152,7 +153,7 @@ pub fn headings() -> impl Iterator<Item = &'static str> {
     lines.filter_map(|line| line.strip_prefix("## "))
 }
 
-/// Pages about one subject.
+/// Explanation pages about one subject.
 #[derive(Debug)]
 pub struct Group {
     /// The subject.
@@ -170,7 +171,7 @@ pub struct Page {
     pub text: &'static str,
 }
 
-/// Returns the page of a code, in any form that [`short`] accepts.
+/// Returns the page of a code, in any form that [`short`] accepts; `None` if there is no such code.
 pub fn page(code: &str) -> Option<&'static Page> {
     let code = short(code);
     pages().find(|page| page.code == code)
@@ -181,7 +182,7 @@ pub fn pages() -> impl Iterator<Item = &'static Page> {
     GROUPS.iter().flat_map(|group| group.pages)
 }
 
-/// Returns the bare code of a code as a report shows it: `error[pinhole::bare_angle]` is
+/// Returns a code without what surrounds it in a report: `error[pinhole::bare_angle]` becomes
 /// `bare_angle`.
 pub fn short(code: &str) -> &str {
     let inner = code.trim().trim_end_matches(':').strip_suffix(']');
@@ -194,17 +195,17 @@ pub fn short(code: &str) -> &str {
 }
 
 impl Page {
-    /// Returns the sentence at the top of the page.
+    /// Returns the heading at the top of the page.
     pub fn title(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
         first.strip_prefix("# ").unwrap_or(first)
     }
 }
 
-/// Defines `GROUPS`: each line has a subject and the codes of its pages.
+/// Defines `GROUPS`. Each line has a subject and the codes of its pages.
 macro_rules! groups {
     ($($name:literal: $($code:ident)*;)*) => {
-        /// All pages, by subject.
+        /// All pages, grouped by subject.
         pub const GROUPS: &[Group] = &[$(Group {
             name: $name,
             pages: &[$(Page {

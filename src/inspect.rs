@@ -1,5 +1,5 @@
-//! What a scene means, in numbers: the camera's axes, its field of view, the vanishing points, the
-//! objects.
+//! A description of a scene in numbers: the camera's axes, its field of view, the vanishing points,
+//! the objects.
 
 mod json;
 
@@ -25,7 +25,7 @@ pub struct Inspection {
     pub camera: CameraFacts,
     /// The sampling method.
     pub method: Method,
-    /// Number of samples of each pixel, if the scene gives it.
+    /// Number of samples per pixel; `None` if the scene gives their total.
     pub per_pixel: Option<u64>,
     /// Number of samples of the whole picture.
     pub total: u64,
@@ -36,14 +36,14 @@ pub struct Inspection {
     pub vanishing_points: [Option<[f64; 2]>; 3],
     /// The objects in file order.
     pub objects: Vec<ObjectFacts>,
-    /// Whether the areas that are seen of the objects are exact.
+    /// Whether the areas of [`ObjectFacts::seen`] are exact.
     pub is_exact: bool,
 }
 
 /// A camera in numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraFacts {
-    /// The eye.
+    /// Position of the eye.
     pub eye: DVec3,
     /// Unit vector to the picture's right.
     pub u: DVec3,
@@ -63,7 +63,7 @@ pub struct CameraFacts {
     pub near: f64,
     /// Depth of the far plane, in metres.
     pub far: Option<f64>,
-    /// "up", "down" or "level", by the exact y of the view direction.
+    /// "up", "down" or "level", by the exact sign of the view direction's y coordinate.
     pub looks: &'static str,
 }
 
@@ -72,9 +72,9 @@ pub struct CameraFacts {
 pub struct ObjectFacts {
     /// The object's name.
     pub name: Option<String>,
-    /// Values of its block's indices.
+    /// Values of the indices of the block that generates the object; empty for a single object.
     pub indices: Box<[u32]>,
-    /// The line in which it begins, counted from 1.
+    /// The line in which the object begins, counted from 1.
     pub line: usize,
     /// The object's shape.
     pub shape: Shape,
@@ -83,7 +83,8 @@ pub struct ObjectFacts {
 }
 
 impl ObjectFacts {
-    /// Returns its name, or else its indices, which distinguish the members of a block.
+    /// Returns the object's name. Without a name, returns its indices, which distinguish the
+    /// members of a block, or `-`.
     fn shown_name(&self) -> Cow<'_, str> {
         match (&self.name, &*self.indices) {
             (Some(name), _) => Cow::Borrowed(name),
@@ -135,8 +136,8 @@ pub fn total_samples(count: Count, image: &Image) -> u64 {
     }
 }
 
-/// Describes a camera alone, with the vanishing points of the axes, as [`inspect`] does for a whole
-/// scene.
+/// Describes a camera alone, as [`inspect`] does for a whole scene. Also returns the vanishing
+/// points of the axes.
 pub fn inspect_camera(camera: &Camera, image: &Image) -> (CameraFacts, [Option<[f64; 2]>; 3]) {
     let basis = Basis::new(camera, image);
     let points = [0, 1, 2].map(|axis| vanishing_point(image, &basis, axis));
@@ -169,11 +170,13 @@ fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
     }
 }
 
-/// Returns the vanishing point of the lines parallel to an axis. The ray along the axis a has the
-/// direction (a·u, a·v, −a·w) in the camera's axes, and meets the view plane where this is scaled
-/// to depth 1.
+/// Returns the vanishing point of the lines parallel to an axis, in pixels from the top left
+/// corner. Returns `None` if the axis is parallel to the view plane. The ray along the axis a has
+/// the direction (a·u, a·v, −a·w) in the camera's axes; scaled to depth 1, it ends in the view
+/// plane.
 fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
-    // w is −f/|f|, so its component is zero exactly if the axis is parallel to the view plane.
+    // w is −f/|f| with the view direction f, so its component is zero exactly if the axis is
+    // parallel to the view plane.
     if basis.w[axis].is_zero() {
         return None;
     }
@@ -194,14 +197,14 @@ fn rounded(x: &Big) -> f64 {
 struct Rest {
     objects: u64,
     seen: u64,
-    /// Area that shows them, in pixels.
+    /// Area that shows these objects, in pixels.
     pixels: f64,
     outside: u64,
 }
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The text for people, which lists only the first of very many objects.
+/// Writes the text for people, which lists only the first of very many objects.
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
@@ -244,9 +247,10 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// The part of the text about what is seen of the objects.
+/// The part of the text that describes what is seen of the objects.
 impl Inspection {
-    /// Sums what is seen of the objects that are not listed. Returns `None` if all are listed.
+    /// Sums what is seen of the objects that are not listed. Returns `None` if all objects are
+    /// listed.
     fn rest(&self) -> Option<Rest> {
         let rest = self.objects.get(LISTED..).filter(|rest| !rest.is_empty())?;
         let mut sum = Rest {
@@ -315,8 +319,7 @@ impl Inspection {
     }
 }
 
-/// Describes a camera for people: its axes, its field of view, and the vanishing points of the
-/// axes.
+/// Formats a camera for people: its axes, its field of view, and the axes' vanishing points.
 pub fn camera_summary(camera: &CameraFacts, vanishing_points: &[Option<[f64; 2]>; 3]) -> String {
     let mut text = format!("camera    looks {}\n", camera.looks);
     let vectors = [

@@ -41,6 +41,7 @@
 //! - [`editor`] answers questions while a scene is written: completions, explanations of words,
 //!   uses of names. `lsp` serves these answers to editors by the Language Server Protocol,
 //!   `preview` notifies of a file's changes, and `studio` serves a page to edit a scene.
+//! - [`figure`] draws what the program knows of a scene for a page of a course, as SVG.
 //! - `cli`, the command line, reads input, calls all of these and prints; the binary does nothing
 //!   else.
 
@@ -87,6 +88,7 @@ pub mod report;
 pub mod seen;
 
 pub mod editor;
+pub mod figure;
 #[cfg(feature = "lsp")]
 pub mod lsp;
 #[cfg(feature = "preview")]

@@ -1,7 +1,7 @@
-//! Locks that outlive a panic.
+//! Locks that can be used after a panic.
 //!
-//! A lock is poisoned if a thread panics while it holds it. Here, whatever a lock guards is changed
-//! in steps that each leave it whole, so its value can be used afterwards.
+//! A lock is poisoned if a thread panics while it holds the lock. In this crate, values behind
+//! locks are changed in steps that each leave them valid, so they can be used afterwards.
 
 use std::sync::{LockResult, Mutex, MutexGuard, PoisonError};
 
@@ -10,7 +10,7 @@ pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     unpoisoned(mutex.lock())
 }
 
-/// Returns what a lock guards, poisoned or not.
+/// Returns the guard or the value of a lock, whether it is poisoned or not.
 pub(crate) fn unpoisoned<T>(result: LockResult<T>) -> T {
     result.unwrap_or_else(PoisonError::into_inner)
 }

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-/// Formats a number with at most six significant digits, which is what people want to see of a
-/// computed number.
+/// Formats a number with six significant digits, without zeros at the end. Numbers from 10^6 to
+/// below 10^9 keep all digits before the point. Numbers below 10^−4 or from 10^9 on get an
+/// exponent.
 pub fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();
@@ -15,8 +16,8 @@ pub fn short(x: f64) -> String {
         };
         return format!("{}e{exponent}", trimmed(digits));
     }
-    // Six significant digits are 5 − ⌊log10 |x|⌋ decimals; a number of more than six digits keeps
-    // them all.
+    // For 10^−4 ≤ |x| < 10^6, six significant digits are 5 − ⌊log10 |x|⌋ decimals. Larger numbers
+    // get no decimals.
     let mut decimals = 5;
     let mut bound = 10.0;
     while x.abs() >= bound && decimals > 0 {
@@ -36,7 +37,7 @@ pub fn significant(x: f64, digits: usize) -> f64 {
     format!("{x:.after$e}").parse().unwrap_or(x)
 }
 
-/// Formats a bound, rounded up to two significant digits.
+/// Formats a bound with two significant digits, rounded up.
 pub fn at_most(bound: f64) -> String {
     if bound == 0.0 {
         return "0".to_owned();
@@ -44,8 +45,8 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // Adds one unit of the last digit: the sum of two numbers with one decimal rounds to the
-        // right one.
+        // Adds 1 to the last digit. A sum of two numbers with one decimal each, formatted with one
+        // decimal, is correct.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);
@@ -55,7 +56,8 @@ pub fn at_most(bound: f64) -> String {
     }
 }
 
-/// Formats a number that is compared with others: short, unless that would change a comparison.
+/// Formats a number that a reader compares with `others`: short, unless the short form compares
+/// differently with one of them.
 pub fn beside(x: f64, others: &[f64]) -> String {
     let text = short(x);
     let read = text.parse().unwrap_or(x);
@@ -67,7 +69,9 @@ pub fn beside(x: f64, others: &[f64]) -> String {
     }
 }
 
-/// Rounds a number to the decimals that are meaningful for an error.
+/// Rounds a number to the decimals that are meaningful for a given error: up to the first
+/// significant digit of the error, at most 12. Returns `x` unchanged unless the error is positive
+/// and finite.
 pub fn rounded(x: f64, error: f64) -> f64 {
     if !(error > 0.0 && error.is_finite()) {
         return x;
@@ -77,7 +81,7 @@ pub fn rounded(x: f64, error: f64) -> f64 {
     format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0
 }
 
-/// Removes the zeros at the end of decimals.
+/// Removes the zeros at the end of the decimals, and the point if no decimals remain.
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') {
         digits.trim_end_matches('0').trim_end_matches('.')
@@ -91,7 +95,7 @@ pub fn short_vector(v: DVec3) -> String {
     format!("({}, {}, {})", short(v.x), short(v.y), short(v.z))
 }
 
-/// Formats a count with its digits in groups of three.
+/// Formats a count with its digits in groups of three, as in `1_000_000`.
 pub fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::new();

@@ -1,5 +1,5 @@
-//! Stands in for `threads.rs` where there are no threads, as in a browser: the calling thread does
-//! all work, without rayon, which would make the engine larger and no faster.
+//! Replacement of `threads.rs` for targets without threads, such as browsers. The calling thread
+//! does all work, without rayon, which would make the engine larger and no faster.
 
 use std::num::NonZero;
 

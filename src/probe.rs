@@ -1,4 +1,4 @@
-//! What one ray meets, surface by surface.
+//! All surfaces that one ray hits.
 
 use std::fmt;
 
@@ -12,25 +12,26 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// The output of `pinhole probe`: the ray through a point of the picture, and all surfaces on it.
-/// Every number is the correctly rounded exact value.
+/// The output of `pinhole probe`: the ray through a point of the picture, and all its crossings
+/// with surfaces. Every number is the correctly rounded exact value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// The point, in pixels from the picture's top left corner; it may lie outside the picture.
     pub pixel: DVec2,
     /// Number of columns and of rows of the picture.
     pub picture: [u32; 2],
-    /// The eye.
+    /// Position of the eye.
     pub origin: DVec3,
     /// The ray's direction, of length 1.
     pub direction: DVec3,
     /// All crossings in front of the eye, the nearest first, with their objects.
     pub hits: Vec<(Hit, Object)>,
-    /// The colour that is seen.
+    /// The colour that is seen: of the nearest visible surface, or of the background.
     pub color: Color,
 }
 
-/// Follows the ray through a point of the picture plane, in pixels from the top left corner.
+/// Follows the ray through a point of the picture plane, given in pixels from the picture's top
+/// left corner.
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
     let world = World::for_rays(scene, (pixel - half).abs());
@@ -79,7 +80,7 @@ impl Probe {
     }
 }
 
-/// The text for people.
+/// Writes the text for people.
 impl fmt::Display for Probe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = (short(self.pixel.x), short(self.pixel.y));

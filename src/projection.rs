@@ -1,4 +1,4 @@
-//! Projection of points of the world to points of the picture, and back, in rounded numbers.
+//! Projection of points in world coordinates to points of the picture, and back, in `f64`.
 
 use glam::{DVec2, DVec3};
 
@@ -9,10 +9,10 @@ use crate::{
     tracer::Basis,
 };
 
-/// A camera in rounded numbers.
+/// A camera as numbers in `f64`.
 #[derive(Clone, Copy, Debug)]
 pub struct Projection {
-    /// The eye, in the world.
+    /// Position of the eye, in world coordinates.
     pub eye: DVec3,
     /// Unit vector to the picture's right.
     pub right: DVec3,
@@ -41,10 +41,11 @@ impl Projection {
         }
     }
 
-    /// Derives the projection by a textbook's formulas, for callers that need thousands per second.
+    /// Derives the projection by a textbook's formulas in `f64`, for callers that need thousands
+    /// per second.
     pub fn quick(camera: &Camera, image: &Image) -> Self {
         let [right, top, backward] = formulas::axes(camera);
-        // Lengths out of the range of numbers would leave no axes.
+        // If lengths exceed the range of `f64`, the formulas give no axes.
         if !(right + top).is_finite() {
             return Self::new(camera, image);
         }
@@ -58,27 +59,29 @@ impl Projection {
         }
     }
 
-    /// Returns the depth of a point in front of the eye.
+    /// Returns the depth of a point: its distance from the eye along the view direction, negative
+    /// behind the eye.
     pub fn depth(&self, point: DVec3) -> f64 {
         (point - self.eye).dot(self.ahead)
     }
 
-    /// Projects a point. Returns `None` if it is not in front of the eye.
+    /// Projects a point to the picture plane, in pixels from the top left corner. Returns `None` if
+    /// the point is not in front of the eye or its projection is not finite.
     pub fn point(&self, point: DVec3) -> Option<DVec2> {
         let seen = self.projected(point);
         (self.depth(point) > 0.0 && seen.is_finite()).then_some(seen)
     }
 
-    /// Returns the point of the picture plane on the line through the eye and a point, which may be
-    /// behind the eye.
+    /// Returns where the line through the eye and a point hits the picture plane, in pixels from
+    /// the top left corner. The point may be behind the eye.
     pub fn projected(&self, point: DVec3) -> DVec2 {
         let from_eye = point - self.eye;
         let across = DVec2::new(from_eye.dot(self.right), -from_eye.dot(self.top));
         across / (self.depth(point) * self.pitch) + self.size / 2.0
     }
 
-    /// Returns the direction of the ray through a point of the picture, with a length that reaches
-    /// depth 1.
+    /// Returns the direction of the ray through a point of the picture, with the length at which it
+    /// ends at depth 1.
     pub fn ray(&self, point: DVec2) -> DVec3 {
         let across = (point - self.size / 2.0) * self.pitch;
         self.ahead + self.right * across.x - self.top * across.y
@@ -89,8 +92,9 @@ impl Projection {
         self.eye + self.ray(point) * depth
     }
 
-    /// Intersects the ray through a point of the picture with the plane through a point of the
-    /// world. Returns `None` if the crossing is not in front of the eye.
+    /// Intersects the ray through the point `at` of the picture with the plane through the point
+    /// `through` of the world. Returns `None` if the crossing is not in front of the eye or not
+    /// finite.
     pub fn on_plane(&self, at: DVec2, through: DVec3, normal: DVec3) -> Option<DVec3> {
         let ray = self.ray(at);
         let depth = (through - self.eye).dot(normal) / ray.dot(normal);

@@ -1,8 +1,8 @@
 //! Coarse pictures that become finer step by step, for a preview.
 //!
-//! In: the prepared scene. Out: pictures in blocks, one after the other. A block shows what is seen
-//! at its centre, so that nothing is shown that is not there. The preview decides when to continue
-//! with the picture itself (`render`), and when to give up on a scene that has changed.
+//! In: the prepared scene. Out: pictures in blocks, one after the other. A block shows the colour
+//! at its centre, so that only colours of the scene are shown. The preview decides when to continue
+//! with the picture itself (`render`), and when to stop for a scene that has changed.
 
 use std::sync::{Mutex, atomic::Ordering};
 
@@ -16,8 +16,8 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Sides of the blocks, in pixels, step by step. Each step takes four times as long as the one
-/// before it, and all of them together less than a picture with one sample per pixel.
+/// Sides of the blocks in successive steps, in pixels. Each step takes four times as long as the
+/// one before it. All steps together take less time than a picture with one sample per pixel.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
 /// A picture in blocks.
@@ -29,8 +29,9 @@ pub struct Coarse {
     pub film: Film,
 }
 
-/// Shows a part of the picture, which must lie in it, in blocks that become finer down to a side of
-/// `finest` pixels. If it is cancelled, it ends within a row of blocks.
+/// Calls `show` with a part of the picture in blocks that become finer from step to step, down to a
+/// side of `finest` pixels. The part must lie in the picture. If the render is cancelled, it ends
+/// within a row of blocks.
 ///
 /// # Errors
 ///
@@ -49,8 +50,8 @@ pub fn coarse_to_fine(
     Ok(())
 }
 
-/// Renders a part of the picture in blocks of this side, 1 pixel or more, from the part's top left
-/// corner on.
+/// Renders a part of the picture in blocks from the part's top left corner on. `side` is the side
+/// of a block in pixels, at least 1.
 ///
 /// # Errors
 ///
@@ -101,7 +102,8 @@ pub fn coarse(
 
 /// Returns the palette slot that is seen at the centre of a block.
 fn at_center(world: &World, block: Area) -> usize {
-    // At the centre of a pixel, or on the edge before one.
+    // The centre of an odd length is the centre of a pixel; that of an even length is the edge
+    // before one.
     let place = |start: u32, length: u32| match length % 2 {
         0 => (start + length / 2, -0.5),
         _ => (start + length / 2, 0.0),

@@ -16,29 +16,29 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Maximum work on a whole picture, in units of about 50 ns. Where a tile's share of it is spent,
-/// what is seen at a pixel's centre counts for the whole pixel.
+/// Maximum work on a whole picture, in units of about 50 ns, shared equally by its tiles. After a
+/// tile's share is used up, what is seen at a pixel's centre counts for the whole pixel.
 const MAX_WORK: u64 = 100_000_000;
 
-/// Minimum area that counts as seen, in pixels, which is also the precision of printed areas.
+/// Minimum area that counts as seen, in pixels. It is also the precision of printed areas.
 pub const MIN_AREA: f64 = 1e-6;
 
 /// What is seen of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visibility {
-    /// The bounding rectangle of the pixels that show the object, and the area that shows it, in
-    /// pixels.
+    /// The object is seen: the bounding rectangle of the pixels that show it, and the area that
+    /// shows it, in pixels.
     Part(Area, f64),
     /// The object lies wholly outside of the picture.
     Outside(Outside),
-    /// Another object, by its index in the file, is seen at the object's centre.
+    /// At the object's centre, another object is seen, given by its index in the file.
     HiddenBy(usize),
-    /// The object is hidden by several others, or too thin to be seen; or it lies outside of the
-    /// picture although its bounds do not.
+    /// Nothing of the object is seen for another reason. It may be hidden by several others, too
+    /// thin, or outside of the picture although its bounds are not.
     Nothing,
 }
 
-/// Finds out what is seen of each object, and whether all areas are exact.
+/// Finds what is seen of each object. Returns this in file order, and whether all areas are exact.
 pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
     let world = World::by_object(scene);
     let tiles: Vec<Area> = world.picture().tiles(2 * GRID).collect();
@@ -48,7 +48,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
         let integrator = Integrator::for_values(&world, |_| []).with_work_limit(most_work);
         let is_exact = integrator.shares(*tile, |area, shares| {
             for &(object, share) in shares {
-                // A smaller share may be a rounding error.
+                // A smaller share may be a rounding error, so it is ignored.
                 if share > 1e-9 && object != world.background() {
                     add(&mut areas, object, (area, area.pixels() as f64 * share));
                 }
@@ -57,11 +57,11 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
         (areas, is_exact)
     };
     let look = || tiles.par_iter().map(look).collect::<Vec<_>>();
-    // If no thread can be started, nothing is known.
+    // If no thread can be started, no areas are known.
     let found = threads::install(None, look).unwrap_or_default();
     let mut areas = SeenAreas::new();
     let is_exact = found.iter().all(|(_, is_exact)| *is_exact);
-    // Always in the same order, so that sums have the same rounding.
+    // The areas are added in a fixed order, so that sums always have the same rounding.
     for (object, area) in found.into_iter().flat_map(|(areas, _)| areas) {
         add(&mut areas, object, area);
     }
@@ -73,7 +73,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
                 Some(place) => Visibility::Outside(place),
-                // Hiding objects are found only for the objects that are listed.
+                // The object in front is found only for the objects that are listed.
                 None if index >= LISTED => Visibility::Nothing,
                 None => hidden_by(scene, &asked, index)
                     .map_or(Visibility::Nothing, Visibility::HiddenBy),
@@ -83,11 +83,12 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
     ((0..scene.objects.len()).map(seen).collect(), is_exact)
 }
 
-/// Maximum number of objects that `inspect` lists for people, and for which it finds the object
-/// that hides each.
+/// Maximum number of objects that `inspect` lists for people. For each listed object that is
+/// hidden, it also finds the object in front.
 pub const LISTED: usize = 100;
 
-/// Areas that are seen, by the indices of the objects.
+/// For each object, by its index: the bounding rectangle of its pixels, and the area that shows it,
+/// in pixels.
 type SeenAreas = BTreeMap<usize, (Area, f64)>;
 
 fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {
@@ -96,7 +97,8 @@ fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {
     *sum += area;
 }
 
-/// Returns the object that is seen where an object's centre would be, if it is another one.
+/// Returns the object that is seen at the projection of an object's centre. Returns `None` if that
+/// is the object itself or the background, or if the centre is not in the picture.
 fn hidden_by(scene: &Scene, world: &OnceCell<World>, index: usize) -> Option<usize> {
     let middle = scene.objects[index].shape.center()?;
     let projection = Projection::new(&scene.camera, &scene.image);

@@ -1,21 +1,21 @@
-//! Texts and places in them.
+//! Source texts and positions in them.
 //!
 //! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene has one
 //! file and any number of `--set` arguments, and a diagnostic may point into each of them, so a
-//! [`Span`] names its source. Spans are byte ranges; lines and columns are computed when something
-//! is printed.
+//! [`Span`] contains the identifier of its source. Spans are byte ranges; lines and columns are
+//! computed only for output.
 
 use std::{ops::Range, sync::OnceLock};
 
 use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
 
-/// The text that a span points into. The file is ordered before the arguments, which keep their
-/// order.
+/// Identifier of a source text. The file is ordered before the arguments, and these by their
+/// numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SourceId {
     /// The scene file (or standard input).
     File,
-    /// The `--set` argument with this number, from 0.
+    /// The `--set` argument with this index, counted from 0.
     Set(u32),
 }
 
@@ -31,7 +31,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// Returns the bytes from `start` to `end` of `source`.
+    /// Makes the span of the bytes from `start` to before `end` in `source`.
     pub fn new(source: SourceId, start: usize, end: usize) -> Self {
         Self { source, start, end }
     }
@@ -41,7 +41,7 @@ impl Span {
         self.start..self.end
     }
 
-    /// Returns the smallest span that holds both; they lie in one source.
+    /// Returns the smallest span that contains both spans, which must lie in one source.
     pub fn to(self, other: Self) -> Self {
         debug_assert_eq!(self.source, other.source);
         Self::new(
@@ -52,10 +52,10 @@ impl Span {
     }
 }
 
-/// Sorts a list by the spans of its elements.
+/// Sorts a list by the spans of its elements; elements with equal spans keep their order.
 ///
-/// One sort of numbers serves lists of all types: a sort for each type would take a fiftieth of the
-/// engine's code that a browser loads.
+/// Only the indices are sorted here, by one function for lists of all types. A sort for each type
+/// would add a fiftieth to the engine's code that a browser loads.
 pub fn sort_by_span<T>(list: &mut Vec<T>, span: impl Fn(&T) -> Span) {
     let order = order(&list.iter().map(span).collect::<Vec<_>>());
     let mut taken: Vec<Option<T>> = list.drain(..).map(Some).collect();
@@ -69,7 +69,7 @@ fn order(spans: &[Span]) -> Vec<usize> {
     order
 }
 
-/// The texts of a scene.
+/// The source texts of a scene.
 #[derive(Clone, Debug)]
 pub struct Sources {
     /// The scene file.
@@ -79,7 +79,7 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Makes the sources of a file without arguments.
+    /// Makes the sources of a file, without `--set` arguments.
     pub fn new(file: Source) -> Self {
         Self {
             file,
@@ -87,13 +87,13 @@ impl Sources {
         }
     }
 
-    /// Adds a `--set` argument; the arguments are named `--set #1`, `--set #2` and so on.
+    /// Appends a `--set` argument. The arguments are named `--set #1`, `--set #2` and so on.
     pub fn push_set(&mut self, argument: &str) {
         let name = format!("--set #{}", self.sets.len() + 1);
         self.sets.push(Source::from_text(name, argument));
     }
 
-    /// Adds `--set` arguments at the end.
+    /// Appends `--set` arguments.
     pub fn with_sets<S: AsRef<str>>(mut self, arguments: impl IntoIterator<Item = S>) -> Self {
         for argument in arguments {
             self.push_set(argument.as_ref());
@@ -107,7 +107,7 @@ impl Sources {
         sets.map(|(index, set)| (SourceId::Set(index), set))
     }
 
-    /// Returns the text of a source; the file's if there is no such argument.
+    /// Returns the source with an identifier, or the file if there is no such argument.
     pub fn get(&self, id: SourceId) -> &Source {
         let set = match id {
             SourceId::File => None,
@@ -116,7 +116,7 @@ impl Sources {
         set.unwrap_or(&self.file)
     }
 
-    /// Returns the text under a span.
+    /// Returns the text at a span.
     pub fn text(&self, span: Span) -> &str {
         self.get(span.source).slice(span.range())
     }
@@ -131,7 +131,7 @@ pub struct LineColumn {
     pub column: usize,
 }
 
-/// One text with its name.
+/// A source text with its name.
 #[derive(Clone, Debug)]
 pub struct Source {
     name: String,
@@ -141,8 +141,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// Makes a source of a file's bytes, and keeps their offsets: a byte that is not UTF-8 becomes
-    /// a `_`, and [`Source::invalid_utf8`] has its offset.
+    /// Makes a source of a file's bytes. Each byte that is not valid UTF-8 becomes a `_`, so that
+    /// all offsets stay the same, and [`Source::invalid_utf8`] returns its offset.
     pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Self {
         let (text, invalid) = match String::from_utf8(bytes) {
             Ok(text) => (text, Vec::new()),
@@ -172,18 +172,19 @@ impl Source {
         &self.text
     }
 
-    /// Returns the text between two offsets; an empty text if they are not at character boundaries.
+    /// Returns the text of a byte range; an empty text if the range is outside or not at character
+    /// boundaries.
     pub fn slice(&self, range: Range<usize>) -> &str {
         self.text.get(range).unwrap_or_default()
     }
 
-    /// Returns the offsets of the bytes that are not UTF-8, in ascending order.
+    /// Returns the offsets of the bytes that are not valid UTF-8, in ascending order.
     pub fn invalid_utf8(&self) -> &[usize] {
         &self.invalid
     }
 
-    /// Returns whether the file is UTF-16, with or without a byte order mark: most scenes are
-    /// ASCII, where every second byte of UTF-16 is zero, and no other one.
+    /// Returns whether the file is probably UTF-16, with or without a byte order mark. Most scenes
+    /// are ASCII; in UTF-16, every second byte of such a text is zero, and no other byte.
     pub fn is_utf16(&self) -> bool {
         const LOOKED_AT: usize = 256;
         let bytes = self.text.as_bytes();
@@ -204,7 +205,7 @@ impl Source {
         usize::from(self.text.starts_with(BOM)) * BOM.len_utf8()
     }
 
-    /// Returns the line end of the text: CRLF if its first line ends with one, or else LF.
+    /// Returns the line end of the text: CRLF if its first line ends with CRLF, otherwise LF.
     pub fn line_end(&self) -> &'static str {
         let rest = self.text.get(self.line_range(1).end..);
         if rest.is_some_and(|rest| rest.starts_with("\r\n")) {
@@ -214,7 +215,8 @@ impl Source {
         }
     }
 
-    /// Returns the byte range of a line, counted from 1, without the LF or CRLF at its end.
+    /// Returns the byte range of a line, counted from 1, without the LF or CRLF at its end. For a
+    /// line past the end, returns the empty range at the end of the text.
     pub fn line_range(&self, line: usize) -> Range<usize> {
         let index = u32::try_from(line.saturating_sub(1)).ok();
         let Some(range) = index.and_then(|index| self.lines().line(index)) else {
@@ -232,8 +234,8 @@ impl Source {
         self.line_col(offset).line as usize + 1
     }
 
-    /// Returns line and column of an offset. A byte order mark has no column. An offset past the
-    /// end counts as the end, and one inside a character as the start of that character.
+    /// Returns line and column of an offset. A byte order mark takes no column. An offset past the
+    /// end counts as the end, and one inside a character as the character's start.
     pub fn place(&self, offset: usize) -> LineColumn {
         let place = self.line_col(offset);
         let characters = self.lines().to_wide(WideEncoding::Utf32, place);
@@ -245,8 +247,8 @@ impl Source {
         }
     }
 
-    /// Returns line and column of an offset, both counted from 0, and the column in bytes. Offsets
-    /// outside the text or inside a character are treated as by [`Self::place`].
+    /// Returns line and column of an offset, both counted from 0; the column is in bytes. Offsets
+    /// past the end or inside a character are treated as by [`Self::place`].
     pub fn line_col(&self, offset: usize) -> LineCol {
         let offset = self.floor_char_boundary(offset);
         let offset = u32::try_from(offset).ok().map(TextSize::from);
@@ -254,12 +256,13 @@ impl Source {
         place.unwrap_or(LineCol { line: 0, col: 0 })
     }
 
-    /// Returns the index of the line starts and of the characters that take more than a byte.
+    /// Returns the index of the line starts and of the characters that take more than one byte;
+    /// computed on first use.
     pub fn lines(&self) -> &LineIndex {
         self.lines.get_or_init(|| LineIndex::new(&self.text))
     }
 
-    /// Returns the greatest character boundary that is not past an offset.
+    /// Returns the greatest character boundary that is at most `offset`.
     pub fn floor_char_boundary(&self, offset: usize) -> usize {
         let mut offset = offset.min(self.text.len());
         while !self.text.is_char_boundary(offset) {

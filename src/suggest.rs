@@ -1,14 +1,14 @@
-//! The nearest name.
+//! Suggests similar names.
 //!
-//! In: what was written and what could stand there. Out: the name that was probably meant, if one
-//! is near.
+//! In: what was written, and candidates. Out: the name that was probably meant, if one is similar
+//! enough.
 
 use std::cell::Cell;
 
 use strsim::osa_distance;
 
-/// Number of comparisons that are left. Without a limit, a text with as many mistakes as names
-/// would take time for all pairs.
+/// Number of comparisons that may still be made. Without a limit, a text with many mistakes and
+/// many names would compare all pairs.
 #[derive(Debug)]
 pub struct ComparisonBudget(Cell<usize>);
 
@@ -19,7 +19,8 @@ impl Default for ComparisonBudget {
 }
 
 impl ComparisonBudget {
-    /// Reserves comparisons with a number of names. Returns whether as many are left.
+    /// Reserves comparisons with `names` names. Returns `false`, and reserves nothing, if fewer are
+    /// left.
     pub fn spend(&self, names: usize) -> bool {
         let left = self.0.get().checked_sub(names);
         self.0.set(left.unwrap_or(self.0.get()));
@@ -27,8 +28,9 @@ impl ComparisonBudget {
     }
 }
 
-/// Returns the nearest of the candidates, if it is near: equal except for case, or about one slip
-/// for every three letters. Of equally near ones, returns the first.
+/// Returns the nearest of the candidates if it is similar: equal except for case, or with about one
+/// typing error (OSA distance) per three letters at most. If several are equally near, returns the
+/// first.
 pub fn nearest<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -37,7 +39,7 @@ pub fn nearest<'c>(
 }
 
 /// Returns the nearest name of a value or a function, as [`nearest`] does. A name of one or two
-/// letters is seldom a slip, so only its case may differ.
+/// letters is seldom mistyped, so it may differ only in case.
 pub fn nearest_name<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -49,9 +51,9 @@ pub fn nearest_name<'c>(
     }
 }
 
-/// Returns whether `near`, the nearest of the candidates, is nearer to what was written than every
-/// other. Returns false if the digits differ, as that is another name, or if separate words do not
-/// have the letters of the name.
+/// Returns whether `near`, the nearest of the candidates, is nearer to `written` than every other
+/// candidate. Returns `false` if the digits differ, since the name is then another one; if several
+/// words do not have exactly the letters of `near`; or if at least three letters follow `near`.
 pub fn is_only_near<'c>(
     written: &str,
     near: &str,
@@ -63,7 +65,7 @@ pub fn is_only_near<'c>(
     let letters = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "");
     let digits = |name: &str| name.replace(|c: char| !c.is_ascii_digit(), "");
     let near_letters = letters(near).to_ascii_lowercase();
-    // The rest may be the value, without a space before it.
+    // The letters after the name may be its value, without a space before it.
     let is_longer = written.starts_with(near) && written.len() >= near.len() + 3;
     if is_longer
         || digits(&written) != digits(near)
@@ -75,10 +77,10 @@ pub fn is_only_near<'c>(
     least == 0 || candidates.all(|other| other == near || slips(other) > least)
 }
 
-/// Finds the nearest candidate. A function that is not generic, so that it is compiled once.
+/// Finds the nearest candidate. This function is not generic, so that it is compiled only once.
 fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) -> Option<&'c str> {
-    // Maximum length of a name, in characters: a longer one is no slip, and would take long to
-    // compare.
+    // Maximum length of a name, in characters. A longer text is not a mistyped name, and would take
+    // long to compare.
     const LONGEST: usize = 64;
     let length = written.chars().take(LONGEST + 1).count();
     if length == 0 || length > LONGEST {
@@ -88,7 +90,7 @@ fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) 
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates {
         let other = candidate.chars().count();
-        // Half of a name of two letters is no longer the same name.
+        // At most half of the shorter name may differ.
         let allowed = (length.max(other) / 3).max(1).min(length.min(other) / 2);
         if length.abs_diff(other) > allowed || best.is_some_and(|(least, _)| least == 0) {
             continue;
@@ -101,8 +103,8 @@ fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) 
     best.map(|(_, candidate)| candidate)
 }
 
-/// Returns whether a name is one of some words, except for case and `_`: `lookAt` and `look_at` are
-/// one word.
+/// Returns whether a name is one of the words in `words`, ignoring case and `_`: `lookAt` and
+/// `look_at` are equal.
 pub fn is_among(written: &str, words: &str) -> bool {
     fn letters(word: &str) -> impl Iterator<Item = u8> {
         let letters = word.bytes().filter(|byte| *byte != b'_');
@@ -112,7 +114,8 @@ pub fn is_among(written: &str, words: &str) -> bool {
     words.any(|word| letters(word).eq(letters(written)))
 }
 
-/// Returns the words of a name: `near_clip` and `nearClip` both consist of near and clip.
+/// Returns the words that a name consists of: `near_clip` and `nearClip` both consist of near and
+/// clip.
 pub fn words(name: &str) -> Vec<&str> {
     let mut words = Vec::new();
     for part in name.split('_') {
@@ -130,12 +133,12 @@ pub fn words(name: &str) -> Vec<&str> {
     words
 }
 
-/// Returns names as part of a sentence: `a`, `a and b`, `a, b and c`.
+/// Formats names as part of a sentence: `a`, `a and b`, `a, b and c`.
 pub fn list<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     join(names.into_iter().collect(), "and")
 }
 
-/// Returns alternatives as part of a sentence: `a`, `a or b`, `a, b or c`.
+/// Formats alternatives as part of a sentence: `a`, `a or b`, `a, b or c`.
 pub fn choice<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     join(names.into_iter().collect(), "or")
 }

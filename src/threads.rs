@@ -1,5 +1,5 @@
-//! The number of threads, and pools of them. Work that is a part of other work runs on the threads
-//! of that work.
+//! The number of threads, and pools of threads. Work that is started within other work runs on the
+//! same threads.
 
 use std::{
     num::NonZero,
@@ -15,25 +15,26 @@ pub use rayon::ThreadPoolBuildError as NoThreads;
 pub(crate) use rayon::prelude;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Maximum number of threads, whatever is asked for: no machine has more processors for one
-/// picture.
+/// Greatest number of threads that can be requested; a greater request is reduced to it. Few
+/// machines have more processors.
 const MAX_THREADS: usize = 1024;
 
-/// Limit of the process; 0 if there is none. This and the number of processors are the only state
-/// of the whole process; they change how long things take and nothing else.
+/// Limit on the number of threads of the process; 0 if there is none. This limit and the number of
+/// processors are the only global state; they change running times and nothing else.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
-/// Number of processors, stored because asking the system takes longer than a small picture.
+/// Number of processors. It is stored because the system's answer takes longer than a small
+/// picture.
 static PROCESSORS: LazyLock<usize> =
     LazyLock::new(|| thread::available_parallelism().map_or(1, NonZero::get));
 
-/// Limits the number of threads of this process for all work that does not ask for a number itself.
+/// Limits the number of threads of this process for all work that does not specify a number itself.
 pub fn limit(threads: NonZero<usize>) {
     LIMIT.store(threads.get().min(MAX_THREADS), Ordering::Relaxed);
 }
 
-/// Number of threads: one for each processor, or the limit of the process, whatever environment
-/// variables say.
+/// Returns the number of threads to use: the limit of the process, or else one per processor.
+/// Environment variables are ignored.
 pub(crate) fn available() -> usize {
     match LIMIT.load(Ordering::Relaxed) {
         0 => *PROCESSORS,
@@ -41,18 +42,18 @@ pub(crate) fn available() -> usize {
     }
 }
 
-/// Threads to run work on.
+/// Threads on which work runs.
 pub(crate) enum Threads {
     /// A pool that was started for the work.
     Started(ThreadPool),
-    /// The current threads: work that consists of hundreds of pictures renders all of them on the
-    /// same threads.
+    /// The current threads. Work that consists of hundreds of pictures thus renders all of them on
+    /// the same threads.
     Current,
 }
 
 impl Threads {
-    /// Returns `threads` threads, or as many as are available: the current ones, if there are as
-    /// many, or if the system starts none.
+    /// Returns `threads` threads, or the available number if it is `None`. These are the current
+    /// threads if there are exactly as many, or if the system cannot start new ones.
     ///
     /// # Errors
     ///
@@ -65,9 +66,10 @@ impl Threads {
         }
     }
 
-    /// Returns a pool. If it could not be built, for instance because too many threads are running,
-    /// returns the current threads: rayon would permanently treat a thread outside of pools as a
-    /// pool of its own.
+    /// Returns the pool that was built. If building failed, for instance because too many threads
+    /// are running, returns the current threads. Outside of a pool, it returns a pool of the
+    /// calling thread alone, since rayon would otherwise permanently treat that thread as a pool of
+    /// its own.
     fn started(built: Result<ThreadPool, NoThreads>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),
@@ -88,7 +90,7 @@ impl Threads {
     }
 }
 
-/// Runs work on `threads` threads, or on as many as are available.
+/// Runs work on `threads` threads, or on the available number if it is `None`.
 ///
 /// # Errors
 ///

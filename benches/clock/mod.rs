@@ -1,4 +1,4 @@
-//! CPU time, which depends less on other work on the machine than wall time.
+//! CPU time of the process. Other work on the machine affects it less than wall time.
 
 #[cfg(unix)]
 use rustix::time::{ClockId, clock_gettime};
@@ -10,8 +10,8 @@ pub fn cpu_seconds() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Returns the wall time since the first call, in seconds: CPU time is not implemented for this
-/// system.
+/// Returns the wall time since the first call, in seconds, because CPU time is not implemented for
+/// this system.
 #[cfg(not(unix))]
 pub fn cpu_seconds() -> f64 {
     static START: std::sync::LazyLock<std::time::Instant> =

@@ -1,11 +1,11 @@
-//! The scene of the assignment.
+//! The scene of the assignment, figure 9.9.
 
 use pinhole::{
     scene::{self, Count, Method, Scene},
     source::{Source, Sources},
 };
 
-/// Returns figure 9.9 in this size and with these samples.
+/// Returns the scene of figure 9.9 with this size, method and number of samples.
 pub fn figure(width: u32, height: u32, method: Method, count: Count) -> Scene {
     let text = include_str!("../../examples/figure_9_9.scn");
     let sources = Sources::new(Source::from_text("figure_9_9.scn", text));

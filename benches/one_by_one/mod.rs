@@ -1,5 +1,5 @@
-//! Renders a picture sample by sample, as plainly as possible. Tests and benchmarks compare culling
-//! with it.
+//! Renders a picture sample by sample, without culling. Tests and benchmarks compare culling with
+//! it.
 
 use pinhole::{
     area::Area,
@@ -9,9 +9,9 @@ use pinhole::{
     tracer::World,
 };
 
-/// Renders a part of the picture.
+/// Renders the part `part` of the picture, and traces each sample by itself.
 pub fn one_by_one(world: &World, sampling: &Sampling, part: Area) -> Film {
-    /// Number of points that are placed at a time.
+    /// Maximum number of sample points that are generated at a time.
     const CHUNK: u64 = 1 << 12;
     let palette = world.palette().iter();
     let colors: Vec<_> = palette.map(|color| color.to_linear()).collect();

@@ -1,17 +1,17 @@
-//! Texts of scenes of many small spheres.
+//! Makes texts of scenes of many small spheres.
 
 use std::fmt::Write;
 
 use pinhole::sampling::CounterRng;
 use rand::{Rng, RngExt, SeedableRng};
 
-/// Layout of a block.
+/// Layout of a block in the text.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// A line for each field.
+    /// One line for each field.
     Blocks,
-    /// A line for each block.
+    /// One line for each block.
     Lines,
 }
 
@@ -26,8 +26,8 @@ const COLORS: [&str; 8] = [
     "steelblue",
 ];
 
-/// Returns a scene of `count` spheres as a person might write it, with some names, comments, `let`s
-/// and expressions: 80 bytes per sphere.
+/// Returns the text of a scene of `count` spheres as a person might write it, with some names,
+/// comments, `let`s and expressions: about 80 bytes per sphere.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn spheres(count: usize, layout: Layout) -> String {
     let (open, between, close) = match layout {
@@ -80,9 +80,9 @@ pub fn spheres(count: usize, layout: Layout) -> String {
     text
 }
 
-/// Returns a scene of `count` spheres at distances from 5 to 50 that together would cover the
-/// picture one and a half times: for any count, some are visible, some are hidden, and over a fifth
-/// of the picture stays empty.
+/// Returns the text of a scene of `count` spheres at distances from 5 to 50. The areas of their
+/// images add up to one and a half times the picture: for any count, some spheres are visible, some
+/// are hidden, and over a fifth of the picture stays empty.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn crowd(count: usize) -> String {
     const COVERED: f64 = 1.5;
@@ -109,8 +109,8 @@ pub fn crowd(count: usize) -> String {
     text
 }
 
-/// Returns a scene of `count` spheres in an upright cube in the picture: together they would cover
-/// it one and a half times.
+/// Returns the text of a scene of `count` spheres in an upright cube in the picture. The areas of
+/// their discs add up to one and a half times a face of the cube.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn cube(count: usize) -> String {
     const COVERED: f64 = 1.5;
@@ -134,7 +134,7 @@ pub fn cube(count: usize) -> String {
     text
 }
 
-/// Random numbers that are equal on all systems.
+/// Generator of random numbers that are the same on all systems.
 pub struct Random(CounterRng);
 
 impl Random {

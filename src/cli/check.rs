@@ -17,7 +17,7 @@ use crate::{
     source::Source,
 };
 
-/// Reports the problems of each scene in turn. Returns the worst status.
+/// Checks each scene in turn and reports its problems. Returns the worst status.
 pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     let is_json = args.format.format == AnswerFormat::Json;
@@ -47,7 +47,9 @@ fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, T
     report(&input, args.format.format)
 }
 
-/// Applies the fixes of a file's errors, and reports which were applied.
+/// Applies the fixes of a file's errors: writes the file, or prints the text of standard input, or
+/// prints only the changes with `--diff`. Reports which fixes were applied. Returns the input after
+/// the fixes.
 fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneInput, Trouble> {
     let (mut input, original) = SceneInput::to_change(path, &args.overrides, "--fix")?;
     let most = if args.unsafe_fixes {
@@ -83,7 +85,7 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneIn
     Ok(input)
 }
 
-/// Returns which fixes were not applied, and how to apply them.
+/// Returns a text for people that says how many fixes were not applied and how to apply them.
 fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     let mut text = String::new();
     let fixes = |count, one, more| match count {

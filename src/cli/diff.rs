@@ -25,7 +25,7 @@ use crate::{
     render::RenderError,
 };
 
-/// Compares the two arguments.
+/// Compares the files that the two arguments name. Returns whether they agree as a status.
 pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.a) && is_standard(&args.b) {
         let message = "standard input can be read once only, and `-` is given twice";
@@ -54,7 +54,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let jpeg = Jpeg::of(&a);
     let a = read(&args.a, &a, &args.large)?;
-    // A file with a picture's ending is read as a picture, even if it is damaged.
+    // A file whose name ends like a picture's is read as a picture, even if it is damaged.
     let is_named = judge::is_named_as_picture(&args.b);
     let most = if is_named {
         IfNotPicture::ReadStart
@@ -119,7 +119,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status(if is_strict { is_equal } else { is_right }))
 }
 
-/// Compares two pictures, read or rendered, without a verdict.
+/// Compares two pictures, read or rendered, and prints the result without a verdict. `steps` is the
+/// default tolerance.
 fn compare(
     args: &DiffArgs,
     films: [&Film; 2],
@@ -168,7 +169,7 @@ fn ended(error: RenderError) -> Result<Status, Trouble> {
     }
 }
 
-/// Checks before the work, and not after it, that the heat map can be written.
+/// Checks before the comparison that the heat map can be written.
 fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     if !path
         .to_string_lossy()
@@ -184,7 +185,7 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
 }
 
-/// Rejects a heat map that would overwrite a file that is compared.
+/// Rejects a path of the heat map that names one of the compared files.
 fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     for other in [&args.a, &args.b] {
         if input::is_same_file(path, other) {
@@ -197,7 +198,7 @@ fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Returns what the colours of a heat map mean.
+/// Returns the meaning of a heat map's colours.
 fn legend(is_equal: bool) -> &'static str {
     if is_equal {
         "black all over: nothing differs by more than the tolerance"
@@ -221,7 +222,7 @@ fn write_heat_map(
         return Ok(());
     }
     let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
-    // The path may have become a link to one of the two files.
+    // The path may have become a link to one of the compared files.
     check_is_not_compared(path, args)?;
     files::write(path, Purpose::Named, cancel, |out| {
         film::write_png(&map, None, out)
@@ -232,13 +233,13 @@ fn write_heat_map(
     Ok(())
 }
 
-/// The result of a comparison, to be printed.
+/// The result of a comparison, for output.
 struct DiffReport {
     names: [String; 2],
     sizes: [[u32; 2]; 2],
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    /// `Some` if B is a scene.
+    /// The verdict on A; `None` if B is not a scene.
     verdict: Option<Verdict>,
     is_strict: bool,
 }
@@ -354,7 +355,7 @@ impl DiffReport {
     }
 }
 
-/// Returns the JSON fields of a comparison.
+/// Returns the JSON fields of a comparison. `found` is `None` if the sizes differ.
 pub fn json(
     [a, b]: [String; 2],
     sizes: [[u32; 2]; 2],
@@ -394,7 +395,7 @@ pub fn json(
         .collect()
 }
 
-/// Writes the mistakes, then which objects are right.
+/// Writes the mistakes and guesses, then which objects are right.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
     let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
@@ -431,8 +432,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// Returns which objects are right and which are not. If there are many, lists only some that are
-/// not right.
+/// Returns a sentence about which objects are right and which are not. If there are many objects,
+/// lists only some of those that are not right.
 fn objects(verdict: &Verdict) -> String {
     /// Maximum number of objects that are listed.
     const MOST: usize = 12;
@@ -468,7 +469,8 @@ fn state(object: &ObjectVerdict) -> String {
     }
 }
 
-/// Formats a share in per cent with few digits, and as 0 or 100 only if it is exactly that.
+/// Formats a share in per cent with one decimal, but as 0 or 100 only if the share is exactly 0 or
+/// 1.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rounded = (10.0 * percent).round() / 10.0;
@@ -489,8 +491,8 @@ fn round(steps: f64) -> String {
     }
 }
 
-/// Rounds steps to 1e−9, which removes the rounding errors of decoding and encoding a byte (numbers
-/// up to 255).
+/// Rounds a number of 8-bit steps to 10^−9, which removes the rounding errors of decoding and
+/// encoding a byte (numbers up to 255).
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }

@@ -17,16 +17,16 @@ use crate::{
 };
 
 /// Tolerance between two exact pictures of equal scenes, in steps of 8-bit sRGB. Each picture's
-/// bound of 10^−9 in linear light is at most 3.3·10^−6 steps.
+/// error bound of 10^−9 in linear light is at most 3.3·10^−6 steps.
 pub const EXACT_STEPS: f64 = 1e-4;
 
-/// Whether a path has the ending of scenes.
+/// Returns whether a path has the extension of scenes, `.scn`.
 pub fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "scn")
 }
 
-/// Renders both pictures. The outer error is about the arguments, the inner one about rendering;
-/// `None` if a scene has errors, which are reported.
+/// Renders the exact pictures of both scenes. The outer error is about the arguments, the inner one
+/// about rendering. Returns `None` if a scene has errors, which are reported.
 pub fn of_scenes(
     args: &DiffArgs,
     cancel: &AtomicBool,

@@ -1,8 +1,8 @@
 //! `explain`: prints the page of a diagnostic code or of a word of the language, the reference, or
 //! the list of all codes.
 //!
-//! The page goes to standard output, as the manual does, since it may be piped into a pager: as
-//! Markdown, unless standard output is a terminal.
+//! The page goes to standard output, as the manual does, since it may be piped into a pager. It is
+//! Markdown unless standard output is a terminal.
 
 use std::{borrow::Cow, fmt::Write};
 
@@ -14,11 +14,11 @@ use crate::{
     schema, suggest,
 };
 
-/// Maximum width of a line, in columns: longer lines are hard to read, however wide the terminal
-/// is.
+/// Maximum width of a line, in columns, even if the terminal is wider: longer lines are hard to
+/// read.
 const WIDEST: usize = 90;
 
-/// Prints the page, or the list.
+/// Prints the page of the words, or the list of all codes if there are no words.
 pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     let style = output::page_style();
     let headings = style.map_or(Headings::Plain, Headings::of);
@@ -47,7 +47,8 @@ enum Headings {
 }
 
 impl Headings {
-    /// Returns bold headings if the terminal has colours: the two come together.
+    /// Returns bold headings if the terminal has colours, since such a terminal can also show bold
+    /// text.
     fn of(style: Style) -> Self {
         if style.color { Self::Bold } else { Self::Plain }
     }
@@ -60,7 +61,7 @@ impl Headings {
     }
 }
 
-/// Returns the page of a code or a word.
+/// Returns the page of a code or a word, as Markdown. Fails with a suggestion if there is none.
 fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let trimmed = word.trim();
     if trimmed.is_empty() {
@@ -127,7 +128,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     Err(Trouble(format!("nothing is known about `{word}`: {hint}")))
 }
 
-/// Returns all codes with their titles, by subject.
+/// Returns all codes with the titles of their pages, grouped by subject.
 fn list(headings: Headings) -> String {
     let width = explain::pages().map(|page| page.code.len()).max();
     let width = width.unwrap_or_default();
@@ -145,12 +146,12 @@ fn list(headings: Headings) -> String {
     text
 }
 
-/// Lays out a page for a terminal: scenes are indented, and lines wrapped.
+/// Lays out a page for a terminal: scenes are indented, and lines are wrapped.
 fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut text = String::new();
     let mut paragraph = String::new();
     let mut is_scene = false;
-    // The empty line that is added at the end closes the last paragraph.
+    // An empty line is added at the end, which closes the last paragraph.
     let mut rows: Vec<Vec<&str>> = Vec::new();
     let lines = page.lines().map(without_targets).collect::<Vec<_>>();
     for line in lines.iter().map(String::as_str).chain([""]) {
@@ -185,7 +186,7 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     text
 }
 
-/// Removes the targets of a line's links, as a terminal cannot follow them.
+/// Removes the targets of a line's links, since a terminal cannot follow them.
 fn without_targets(line: &str) -> String {
     let link = |rest: &'_ str| {
         let at = rest.find("](")?;
@@ -202,7 +203,7 @@ fn without_targets(line: &str) -> String {
     text + rest
 }
 
-/// Splits a row of a Markdown table into cells; an escaped `\\|` separates none.
+/// Splits a row of a Markdown table into cells; an escaped `\|` does not separate cells.
 fn cells(line: &str) -> Vec<&str> {
     let inner = line.trim().trim_start_matches('|');
     let inner = inner.strip_suffix('|').unwrap_or(inner);
@@ -219,7 +220,8 @@ fn cells(line: &str) -> Vec<&str> {
     cells
 }
 
-/// Appends a table: in columns if they fit, otherwise with each row as a paragraph.
+/// Appends a table to `text`: in columns if they fit into `width`, otherwise each row as a
+/// paragraph.
 fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
     let is_rule = |row: &&Vec<&str>| {
         row.iter()
@@ -249,7 +251,8 @@ fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
     }
 }
 
-/// Appends a wrapped paragraph. Further lines of a list's item start below its first word.
+/// Appends a wrapped paragraph to `text`. The further lines of a list item are indented to the
+/// item's first word.
 fn push_wrapped(text: &mut String, paragraph: &str, width: usize) {
     let indent = if paragraph.starts_with("- ") {
         "  "
@@ -335,7 +338,8 @@ mod tests {
             let found = page(heading).unwrap();
             assert!(found.starts_with(&format!("## {heading}\n")), "{heading}");
         }
-        // A word of the language explains itself, even if other programs use it for something else.
+        // A word of the language has its own page, even if other programs use the word for
+        // something else.
         for (name, meant) in explain::OTHER_NAMES {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),

@@ -1,4 +1,4 @@
-//! `fmt`: lays scenes out canonically.
+//! `fmt`: writes scenes in the canonical layout.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{diagnostic::Report, format::format, source::Sources};
 
-/// Lays out each scene in turn, or prints what would change. Returns the worst status.
+/// Formats each scene in turn, or prints what would change. Returns the worst status.
 pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     Ok(each(&args.scenes, interrupt, |path| {

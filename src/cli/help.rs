@@ -1,4 +1,5 @@
-//! The end of each command's `--help`, after the options: examples, JSON output, exit status.
+//! Texts at the end of each command's `--help`, after the options: examples, JSON output, exit
+//! status.
 
 pub const EXAMPLES: &str = "\
 Examples:
@@ -149,6 +150,17 @@ Examples:
 Each picture is rendered anew at its size on the sheet, with as many samples in a pixel as the scene asks for; of \
 PNGs that carry a crop, too, the whole is shown. Under it stands the \
 name of its file, or what a sweep has come to. If a scene has errors, there is no sheet.";
+
+pub const FIGURE_EXAMPLES: &str = "\
+Examples:
+  pinhole figure camera figure.scn -o camera.svg
+  pinhole figure pixel figure.scn --pixel 640,300 --set sampler.method=jittered -o pixel.svg
+  pinhole figure triangle figure.scn --object Sail --set Sail.spin=30deg -o triangle.svg
+  pinhole figure roll figure.scn --set camera.roll=20deg > roll.svg
+  pinhole figure methods figure.scn --set sampler.per_pixel=16 -o methods.svg
+
+A figure is drawn for a width of 12 cm, is light or dark as the page is, and describes itself to screen readers. The same \
+scene gives the same bytes on every machine.";
 
 pub const EXPLAIN_EXAMPLES: &str = "\
 Examples:

@@ -24,26 +24,26 @@ use crate::{
 /// Maximum length of a scene's file, in bytes. A longer file is not a scene.
 const SCENE_LIMIT: u64 = 256 << 20;
 
-/// Number of bytes of a picture that are read for the scene in it: more than enough for what may
-/// precede its pixels.
+/// Number of bytes of a picture that are read to find the scene in it. It is more than may precede
+/// the pixels.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// Number of bytes at the start of a file that tell whether it is a picture, even if lines that a
-/// program printed precede it.
+/// Number of bytes at the start of a file that decide whether the file is a picture, even if a
+/// program printed some lines before the picture.
 const START: u64 = 1 << 16;
 
-/// A scene that was read.
+/// A scene as it was read, before parsing.
 pub struct SceneInput {
-    /// The scene's text and its overrides: first those that a picture carries, then those of the
+    /// The scene's text and its overrides: first those that a picture carries, then those on the
     /// command line.
     pub sources: Sources,
     /// Whether the scene was read from a picture that carries it.
     pub is_picture: bool,
-    /// The crop that the picture carries, if any.
+    /// The crop that the picture carries, if there is one.
     pub crop: Option<Area>,
 }
 
-/// Whether the argument is `-`, which stands for standard input or output.
+/// Returns whether the argument is `-`, which stands for standard input or output.
 pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
@@ -59,15 +59,15 @@ pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
 }
 
 impl SceneInput {
-    /// Reads the scene that the argument SCENE names.
+    /// Reads the scene that the argument `path` names, with the overrides.
     pub fn read(path: &Path, overrides: &Overrides) -> Result<Self, Trouble> {
         let bytes = argument(path).and_then(limited);
         let bytes = bytes.map_err(|error| unreadable(path, &error))?;
         Self::of_bytes(path, bytes, overrides)
     }
 
-    /// Reads a text that is to be written back, and the original of its file; `None` for standard
-    /// input. `command` names the command in messages.
+    /// Reads a text that will be changed. Also returns the original of its file, or `None` for
+    /// standard input. `command` is the command's name, for messages.
     pub fn to_change(
         path: &Path,
         overrides: &Overrides,
@@ -76,7 +76,7 @@ impl SceneInput {
         let (input, original) = if is_standard(path) {
             (Self::read(path, overrides)?, None)
         } else {
-            // Pipes are rejected: what is written into one does not change what was read.
+            // Pipes are rejected, since writing into one does not change what was read.
             let original = Original::read(path, bytes).map_err(|error| match error.kind() {
                 io::ErrorKind::InvalidInput => {
                     let hint = format!("{command} takes files, or standard input as `-`");
@@ -109,7 +109,7 @@ impl SceneInput {
         Ok(input)
     }
 
-    /// Makes the input of the bytes of a scene's file.
+    /// Makes the input from the bytes of a scene's file.
     pub fn of(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Self {
         let mut input = Self::from_text(path.display().to_string(), bytes);
         input.add(overrides);
@@ -125,7 +125,7 @@ impl SceneInput {
     }
 
     fn add(&mut self, overrides: &Overrides) {
-        // The numbers count the arguments of the command line, without the overrides that a picture
+        // The names count only the arguments on the command line, not the overrides that a picture
         // carries.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
@@ -146,8 +146,8 @@ impl SceneInput {
     }
 
     /// Reads the scene, and reports its problems to people. The warning about objects outside of
-    /// the picture is left to the commands about the text: in others, such as one frame of a ride,
-    /// it may be intended.
+    /// the picture is left to the commands that are about the text: elsewhere, such as in one frame
+    /// of an animation, it may be intended.
     pub fn scene(&self) -> Reading {
         let mut reading = scene::read(&self.sources);
         let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
@@ -156,12 +156,12 @@ impl SceneInput {
         reading
     }
 
-    /// Returns the report on the scene's problems, for people.
+    /// Returns the report about the scene's problems, for people.
     pub fn report(&self, reading: &Reading) -> String {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }
 
-    /// Returns the scene's text with the overrides, for a picture to carry.
+    /// Returns the scene's text and the overrides, for a picture to carry.
     pub fn recipe(&self, crop: Option<Area>) -> Recipe {
         let sets = self.sources.sets.iter();
         Recipe {
@@ -172,12 +172,13 @@ impl SceneInput {
     }
 }
 
-/// Returns the name of a path in messages: on one line, with control characters made visible.
+/// Returns the name of a path for messages: on one line, with control characters made visible.
 pub fn shown(path: &Path) -> String {
     visible_line(&path.display().to_string()).into_owned()
 }
 
-/// Warns of copies of a file that were left by processes that were killed while they wrote it.
+/// Warns about copies of a file that were left by processes that were killed while they wrote the
+/// file.
 pub fn name_copies(path: &Path) {
     for copy in files::copies_left(path) {
         let (copy, path) = (shown(&copy), shown(path));
@@ -187,22 +188,22 @@ pub fn name_copies(path: &Path) {
     }
 }
 
-/// Returns the error that a path cannot be read.
+/// Makes the error that a path cannot be read.
 pub fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot read {}: {error}", shown(path)))
 }
 
-/// Returns the error that a path cannot be written to.
+/// Makes the error that a path cannot be written to.
 pub fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot write to {}: {error}", shown(path)))
 }
 
-/// Returns the error that files cannot be written into an output folder.
+/// Makes the error that files cannot be written into an output folder.
 pub fn not_written(why: NotWritten) -> Trouble {
     unwritable(&why.path, &why.error)
 }
 
-/// Replaces the text of a file, if it is still what was read.
+/// Replaces the text of a file if the file is still what was read.
 pub fn change(
     path: &Path,
     original: &Original,
@@ -216,7 +217,7 @@ pub fn change(
     .map_err(|error| unwritable(path, &error))
 }
 
-/// Whether two paths lead to the same existing file.
+/// Returns whether two paths lead to the same existing file.
 pub fn is_same_file(a: &Path, b: &Path) -> bool {
     match (fs::canonicalize(a), fs::canonicalize(b)) {
         (Ok(a), Ok(b)) => a == b,
@@ -224,16 +225,16 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The bytes of a file in a comparison.
+/// The bytes of a file that is compared.
 pub enum FileBytes {
     /// All bytes of a picture.
     Picture(Vec<u8>),
-    /// Bytes of another file, as many as were asked for.
+    /// Bytes of another file: all of them or only the first, as [`IfNotPicture`] says.
     Other(Vec<u8>),
 }
 
-/// Reads a picture, or as much of another file as `most` says. The first bytes decide which it is,
-/// before the rest is read.
+/// Reads a picture or, if the first bytes show that the file is none, as much of it as
+/// `if_not_picture` says.
 pub fn read_picture_or(
     path: &Path,
     large: &LargeArgs,
@@ -268,14 +269,14 @@ pub fn read_picture_or(
 
 /// How much is read of a file that is not a picture.
 pub enum IfNotPicture {
-    /// All of it, up to the maximum length of a scene.
+    /// The whole file, up to the maximum length of a scene.
     ReadScene,
-    /// The first bytes only, which show that it is not a picture.
+    /// Only the first bytes, which show that the file is not a picture.
     ReadStart,
 }
 
-/// Reads the bytes of a scene's file, or the start of a picture, which carries the scene. Rejects
-/// anything that is not a regular file.
+/// Reads the bytes of a scene's file, or the start of a picture, which contains the scene. Fails if
+/// the path is not a regular file.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     limited(files::open(path)?)
 }
@@ -285,7 +286,7 @@ fn argument(path: &Path) -> io::Result<Box<dyn Read>> {
     opened(path).map(|(from, _)| from)
 }
 
-/// Opens an argument for reading, with its length if it is a regular file.
+/// Opens an argument for reading. Also returns its length in bytes if it is a regular file.
 fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
     if is_standard(path) {
         return Ok((Box::new(io::stdin().lock()), None));
@@ -295,7 +296,7 @@ fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
     Ok((Box::new(file), length.map(|found| found.len())))
 }
 
-/// Reads a scene, or the start of a picture, which carries the scene.
+/// Reads a scene, or the start of a picture, which contains the scene.
 fn limited(mut from: impl Read) -> io::Result<Vec<u8>> {
     let start = files::read_from(from.by_ref().take(START), START)?;
     let is_picture = start.starts_with(&SIGNATURE);
@@ -317,7 +318,7 @@ fn no_scene() -> io::Error {
 mod tests {
     use super::*;
 
-    /// A reader that fails as a disk does.
+    /// A reader that fails like a broken disk.
     struct Broken;
 
     impl Read for Broken {

@@ -1,4 +1,4 @@
-//! `inspect`: prints what a scene means.
+//! `inspect`: prints the properties that follow from a scene, such as its field of view.
 
 use super::{
     Status, Trouble,
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::inspect;
 
-/// Prints what a scene means.
+/// Prints the properties of a scene, for people or as JSON.
 pub fn run(args: &InspectArgs) -> Result<Status, Trouble> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let Some(scene) = input.scene().scene else {

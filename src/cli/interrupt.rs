@@ -1,4 +1,4 @@
-//! Handling of Ctrl-C.
+//! Handles Ctrl-C.
 
 use std::{
     process,
@@ -14,7 +14,7 @@ use super::{Status, Trouble};
 /// Whether the user has pressed Ctrl-C, or the system has asked the process to end.
 ///
 /// Ctrl-C ends the process at once, unless a command watches the flag because it has to clean up
-/// first. Pressed again after the grace period, it ends the process in any case.
+/// first. If Ctrl-C is pressed again after the grace period, it ends the process in any case.
 #[derive(Clone)]
 pub struct Interrupt(Arc<Flags>);
 
@@ -50,18 +50,18 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// Returns the flag that Ctrl-C sets. From now on, Ctrl-C relies on the caller to end the
-    /// command.
+    /// Returns the flag that Ctrl-C sets. After this call, Ctrl-C no longer ends the process by
+    /// itself; the caller must.
     pub fn watch(&self) -> &AtomicBool {
         self.0.watched.store(true, Ordering::SeqCst);
         &self.0.pressed
     }
 
-    /// Calls `what` when Ctrl-C is pressed; it must make the command end.
+    /// Registers `what`, to be called when Ctrl-C is pressed. It must make the command end.
     #[cfg(feature = "preview")]
     pub fn then(&self, what: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.then.set(Box::new(what));
-        // Ctrl-C may have been pressed before the call was registered.
+        // Ctrl-C may have been pressed before `what` was registered.
         if self.watch().load(Ordering::SeqCst)
             && let Some(then) = self.0.then.get()
         {
@@ -69,7 +69,7 @@ impl Interrupt {
         }
     }
 
-    /// Whether Ctrl-C was pressed.
+    /// Returns whether Ctrl-C was pressed.
     pub fn pressed(&self) -> bool {
         self.0.pressed.load(Ordering::SeqCst)
     }

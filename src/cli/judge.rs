@@ -1,4 +1,4 @@
-//! Pictures that are compared with a scene: the common part of `diff` and `grade`.
+//! Reads pictures that are compared with a scene: the code that `diff` and `grade` share.
 
 use std::path::Path;
 
@@ -21,12 +21,14 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     })
 }
 
-/// Returns the part of a scene that a picture shows: the crop that it carries, the crop on the
-/// command line if the sizes agree, or the whole scene.
+/// Returns the part of the scene that a picture shows: the crop that the picture carries, or else
+/// the crop `named` on the command line, if their sizes agree with the picture's; or else the whole
+/// scene.
 ///
 /// # Errors
 ///
-/// The sizes differ. The message continues a sentence that begins with the picture's name.
+/// The sizes differ, or the crop lies outside of the scene. The message continues a sentence that
+/// begins with the picture's name.
 pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Area, String> {
     let [width, height] = [picture.film.width(), picture.film.height()];
     let whole = Area::whole(scene.image.width, scene.image.height);
@@ -47,7 +49,7 @@ pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Are
     }
 }
 
-/// Returns advice on how to compare a picture of another size.
+/// Returns advice on how to compare a picture whose size differs from the scene's.
 fn way_out([width, height]: [u32; 2], whole: Area) -> String {
     let [w, h] = [whole.width, whole.height];
     let is_scaled = u64::from(width) * u64::from(h) == u64::from(height) * u64::from(w);
@@ -66,7 +68,7 @@ fn way_out([width, height]: [u32; 2], whole: Area) -> String {
     }
 }
 
-/// Whether a path has an ending of pictures.
+/// Returns whether a path has the extension of a picture format.
 pub fn is_named_as_picture(path: &Path) -> bool {
     const ENDINGS: [&str; 14] = [
         "png", "exr", "jpg", "jpeg", "ppm", "pgm", "pnm", "pam", "bmp", "tif", "tiff", "webp",
@@ -76,7 +78,7 @@ pub fn is_named_as_picture(path: &Path) -> bool {
         .is_some_and(|ending| ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own)))
 }
 
-/// Quotes a `--set` argument for a shell, if necessary.
+/// Quotes the value of a `--set` argument for a shell, if necessary.
 pub fn quoted(argument: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-+".contains(c);
     match argument.split_once('=') {

@@ -1,8 +1,8 @@
-//! A unified diff of a text and its layout, in time and memory linear in their length.
+//! A unified diff between a text and its layout, in time and memory linear in their length.
 //!
-//! No search for a shortest edit is needed: a layout changes only blanks and line ends. The number
-//! of other characters before a line says where the line belongs in the other text, so one walk
-//! over both texts finds the lines that stay.
+//! No search for a shortest edit is needed, since a layout changes only blanks and line ends. The
+//! number of other characters before a line says where the line belongs in the other text, so one
+//! pass over both texts finds the unchanged lines.
 
 use std::{fmt::Write, ops::Range};
 
@@ -15,8 +15,8 @@ use crate::{
 /// Number of unchanged lines around a change, as is usual in diffs.
 const CONTEXT: usize = 3;
 
-/// Returns what would change as a unified diff. In a text with both kinds of line ends, carriage
-/// returns are shown, as lines can differ in them alone.
+/// Returns a unified diff from the source to the formatted text. If the source has both kinds of
+/// line ends, carriage returns are shown, since lines may differ only in them.
 pub fn layout_diff(source: &Source, formatted: &str) -> String {
     let text = source.text();
     let printer = Printer {
@@ -66,7 +66,7 @@ struct LineCursor<'t> {
     next: usize,
     /// Byte at which the next line starts.
     at: usize,
-    /// Number of characters before the next line that are not blanks.
+    /// Number of characters before the next line that are not white space.
     solid_before: usize,
 }
 
@@ -80,12 +80,12 @@ impl<'t> LineCursor<'t> {
         }
     }
 
-    /// Returns the next line with its line end.
+    /// Returns the next line with its line end; `None` at the end of the text.
     fn line(&self) -> Option<&'t str> {
         self.text[self.at..].split_inclusive('\n').next()
     }
 
-    /// Moves past a line.
+    /// Moves to the end of `line`, which must be the next line.
     fn pass(&mut self, line: &str) {
         self.next += 1;
         self.at += line.len();
@@ -125,7 +125,7 @@ impl Iterator for LineChanges<'_> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // An empty line takes no space of its own, so it is passed before the line of the
+                // An empty line contains no such characters, so it is passed before the line of the
                 // other text.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
@@ -153,7 +153,7 @@ impl Iterator for LineChanges<'_> {
     }
 }
 
-/// Options of printing lines.
+/// Options for printing lines.
 struct Printer {
     color: bool,
     /// Whether the text has both kinds of line ends.
@@ -161,7 +161,7 @@ struct Printer {
 }
 
 impl Printer {
-    /// Prints a hunk: changes that are close together.
+    /// Prints a hunk: changes that are close together, with their context.
     fn hunk(&self, out: &mut String, changes: &[LineChange], before: &str, after: &str) {
         let (Some(first), Some(last)) = (changes.first(), changes.last()) else {
             return;
@@ -202,7 +202,8 @@ impl Printer {
     }
 }
 
-/// Returns the byte at which the line starts that is `lines` lines before the one at byte `start`.
+/// Returns the byte offset at which the line starts that is `lines` lines before the line at
+/// `start`.
 fn lines_back(text: &str, start: usize, lines: usize) -> usize {
     (0..lines).fold(start, |start, _| {
         let before = &text[..start];
@@ -212,7 +213,7 @@ fn lines_back(text: &str, start: usize, lines: usize) -> usize {
 }
 
 /// Formats a range of lines as in a hunk's head: the first line, counted from 1, and the count
-/// unless it is 1. An empty range names the line before it.
+/// unless it is 1. For an empty range, the line before it is given.
 fn range(lines: Range<usize>) -> String {
     match lines.len() {
         0 => format!("{},0", lines.start),

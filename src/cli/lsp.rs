@@ -8,13 +8,13 @@ use crate::{
     lsp::{Server, stdio},
 };
 
-/// Serves an editor until the conversation ends.
+/// Serves an editor until it sends `exit` or disconnects.
 pub fn run() -> Result<Status, Trouble> {
     let log = |message: &str| output::to_people(&format!("{}\n", visible_line(message)));
     let server = Server::new(log);
     match stdio::serve(server, io::stdin(), &mut io::stdout().lock(), log) {
         Ok(true) => Ok(Status::Done),
-        // The protocol asks for a status of 1.
+        // The protocol requires the status 1 if `exit` comes without `shutdown`.
         Ok(false) => Ok(Status::SceneErrors),
         Err(error) => Err(Trouble(format!("cannot write to standard output: {error}"))),
     }

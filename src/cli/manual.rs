@@ -1,4 +1,5 @@
-//! `completions` and `man`: print the definitions of the arguments in other forms.
+//! `completions` and `man`: print the definitions of the arguments as a completion script and as a
+//! manual page.
 
 use std::io::{self, Write};
 
@@ -8,7 +9,7 @@ use clap_mangen::Man;
 
 use super::{Status, Trouble, args::Args, output};
 
-/// Prints a completion script.
+/// Prints the completion script for a shell.
 pub fn completions(shell: Shell) -> Result<Status, Trouble> {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut Args::command(), "pinhole", &mut script);
@@ -41,7 +42,7 @@ fn write(page: &mut Vec<u8>) -> io::Result<()> {
     whole.render_version_section(page)
 }
 
-/// Writes the section of one command. The sections of its own page become subsections.
+/// Writes the section of one command. The sections of the command's own page become subsections.
 fn write_command(page: &mut Vec<u8>, command: &Command) -> io::Result<()> {
     let own = Man::new(command.clone());
     let mut parts = Vec::new();
@@ -60,7 +61,7 @@ fn write_command(page: &mut Vec<u8>, command: &Command) -> io::Result<()> {
     write!(page, ".SH \"PINHOLE {name}\"\n{parts}")
 }
 
-/// Returns the text after the options, with its line breaks kept.
+/// Returns the text after the options, which contains the examples, with its line breaks.
 fn examples(man: &Man) -> io::Result<String> {
     let mut extra = Vec::new();
     man.render_extra_section(&mut extra)?;

@@ -1,14 +1,16 @@
 //! The command line: reads input, calls the library, prints. Each command has a file.
 //!
-//! Pictures and JSON go to standard output, everything for people to standard error. The exit
-//! status is 0 when it is done, warnings or not, 1 when the scene has errors, pictures differ or
-//! `fmt --check` would change something, 2 on any other trouble and 130 after Ctrl-C.
+//! Pictures and JSON go to standard output, and everything for people to standard error. The exit
+//! status is 0 if the command is done, with or without warnings; 1 if the scene has errors,
+//! pictures differ or `fmt --check` would change something; 2 for any other error; and 130 after
+//! Ctrl-C.
 
 mod args;
 mod check;
 mod diff;
 mod exact_pictures;
 mod explain;
+mod figure;
 mod fmt;
 mod grade;
 mod help;
@@ -77,6 +79,7 @@ pub fn run() -> ExitCode {
         Command::Grade(args) => grade::run(&args, &interrupt),
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Sheet(args) => sheet::run(&args, &interrupt),
+        Command::Figure(args) => figure::run(&args, &interrupt),
         Command::Explain(args) => explain::run(&args),
         Command::Fmt(args) => fmt::run(&args, &interrupt),
         #[cfg(feature = "lsp")]
@@ -95,14 +98,14 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Returns clap's answer to the arguments with control characters made visible, as the answer
-/// repeats some arguments; `None` if these parse.
+/// Returns clap's answer to the arguments with control characters made visible, since the answer
+/// repeats some arguments. Returns `None` if the arguments parse in this form.
 fn visible_answer() -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(env::args_os().map(shown)).err()
 }
 
-/// Prints help, the version, or what is wrong with the arguments.
+/// Prints help, the version, or what is wrong with the arguments. Returns the exit status.
 fn print_answer(answer: &clap::Error) -> ExitCode {
     let status = if answer.use_stderr() {
         Status::Trouble
@@ -118,7 +121,7 @@ fn print_answer(answer: &clap::Error) -> ExitCode {
     }
 }
 
-/// Runs `one` on each scene in turn. Returns the worst status.
+/// Runs `one` on each scene in turn, and prints errors. Returns the worst status.
 fn each(
     scenes: &[PathBuf],
     interrupt: &Interrupt,
@@ -141,14 +144,14 @@ fn each(
 /// Exit status of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Status {
-    /// Done, warnings or not.
+    /// The command is done, with or without warnings.
     Done = 0,
-    /// The command ran, and the answer is no: the scene has errors, the pictures differ, the layout
-    /// would change, or an editor disconnected without `exit`.
+    /// The command ran, and its result is negative: the scene has errors, the pictures differ, the
+    /// layout would change, or an editor disconnected without `exit`.
     SceneErrors = 1,
     /// Wrong usage, a file that cannot be read or written, or too little memory.
     Trouble = 2,
-    /// Ended by Ctrl-C.
+    /// The command was ended by Ctrl-C.
     Interrupted = 130,
 }
 

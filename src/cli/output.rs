@@ -11,8 +11,8 @@ use terminal_size::{Width, terminal_size_of};
 use super::Trouble;
 use crate::diagnostic::{Drawing, Style, visible, visible_line};
 
-/// Writes a text to standard output. For a terminal, control characters are made visible, so that
-/// nothing in a scene can act there.
+/// Writes a text to standard output. If that is a terminal, control characters are made visible, so
+/// that a scene cannot control the terminal.
 pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
     if io::stdout().is_terminal() {
         page(&visible(&String::from_utf8_lossy(text)))
@@ -21,7 +21,8 @@ pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
     }
 }
 
-/// Writes a text that may be long while it is produced; otherwise as [`to_programs`].
+/// Writes a text to standard output while the text is produced, since it may be long. On a
+/// terminal, acts as [`to_programs`].
 pub fn stream_to_programs(
     write_to: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Trouble> {
@@ -79,13 +80,13 @@ impl Write for StandardOutput {
     }
 }
 
-/// Writes to standard error. Errors are ignored, as there is nowhere to report them.
+/// Writes to standard error. Errors are ignored, since they cannot be reported anywhere.
 pub fn to_people(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Writes a command's answer to standard error, wrapped for a terminal. A closed pipe is not an
-/// error, as for [`StandardOutput`].
+/// Writes a command's answer to standard error, wrapped to the width of a terminal. A closed pipe
+/// is not an error, as with [`StandardOutput`].
 pub fn answer(text: &str) -> Result<(), Trouble> {
     let columns = terminal_size_of(io::stderr()).filter(|_| is_watched());
     let text = match columns {
@@ -100,8 +101,9 @@ pub fn answer(text: &str) -> Result<(), Trouble> {
     }
 }
 
-/// Wraps lines longer than `width` at words, while terminals would break within words. Further
-/// lines are indented to the last column of the table that starts in the left half of the terminal.
+/// Wraps lines longer than `width` columns between words; a terminal would break them within words.
+/// Further lines are indented to the last column of a table that starts in the left half of the
+/// terminal.
 pub fn wrapped(text: &str, width: usize) -> String {
     let broken = text.split('\n').map(|line| {
         let words = line.trim_start_matches(' ');
@@ -118,8 +120,8 @@ pub fn wrapped(text: &str, width: usize) -> String {
     broken.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the start of the last column of a table, at most `most`: a column starts after two
-/// spaces.
+/// Returns the offset at which the last column of a table starts, at most `most`. A column starts
+/// after two spaces. Returns at most 2 if the line is not part of a table.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();
@@ -157,14 +159,14 @@ fn worded(word: &str, color: &str, message: &dyn fmt::Display) -> String {
     }
 }
 
-/// Whether standard error is a terminal.
+/// Returns whether standard error is a terminal.
 pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// Returns the style of reports on standard error: in colour on a terminal that has colours, unless
-/// `NO_COLOR` is set; in ASCII if the locale is not UTF-8; in sentences, for screen readers, if
-/// `NO_GRAPHICS` is set.
+/// Returns the style of reports on standard error. It has colours on a terminal that has colours,
+/// unless `NO_COLOR` is set. It is ASCII if the locale is not UTF-8. It consists of sentences, for
+/// screen readers, if `NO_GRAPHICS` is set.
 pub fn style() -> Style {
     let plain = Style::default();
     let columns = terminal_size_of(io::stderr()).map(|(Width(columns), _)| usize::from(columns));
@@ -185,7 +187,7 @@ pub fn style() -> Style {
 /// Number of columns to the left of an excerpt, for the line number and the frame.
 const FRAME: usize = 8;
 
-/// Returns the style of pages on standard output; `None` if it is not a terminal.
+/// Returns the style of pages on standard output; `None` if standard output is not a terminal.
 pub fn page_style() -> Option<Style> {
     let out = io::stdout();
     out.is_terminal().then(|| {
@@ -198,7 +200,7 @@ pub fn page_style() -> Option<Style> {
     })
 }
 
-/// Whether a terminal may be written to in colour, by <https://no-color.org> and
+/// Returns whether colours may be written to a terminal, according to <https://no-color.org> and
 /// <https://bixense.com/clicolors>. The terminals of DEC, such as the VT100, have no colours.
 pub fn has_color() -> bool {
     let is = |name, value| env::var_os(name).is_some_and(|found| found == value);
@@ -211,13 +213,13 @@ pub fn has_color() -> bool {
     !is_plain && !is("CLICOLOR", "0") && !is_set("NO_COLOR")
 }
 
-/// Whether a variable is present and not empty, as no-color.org defines it.
+/// Returns whether an environment variable is present and not empty, as no-color.org defines it.
 fn is_set(name: &str) -> bool {
     env::var_os(name).is_some_and(|value| !value.is_empty())
 }
 
-/// Whether the locale is UTF-8. The first locale variable that is not empty counts; if all are
-/// empty, the terminal is assumed to know Unicode.
+/// Returns whether the locale is UTF-8. The first locale variable that is not empty decides; if all
+/// are empty, the terminal is assumed to support Unicode.
 fn is_unicode() -> bool {
     ["LC_ALL", "LC_CTYPE", "LANG"]
         .iter()

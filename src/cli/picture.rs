@@ -24,7 +24,7 @@ use crate::{
 
 /// A rendered picture, with pixels in the precision that is needed.
 pub enum RenderedPicture {
-    /// The means in 64 bits.
+    /// Means in 64 bits.
     Light(Rendered),
     /// Means rounded to 32 bits.
     Floats(Rendered<[f32; 3]>),
@@ -33,7 +33,7 @@ pub enum RenderedPicture {
 }
 
 impl RenderedPicture {
-    /// Returns the numbers of columns and rows.
+    /// Returns the picture's width and height in pixels.
     pub fn size(&self) -> (u32, u32) {
         match self {
             Self::Light(light) => (light.film().width(), light.film().height()),
@@ -51,8 +51,8 @@ impl RenderedPicture {
         }
     }
 
-    /// Returns how exact a computed picture is, for people; an empty text for a sampled one. `part`
-    /// is the part of the whole picture that it shows.
+    /// Returns notes for people on how exact a computed picture is; empty for a sampled picture.
+    /// `part` is the part of the whole picture that is shown.
     pub fn notes(&self, part: Area, output: &PictureOutput) -> String {
         match self {
             Self::Light(Rendered::Sampled(_))
@@ -75,8 +75,8 @@ impl RenderedPicture {
     }
 }
 
-/// Precision in which pixels are kept: as little as the file needs, unless something else needs the
-/// means.
+/// Precision in which pixels are stored: as low as the file allows, unless the 64-bit means are
+/// needed for something else.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeptPixels {
     /// The means in 64 bits.
@@ -87,7 +87,7 @@ pub enum KeptPixels {
     Bytes,
 }
 
-/// Renders a part of the scene's picture, with a progress bar on a terminal.
+/// Renders a part of the scene's picture, with a progress bar if standard error is a terminal.
 pub fn picture(
     scene: &Scene,
     world: &World,
@@ -100,8 +100,8 @@ pub fn picture(
     let expected = if sampling.is_exact() {
         part.pixels()
     } else {
-        // The number of samples in the part, except that the remainder of a total may be spread
-        // unevenly: near enough for a progress bar.
+        // This is the expected number of samples in the part. The remainder of a total may be
+        // spread unevenly, but for a progress bar this is near enough.
         let share = part.pixels() as f64 / whole.pixels() as f64;
         (sampling.total() as f64 * share) as u64
     };
@@ -120,17 +120,17 @@ pub fn picture(
     })
 }
 
-/// Bound on a pixel's error, in linear light, above which a note is printed.
+/// Threshold on the error bound of a pixel, in linear light; above it, a note is printed.
 const VAGUE: f32 = 1e-6;
 
-/// Name of the rounding that an exact PNG's certificate is about.
+/// Name of the rounding in an exact PNG, for the certificate.
 const BYTES: &str = "the 8-bit rounding";
 
-/// Name of the rounding that an exact EXR's certificate is about.
+/// Name of the rounding in an exact EXR, for the certificate.
 const FLOATS: &str = "the 32-bit rounding";
 
-/// Returns the certificate of a computed part of the picture: the bound of its means, and for how
-/// many pixels, `certain`, the rounding `what` in the file is proven.
+/// Returns the certificate of an exact part of the picture: the bound on the error of its means,
+/// and the number of pixels for which the rounding `what` in the file is proven, `certain`.
 fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
     let pixels = exact.bounds.len() as u64;
     let rounding = match pixels - certain {
@@ -142,8 +142,8 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        // The pixel has a single colour and needs no averaging, so there is no error except that of
-        // the colour's own numbers.
+        // The pixel has a single colour and needs no averaging, so the only error is in the
+        // colour's own numbers.
         0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };
@@ -185,16 +185,16 @@ pub enum PictureOutput {
 pub enum PathChoice {
     /// By the command line.
     Explicit,
-    /// From the scene's name: only a file in the scene's folder is replaced.
+    /// From the scene's name. Only a file in the scene's folder may be replaced.
     BesideScene,
 }
 
 /// Format of a picture's file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum FileFormat {
-    /// Bytes of sRGB, and the scene.
+    /// Bytes of sRGB. The file also carries the scene.
     Png,
-    /// Linear light.
+    /// Floats in linear light.
     Exr,
 }
 
@@ -208,7 +208,7 @@ impl PathChoice {
 }
 
 impl PictureOutput {
-    /// Returns the output that the command line names, or else the PNG file beside the scene.
+    /// Returns the output that the command line names, or the PNG file beside the scene.
     pub fn of(scene: &Path, output: Option<&Path>) -> Result<Self, Trouble> {
         let path = match output {
             Some(path) if input::is_standard(path) => return Ok(Self::Standard),
@@ -229,7 +229,7 @@ impl PictureOutput {
     }
 
     /// Checks that the picture can be written, as far as that can be known before rendering, and
-    /// that it would not replace its scene.
+    /// that it would not replace the scene.
     pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
         match self {
             Self::Standard if io::stdout().is_terminal() => Err(Trouble(
@@ -245,7 +245,7 @@ impl PictureOutput {
         }
     }
 
-    /// Returns the precision of pixels that the file needs.
+    /// Returns the precision of pixels that the output needs.
     pub fn keep(&self) -> KeptPixels {
         match self {
             Self::File(_, FileFormat::Exr, _) => KeptPixels::Floats,
@@ -253,8 +253,8 @@ impl PictureOutput {
         }
     }
 
-    /// Writes the picture of a scene, whose pixels were kept in the precision that [`Self::keep`]
-    /// says, unless `cancel` is set.
+    /// Writes the picture of a scene, unless `cancel` is set. The pixels must have at least the
+    /// precision of [`Self::keep`].
     pub fn write(
         &self,
         scene: &Path,
@@ -283,7 +283,8 @@ impl PictureOutput {
         written.map_err(|error| Trouble(format!("cannot write to {self}: {error}")))
     }
 
-    /// Returns a warning if the picture should carry its scene, and this is too long.
+    /// Returns a warning if the picture should carry its scene but the scene is too long; otherwise
+    /// an empty text.
     pub fn note_of_length(&self, recipe: &Recipe) -> String {
         let carries = !matches!(self, Self::File(_, FileFormat::Exr, _));
         if !carries || recipe.fits() {
@@ -313,7 +314,7 @@ fn write_png(
 ) -> io::Result<()> {
     match picture {
         RenderedPicture::Light(light) => film::write_png(light.film(), Some(recipe), out),
-        // Cannot occur: `keep` asks for 32-bit means only for an EXR.
+        // This cannot occur, since `keep` returns 32-bit means only for an EXR.
         RenderedPicture::Floats(_) => Err(io::ErrorKind::InvalidInput.into()),
         RenderedPicture::Bytes(bytes) => film::write_png(bytes.film(), Some(recipe), out),
     }
@@ -328,7 +329,7 @@ impl std::fmt::Display for PictureOutput {
     }
 }
 
-/// Returns the format that a file's ending stands for.
+/// Returns the format that belongs to a file's extension.
 fn format(path: &Path) -> Result<FileFormat, Trouble> {
     let name = path.to_string_lossy().to_ascii_lowercase();
     if name.ends_with(".png") {

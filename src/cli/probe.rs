@@ -10,7 +10,7 @@ use super::{
 };
 use crate::probe;
 
-/// Prints the surfaces that the ray through a point of the picture meets.
+/// Prints the surfaces that the ray through a point of the picture hits.
 pub fn run(args: &ProbeArgs) -> Result<Status, Trouble> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let Some(scene) = input.scene().scene else {

@@ -15,14 +15,14 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::output;
 use crate::render::Control;
 
-/// Time before the bar appears: shorter renders show none.
+/// Time before the bar appears. Shorter renders show no bar.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Interval between updates of the bar.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// Runs `work`, which counts up to `total`. Meanwhile shows progress and the remaining time on a
-/// terminal.
+/// Runs `work`, which counts up to `total`. If standard error is a terminal, shows the progress and
+/// the remaining time meanwhile. Returns the result of `work`.
 pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     let done = AtomicU64::new(0);
     if !output::is_watched() {
@@ -40,8 +40,8 @@ pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     })
 }
 
-/// Runs a render of `total` samples or exact pixels, with progress on a terminal, until `cancel` is
-/// set.
+/// Runs `work`, a render of `total` samples or exact pixels that stops when `cancel` is set. Shows
+/// the progress as [`watched`] does.
 pub fn rendering<T>(
     total: u64,
     threads: Option<NonZero<usize>>,

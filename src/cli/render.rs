@@ -12,19 +12,19 @@ use super::{
 };
 use crate::{area::Area, render::RenderError, tracer::World};
 
-/// Renders a scene.
+/// Renders a scene and writes the picture.
 pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let reading = input.scene();
-    // Checked before hours of rendering, not after them. A file that cannot be written is reported
-    // even if the scene has errors: its status is the worse one.
+    // The output is checked before rendering, which may take hours. An output that cannot be
+    // written is reported even if the scene has errors, since its exit status is the worse one.
     output.check(&args.scene)?;
     let Some(scene) = reading.scene else {
         return Ok(Status::SceneErrors);
     };
-    // A crop on the command line replaces the one that a picture carries; both are in pixels of the
-    // whole picture.
+    // A crop on the command line replaces the crop that a picture carries. Both are in pixels of
+    // the whole picture.
     let crop = args.crop.or(input.crop);
     let whole = Area::whole(scene.image.width, scene.image.height);
     let part = crop.unwrap_or(whole);

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{render::RenderError, report::numerics};
 
-/// Default number of inputs of each hard case.
+/// Default number of inputs for each hard case.
 const INPUTS: u64 = 10_000;
 
 /// Prints or writes the report that the arguments ask for.
@@ -25,7 +25,8 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     ))
 }
 
-/// Tests the hard cases. After Ctrl-C, the table covers the inputs that were tested until then.
+/// Tests the arithmetic in the hard cases. After Ctrl-C, the table covers the inputs that were
+/// tested until then.
 fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let cancel = interrupt.watch();
     let inputs = args.inputs.unwrap_or(INPUTS);

@@ -1,4 +1,5 @@
-//! `sheet`: writes a contact sheet of scenes, each picture with its name.
+//! `sheet`: writes a contact sheet: one picture with the pictures of several scenes, each with its
+//! name.
 
 use std::{
     path::{Path, PathBuf},
@@ -26,12 +27,12 @@ use crate::{
     tracer::World,
 };
 
-/// A cell of the sheet: a scene, in the size of its picture there, and its caption.
+/// A cell of the sheet: a scene with the size of its picture on the sheet, and its caption.
 type SheetCell = (Scene, String);
 
 /// Gap between two cells, and around all cells, in pixels.
 const GAP: u32 = 12;
-/// Colour of the line around a picture.
+/// Colour of the frame around a picture, in sRGB bytes.
 const FRAME: [u8; 3] = [192; 3];
 /// Height of the letters of captions.
 const LETTERS: RasterHeight = RasterHeight::Size16;
@@ -96,7 +97,8 @@ fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
     args.scenes.iter().try_for_each(output)
 }
 
-/// Returns the scene of a file with its caption, or those of a sweep; `None` if a scene has errors.
+/// Returns the scene of a file with its caption, or all scenes of a sweep with theirs. Returns
+/// `None` if a scene has errors, which are reported.
 fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)>>, Trouble> {
     let input = SceneInput::read(path, &args.overrides)?;
     let Some(sweep) = &args.sweep else {
@@ -111,8 +113,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
         sources.sets.push(Source::from_text(name, set));
         SceneInput { sources, ..input }
     };
-    // The problems of the scene are reported once, and those of the sweep's end only if it has
-    // errors.
+    // The problems of the first scene are reported in any case, and those of the last scene only if
+    // it has errors.
     let [first, last] = sweep.ends().map(with);
     if first.scene().scene.is_none() {
         return Ok(None);
@@ -139,7 +141,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
     Ok(Some(scenes))
 }
 
-/// Returns the caption of a file: its name without folders, if no other file has that name.
+/// Returns the caption of a scene's file: its name without folders and extension, if no other file
+/// has that name.
 fn name(path: &Path, args: &SheetArgs) -> String {
     if is_standard(path) {
         return "standard input".to_owned();
@@ -157,8 +160,8 @@ fn name(path: &Path, args: &SheetArgs) -> String {
     visible_line(&name).into_owned()
 }
 
-/// Scales a scene's picture down to at most `side` pixels in width and height, with as many samples
-/// per pixel as before.
+/// Returns the scene with its picture scaled down to at most `side` pixels in width and height. The
+/// number of samples per pixel stays the same.
 fn reduced(mut scene: Scene, side: u32) -> Scene {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let [across, down] = [whole.width, whole.height].map(f64::from);
@@ -187,8 +190,8 @@ fn rendered(scene: &Scene, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderE
     }
 }
 
-/// Lays out all pictures on white, row by row, in `columns` columns; by default in about as many
-/// columns as rows.
+/// Renders the pictures and places them on white, row by row, in `columns` columns; by default in
+/// about as many columns as rows.
 fn sheet(
     cells: &[SheetCell],
     columns: Option<u32>,
@@ -214,7 +217,7 @@ fn sheet(
         columns * (width + GAP) + GAP,
         heights.clone().fold(GAP, u32::saturating_add),
     ];
-    // The memory is allocated before rendering, so that a lack of it shows early.
+    // The memory is allocated before rendering, so that a lack of memory is noticed early.
     let mut sheet = Film::from_fn(size[0], size[1], |_, _| [255; 3])?;
     let mut y = GAP;
     for (row, height) in rows.zip(heights) {
@@ -224,7 +227,7 @@ fn sheet(
                 y,
                 ..Area::whole(scene.image.width, scene.image.height)
             };
-            // The frame gives a white picture an edge.
+            // The frame makes the edge of a white picture visible.
             let frame = Area {
                 x: place.x - 1,
                 y: place.y - 1,
@@ -243,8 +246,8 @@ fn sheet(
     Ok(sheet)
 }
 
-/// Shortens a caption to the width. In a step of a sweep the target is dropped first, as it is the
-/// same in all steps, and then the start of the value, as the end is what changes.
+/// Shortens a caption to `width` pixels. For a step of a sweep, the target is dropped first, since
+/// it is the same in all steps, and then the start of the value, since its end is what changes.
 fn fitting(name: &str, width: u32) -> String {
     let most = width as usize / get_raster_width(REGULAR, LETTERS);
     if name.chars().count() <= most {
@@ -268,7 +271,7 @@ fn fitting(name: &str, width: u32) -> String {
     }
 }
 
-/// Writes a line of text in black on white.
+/// Writes a line of black text on white at the pixel (x, y).
 fn write(sheet: &mut Film<[u8; 3]>, [x, y]: [u32; 2], text: &str) {
     let width = get_raster_width(REGULAR, LETTERS) as u32;
     for (place, letter) in (0..).zip(text.chars()) {

@@ -1,7 +1,8 @@
 //! Draws a picture in the terminal, above the messages about it.
 //!
-//! Each cell shows two pixels, one above the other: a half block in the colour of the upper one on
-//! the colour of the lower one. That is coarse, but every terminal with colours can do it.
+//! Each cell of the terminal shows two pixels, one above the other: a half block in the colour of
+//! the upper pixel on a background of the lower pixel's colour. This is coarse, but every terminal
+//! with colours can show it.
 
 use std::{
     env,
@@ -28,12 +29,12 @@ struct ShownPicture {
     film: Option<Film>,
     /// The characters that draw the picture.
     drawn: String,
-    /// The columns and rows of cells that it was drawn for.
+    /// The number of columns and rows of cells for which the picture was drawn.
     size: (usize, usize),
 }
 
 impl Screen {
-    /// Makes a screen of messages only.
+    /// Makes a screen that shows only messages.
     pub fn of_words() -> Self {
         Self {
             shown: None,
@@ -41,8 +42,8 @@ impl Screen {
         }
     }
 
-    /// Makes a screen of pictures and messages. Fails unless standard error is a terminal with
-    /// colours.
+    /// Makes a screen that shows pictures and messages. Fails unless standard error is a terminal
+    /// with colours.
     pub fn of_pictures() -> Result<Self, Trouble> {
         if !io::stderr().is_terminal() {
             return Err(Trouble(
@@ -54,8 +55,8 @@ impl Screen {
                 "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`".to_owned(),
             ));
         }
-        // The previous content is scrolled up, where people can find it again, as the picture is
-        // drawn from the top.
+        // The picture is drawn from the top, so the previous content is scrolled up, where people
+        // can find it again.
         output::to_people(&format!("{}\x1b[H", "\n".repeat(size().1)));
         Ok(Self {
             shown: Some(ShownPicture::default()),
@@ -63,20 +64,20 @@ impl Screen {
         })
     }
 
-    /// Clears the messages, and keeps the last picture.
+    /// Clears the messages and keeps the last picture.
     pub fn begin(&mut self) {
         self.messages.clear();
         self.refresh();
     }
 
-    /// Prints a message.
+    /// Prints a message below the picture.
     pub fn print(&mut self, text: &str) {
         self.messages.push_str(text);
         output::to_people(text);
     }
 
-    /// Returns the side in pixels of blocks that are about as coarse as the screen for a picture of
-    /// this size; `None` if no pictures are shown.
+    /// Returns the side, in pixels, of blocks about as large as what one dot on the screen shows of
+    /// a picture of this size. Returns `None` if no pictures are shown.
     pub fn side(&self, whole: Area) -> Option<u32> {
         self.shown.as_ref()?;
         let (columns, rows) = size();
@@ -84,7 +85,7 @@ impl Screen {
         Some((scale as u32).max(1))
     }
 
-    /// Shows a picture, with the messages below it.
+    /// Shows a picture, with the messages below it; does nothing if no pictures are shown.
     pub fn draw(&mut self, film: Film) {
         if let Some(shown) = &mut self.shown {
             shown.film = Some(film);
@@ -100,7 +101,7 @@ impl Screen {
             && shown.size != size()
         {
             shown.redraw();
-            // Lines of the old width may have left characters behind.
+            // Lines drawn for the old width may have left characters behind.
             output::to_people("\x1b[2J");
             self.refresh();
         }
@@ -108,7 +109,7 @@ impl Screen {
 
     fn refresh(&self) {
         if let Some(ShownPicture { drawn, .. }) = &self.shown {
-            // The screen is not cleared first, as drawing over it does not flicker.
+            // The screen is not cleared first, since drawing over it does not flicker.
             output::to_people(&format!("\x1b[H{drawn}\x1b[J{}", self.messages));
         }
     }
@@ -128,7 +129,7 @@ impl ShownPicture {
 enum Palette {
     /// All 24-bit colours.
     Full,
-    /// 256 colours, of which the nearest one is taken.
+    /// 256 colours, of which the nearest one is used.
     Of256,
 }
 
@@ -142,7 +143,8 @@ impl Palette {
         }
     }
 
-    /// Appends the escape sequence that sets the foreground (38) or background (48) colour.
+    /// Appends the escape sequence that sets the foreground (`which` = 38) or background (48)
+    /// colour.
     fn push(self, text: &mut String, which: u8, [r, g, b]: [u8; 3]) {
         // Writing to a string does not fail.
         let _ = match self {
@@ -152,8 +154,8 @@ impl Palette {
     }
 }
 
-/// Returns the number of columns and rows of cells that a picture may take. The messages need some
-/// rows, too.
+/// Returns the number of columns and rows of cells that a picture may take. Some rows are left for
+/// messages.
 fn size() -> (usize, usize) {
     let (columns, rows) = terminal_size_of(io::stderr())
         .map_or((80, 24), |(Width(columns), Height(rows))| {
@@ -162,15 +164,15 @@ fn size() -> (usize, usize) {
     (columns.max(1), rows_of_picture(rows))
 }
 
-/// Returns the rows for the picture. A report on one mistake takes about eleven rows, and must be
-/// readable below the picture.
+/// Returns the number of rows for the picture. A report on one mistake takes about eleven rows, and
+/// must be readable below the picture.
 fn rows_of_picture(rows: usize) -> usize {
     const MESSAGES: usize = 12;
     let rest = rows.saturating_sub(MESSAGES);
     rest.clamp(rows / 3, rows * 3 / 4).max(1)
 }
 
-/// Draws a picture in at most this many cells.
+/// Returns the characters that draw a picture in at most this many cells.
 fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> String {
     let (width, height) = (film.width() as usize, film.height() as usize);
     let scale = scale(width, height, columns, rows);
@@ -195,19 +197,20 @@ fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> Stri
     text
 }
 
-/// Returns the number of pixels per dot. A cell has two dots, which are about square.
+/// Returns the number of pixels per dot, in each direction. A cell has two dots, which are about
+/// square.
 fn scale(width: usize, height: usize, columns: usize, rows: usize) -> f64 {
     (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64)
 }
 
-/// Returns the range of pixels of one of `parts` equal parts; at least one pixel.
+/// Returns the pixels of part `index` of `parts` equal parts; at least one pixel.
 fn share(index: usize, parts: usize, pixels: usize) -> std::ops::Range<usize> {
     let start = (index * pixels / parts).min(pixels - 1);
     let end = ((index + 1) * pixels / parts).max(start + 1);
     start..end.min(pixels)
 }
 
-/// Returns the mean of some pixels in linear light, as bytes of sRGB.
+/// Returns the mean, in linear light, of the pixels in these columns and rows, as bytes of sRGB.
 fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> [u8; 3] {
     let count = (columns.len() * rows.len()) as f64;
     let mut sum = [0.0; 3];
@@ -221,8 +224,8 @@ fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usiz
     sum.map(|sum| (linear_to_srgb(sum / count) * 255.0).round() as u8)
 }
 
-/// Returns the nearest of a terminal's colours 16 to 255: a cube of six levels per channel, and 24
-/// greys.
+/// Returns the number of the nearest of a terminal's colours 16 to 255, which are a cube of six
+/// levels per channel and 24 greys.
 fn nearest_of_256(color: [u8; 3]) -> u8 {
     const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     let distance = |other: [u8; 3]| -> u32 {

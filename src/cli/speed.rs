@@ -1,4 +1,4 @@
-//! `report SCENE…`: reports speed against error, to a terminal, to programs, and as files.
+//! `report SCENE…`: reports speed against error, for a terminal, for programs, and as files.
 
 use std::{
     io,
@@ -29,10 +29,10 @@ use crate::{
 /// Number of steps of the progress bar.
 const STEPS: u64 = 1000;
 
-/// File name of the page.
+/// File name of the HTML page.
 const INDEX: &str = "index.html";
 
-/// Files of a report, the page last.
+/// Files of a report; the HTML page is the last.
 const FILES: [&str; 5] = [
     "report.csv",
     "report.json",
@@ -41,7 +41,7 @@ const FILES: [&str; 5] = [
     INDEX,
 ];
 
-/// Reports on each scene in turn. After Ctrl-C, the measurements until then are reported.
+/// Reports on each scene in turn. After Ctrl-C, reports the measurements made until then.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     let request = request(args);
@@ -87,7 +87,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
             break;
         }
     }
-    // Measurements are kept: Ctrl-C does not interrupt writing them.
+    // Ctrl-C does not interrupt the writing of files, so that measurements are not lost.
     if let (Some(mut output), false) = (output, measured.is_empty()) {
         let mut contents = Vec::new();
         for (folder, measured) in folders.iter().zip(&measured) {
@@ -132,7 +132,7 @@ fn request(args: &ReportArgs) -> Request {
     }
 }
 
-/// Returns the default error, 1/256, and those on the command line, without duplicates.
+/// Returns the default error, 1/256, followed by `asked`, without duplicates.
 fn errors(asked: &[f64]) -> Vec<f64> {
     let mut errors = vec![1.0 / 256.0];
     for &error in asked {
@@ -155,7 +155,7 @@ fn check_methods(request: &Request) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Rejects more samples than the language's limit.
+/// Rejects more than 2^53 samples in a picture, the limit of the language.
 fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
     let most = request.samples.iter().copied().max().unwrap_or(0);
@@ -167,7 +167,7 @@ fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     }
 }
 
-/// Measures a scene; returns `None` if Ctrl-C comes before the first measurement.
+/// Measures a scene. Returns `None` if Ctrl-C comes before the first measurement.
 fn measure(
     subject: &MeasuredScene,
     scene: &Scene,
@@ -191,8 +191,8 @@ fn measure(
     }
 }
 
-/// Returns the subfolder of each scene's report. A single scene's report goes into the folder
-/// itself; those of several scenes go into subfolders, beside a page on all of them.
+/// Returns the subfolder for each scene's report. The report on a single scene goes into the output
+/// folder itself. Reports on several scenes go into subfolders, beside a page about all of them.
 fn folders(scenes: &[PathBuf]) -> Vec<String> {
     if scenes.len() == 1 {
         return vec![String::new()];
@@ -204,12 +204,12 @@ fn folders(scenes: &[PathBuf]) -> Vec<String> {
     names.iter().map(|name| format!("{name}/")).collect()
 }
 
-/// Returns the names of a report's files.
+/// Returns the names of a report's files in `folder`, which is empty or ends with `/`.
 fn files(folder: &str) -> [String; 5] {
     FILES.map(|name| format!("{folder}{name}"))
 }
 
-/// Returns the contents of a report's files.
+/// Returns the contents of a report's files, in the order of [`FILES`].
 fn texts(measured: &Measurement) -> Result<[String; 5], Trouble> {
     Ok([
         to_csv(measured).map_err(report_error)?,
@@ -228,9 +228,10 @@ fn report_error(error: io::Error) -> Trouble {
     Trouble(format!("cannot make the report: {error}"))
 }
 
-/// Returns the name of a scene's subfolder: the file's name without the ending, with a number if
-/// another scene or the page has that name. The name cannot lead out of the report's folder: it has
-/// no dots at its ends, and only letters, digits and a few usual signs.
+/// Returns the name of a scene's subfolder: the file's name without its extension, and with a
+/// number if another scene or the page has that name. The name cannot lead out of the report's
+/// folder: it has no dots at its ends, and contains only letters, digits and a few common
+/// characters.
 fn name(scene: &Path, taken: &[String]) -> String {
     let stem = match scene.file_stem() {
         Some(stem) if !is_standard(scene) => stem.to_string_lossy().into_owned(),
@@ -242,7 +243,7 @@ fn name(scene: &Path, taken: &[String]) -> String {
         "" => "scene",
         stem => stem,
     };
-    // Some file systems do not distinguish capital letters from small ones.
+    // Some file systems do not distinguish upper and lower case.
     let is_taken = |name: &String| {
         let is_same = |other: &str| other.to_lowercase() == name.to_lowercase();
         is_same(INDEX) || taken.iter().any(|other| is_same(other))

@@ -45,7 +45,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     Ok(Status::Interrupted)
 }
 
-/// Returns the scene's file; a new scene is saved in the current folder.
+/// Opens the scene's file, or makes a new scene that will be saved in the current folder.
 fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
     let Some(scene) = &args.scene else {
         let folder = env::current_dir()
@@ -62,7 +62,8 @@ fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
         .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(scene))))
 }
 
-/// Asks the system to open an address in a browser. Returns whether that program could be started.
+/// Asks the system to open an address in a browser. Returns whether the program that does so could
+/// be started.
 fn open(address: &str) -> bool {
     let (program, before): (_, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])

@@ -1,4 +1,4 @@
-//! `--sweep TARGET=FROM..TO/N`: the overrides of N scenes from one value to another.
+//! `--sweep TARGET=FROM..TO/N`: makes the overrides of N scenes, from one value to another.
 
 use std::str::FromStr;
 
@@ -26,7 +26,7 @@ pub struct Sweep {
 pub struct SweepStep {
     /// The `--set` argument of the scene.
     pub set: String,
-    /// The argument with few digits, as a caption.
+    /// The argument with few digits, for a caption.
     pub label: String,
 }
 
@@ -62,7 +62,7 @@ impl FromStr for Sweep {
     }
 }
 
-/// Splits at the first `..` outside of parentheses.
+/// Splits a text at the first `..` outside of parentheses; returns `None` if there is none.
 fn ends(values: &str) -> Option<(&str, &str)> {
     let mut open = 0_usize;
     let at = values.char_indices().find(|&(at, c)| {
@@ -78,7 +78,8 @@ fn ends(values: &str) -> Option<(&str, &str)> {
 }
 
 impl Sweep {
-    /// Returns the `--set` arguments of the first and last scene, as they are written.
+    /// Returns the `--set` arguments of the first and the last scene, with the values as they were
+    /// typed.
     pub fn ends(&self) -> [String; 2] {
         [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
     }

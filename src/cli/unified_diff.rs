@@ -1,14 +1,13 @@
 //! A unified diff in the format that `patch` reads.
 //!
-//! In: a text before and after. Out: the lines that differ, with three lines of context.
+//! In: a text before and after changes. Out: the lines that differ, with three lines of context.
 
 use std::ops::Range;
 
 /// Number of unchanged lines around a change.
 const AROUND: usize = 3;
 
-/// Maximum number of lines, of both texts together, that the search for the next equal lines passes
-/// over.
+/// Maximum number of lines, in both texts together, that the search for the next equal lines skips.
 const MOST_STEPS: usize = 1000;
 
 /// Lines of the old text, and the lines of the new text that replace them.
@@ -17,7 +16,7 @@ struct ReplacedLines {
     new: Range<usize>,
 }
 
-/// Returns the changes of a file; an empty text if there are none.
+/// Returns the changes of a file as a unified diff; empty if there are none.
 pub fn unified_diff(name: &str, old: &str, new: &str) -> String {
     let lines = |text| str::split_inclusive(text, '\n').collect::<Vec<&str>>();
     let (old, new) = (lines(old), lines(new));
@@ -46,7 +45,7 @@ fn push_hunk(text: &mut String, hunk: &[ReplacedLines], old: &[&str], new: &[&st
     let after = (old.len() - last.old.end).min(AROUND);
     let place = |start: usize, end: usize| {
         let (start, end) = (start - before, end + after);
-        // An empty range is after the line that it names.
+        // An empty range comes after the line whose number is given.
         let first = if start == end { start } else { start + 1 };
         format!("{first},{}", end - start)
     };
@@ -73,9 +72,9 @@ fn push_hunk(text: &mut String, hunk: &[ReplacedLines], old: &[&str], new: &[&st
     push(' ', &old[at..last.old.end + after]);
 }
 
-/// Walks both texts. After a difference, the walk continues at the nearest place where two lines,
-/// or the ends, agree. Changes are small, so the list is short; where it is not the shortest one,
-/// it is still correct.
+/// Returns the changes from `old` to `new`. Walks through both texts; after a difference, the walk
+/// continues at the nearest place where two lines, or the ends of the texts, agree. Changes are
+/// small, so the list is usually short; it is correct even if it is not the shortest one.
 fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());
     while a < old.len() || b < new.len() {
@@ -116,7 +115,7 @@ mod tests {
 
     use super::*;
 
-    /// Texts of up to 14 lines out of few different ones, with and without a line feed at the end.
+    /// Texts of up to 14 lines from a few different ones, with and without a line feed at the end.
     fn text() -> impl Strategy<Value = String> {
         ("((a|b|c|)\n){0,14}", "(a|b)?").prop_map(|(lines, last)| lines + &last)
     }
@@ -138,7 +137,7 @@ mod tests {
                 return Ok(());
             };
             prop_assert!(diff.is_empty() || output.status.success(), "{:?} {}", output, diff);
-            // For an empty text, `patch` may remove the file.
+            // If the new text is empty, `patch` may remove the file.
             let made = fs::read_to_string(folder.path().join("old")).unwrap_or_default();
             prop_assert_eq!(made, new, "{}", diff);
         }

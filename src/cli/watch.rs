@@ -29,7 +29,7 @@ use crate::{
     tracer::World,
 };
 
-/// Renders at the start and after every save, until Ctrl-C.
+/// Renders the scene at the start and after every save, until Ctrl-C.
 pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let start = Instant::now();
     let output = output(args)?;
@@ -66,7 +66,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 let time = time(done.duration_since(since));
                 screen.print(&format!("wrote {output} {time} {what}\n"));
             }
-            // Watching goes on after any error, as the cause may be gone at the next save.
+            // Watching continues after any error, since the cause may be gone at the next save.
             Err(trouble) => screen.print(&output::worded_error(&trouble)),
         }
         is_first = false;
@@ -77,7 +77,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
 /// Interval at which the terminal's size is checked while nothing happens.
 const REFIT: Duration = Duration::from_millis(200);
 
-/// Returns the file that the picture is written to.
+/// Returns the file to which the picture is written.
 fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
     if input::is_standard(&args.scene) {
         return Err(Trouble(
@@ -93,8 +93,8 @@ fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
     }
 }
 
-/// Checks at the start that the scene can be read and is not a picture. Later, files may come and
-/// go.
+/// Checks at the start that the scene can be read and is not a picture. Later, the file may be
+/// missing for a time.
 pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
     let bytes = input::bytes(scene).map_err(|error| input::unreadable(scene, &error))?;
     check_text(scene, &bytes)
@@ -110,8 +110,8 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Renders a text and writes its picture. Returns when it was written; `None` if the text has
-/// errors or a newer text has arrived.
+/// Renders a text and writes its picture. Returns when the picture was written, or `None` if the
+/// text has errors or a newer text has arrived.
 fn render_and_write(
     args: &WatchArgs,
     bytes: Vec<u8>,
@@ -151,10 +151,10 @@ fn render_and_write(
     Ok(Some(done))
 }
 
-/// Time after which coarse pictures are shown until the picture is done.
+/// Time after which coarse pictures are shown until the picture is finished.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Renders the scene, and shows ever finer pictures if it takes long.
+/// Renders the scene. If that takes long, shows increasingly fine pictures meanwhile.
 fn with_sketch(
     scene: &Scene,
     keep: KeptPixels,
@@ -179,8 +179,8 @@ fn with_sketch(
                     progress: &|_| {},
                     cancel: is_stale,
                 };
-                // If it is cancelled, there is nothing more to show; the picture's own render
-                // reports that.
+                // If this is cancelled, there is nothing more to show; the render of the picture
+                // itself reports the cancellation.
                 let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
                     screen.draw(sketch.film);
                 });
@@ -192,7 +192,7 @@ fn with_sketch(
     })
 }
 
-/// Formats a waiting time.
+/// Formats a waiting time: in milliseconds if it is below a second, otherwise in seconds.
 fn time(waited: Duration) -> String {
     match waited.as_secs_f64() {
         seconds if seconds < 1.0 => format!("{:.0} ms", seconds * 1e3),

@@ -2,15 +2,15 @@
 
 use crate::source::{SourceId, Sources, Span, sort_by_span};
 
-/// What a fix does to the author's text, and so who may apply it. A later variant permits
-/// everything that an earlier one does.
+/// What a fix does to the author's text, and so who may apply the fix. The variants are ordered:
+/// whoever accepts one of them accepts all that precede it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Applicability {
-    /// Everything that was written stays, and there is one plausible meaning: the fix can be
+    /// The fix keeps everything that was written, and only one meaning is plausible. It can be
     /// applied without asking.
     Safe,
-    /// One of several meanings is chosen, or something that was written is removed or changed: the
-    /// author decides.
+    /// The fix chooses one of several meanings, or removes or changes something that was written.
+    /// The author decides.
     Unsafe,
     /// The fix contains an example value, which the author must replace.
     Placeholder,
@@ -22,7 +22,7 @@ impl Applicability {
         if is_safe { Self::Safe } else { Self::Unsafe }
     }
 
-    /// Its word in JSON.
+    /// Returns the word for the variant in JSON.
     pub fn word(self) -> &'static str {
         match self {
             Self::Safe => "safe",
@@ -32,36 +32,38 @@ impl Applicability {
     }
 }
 
-/// A way to solve a problem.
+/// A way to solve a problem by edits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {
-    /// What the fix does, as a request: "write `30deg`".
+    /// What the fix does, as an imperative such as "write `30deg`".
     pub title: String,
     /// Who may apply the fix.
     pub applicability: Applicability,
-    /// The changes; their places do not overlap.
+    /// The edits, sorted by place; their spans do not overlap.
     pub edits: Vec<Edit>,
 }
 
-/// A change of a text: of the file or a `--set` argument, as its span says.
+/// Replacement of a part of a text: of the file or of a `--set` argument, as the span says.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Edit {
-    /// The place to replace; an empty span is a place to insert at.
+    /// The place to replace; if it is empty, the text is inserted there.
     pub span: Span,
     /// The new text.
     pub text: String,
 }
 
 impl Fix {
-    /// Makes a fix of edits. It is unsafe unless the caller changes its applicability.
+    /// Makes a fix of edits. The fix is unsafe unless the caller changes its applicability.
     pub fn new(title: impl Into<String>, edits: impl IntoIterator<Item = Edit>) -> Self {
         Self::sorted(title.into(), edits.into_iter().collect())
     }
 
-    /// Sorts the edits. A function that is not generic, so that it is compiled once.
+    /// Makes a fix of edits, which are sorted here. This function is not generic, so that it is
+    /// compiled only once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         sort_by_span(&mut edits, |edit| edit.span);
-        // Removals include the space beside them; of two neighbours only the first one does.
+        // A removal includes the blanks beside it. If two removals are neighbours, only the first
+        // includes the blanks between them, so that their spans do not overlap.
         for index in 1..edits.len() {
             let before = edits[index - 1].span;
             let span = &mut edits[index].span;
@@ -77,7 +79,7 @@ impl Fix {
         }
     }
 
-    /// Changes the applicability.
+    /// Returns the fix with another applicability.
     pub fn with_applicability(self, applicability: Applicability) -> Self {
         Self {
             applicability,
@@ -85,7 +87,8 @@ impl Fix {
         }
     }
 
-    /// Marks the fix as safe: it keeps everything that was written and has one meaning.
+    /// Marks the fix as safe: it keeps everything that was written, and only one meaning is
+    /// possible.
     pub fn safe(self) -> Self {
         self.with_applicability(Applicability::Safe)
     }
@@ -95,7 +98,7 @@ impl Fix {
         self.with_applicability(Applicability::Placeholder)
     }
 
-    /// Marks the fix as unsafe if it removes a comment of the text together with something else, or
+    /// Makes the fix unsafe if one of its edits removes a comment together with something else, or
     /// joins two words.
     pub fn make_careful(&mut self, sources: &Sources) {
         let mut edits = self.edits.iter();
@@ -111,19 +114,20 @@ impl Fix {
         self.applicability == Applicability::Safe
     }
 
-    /// Makes the fix that replaces a place, with a title that says so.
+    /// Makes the fix that replaces `span` by `text`, with a title that says so.
     pub fn write(span: Span, text: impl Into<String>) -> Self {
         let text = text.into();
         Self::new(format!("write `{text}`"), [Edit::new(span, text)])
     }
 
-    /// Makes the fix that removes a place.
+    /// Makes the fix that removes the text at `span`, and blanks beside it as [`Edit::remove`]
+    /// does.
     pub fn remove(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
         Self::new(title, [Edit::remove(span, sources)])
     }
 
-    /// Makes the fix that removes a whole field or item. Comments on its lines, if nothing else
-    /// stands there, are removed, too, as they are about it.
+    /// Makes the fix that removes a whole field or item. If nothing else stands on its lines, also
+    /// removes the comments after it, since they are about it.
     pub fn remove_whole(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
         let whole = with_comments(span, sources);
         let title = if whole == span {
@@ -135,7 +139,7 @@ impl Fix {
     }
 }
 
-/// Extends a place to the comments behind it, if nothing else stands on its lines.
+/// Extends a span to the comments after it, if nothing else stands on its lines.
 fn with_comments(span: Span, sources: &Sources) -> Span {
     let text = sources.get(span.source).text();
     let after = text.get(span.end..).unwrap_or_default();
@@ -149,18 +153,19 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
 
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Returns whether the line up to the end of this text is blank.
+/// Returns whether a line starts at the end of `before`, or only blanks precede the end in its
+/// line.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
 }
 
-/// Returns whether the text starts with the end of a line.
+/// Returns whether `rest` is empty or starts with a line end.
 fn ends_line(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
-/// Skips the comments and blanks at the start of a text, up to the end of their line.
+/// Returns the text after the blanks and comments at its start, up to the end of their line.
 fn past_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches([' ', '\t']);
     loop {
@@ -180,19 +185,20 @@ fn past_comments(text: &str) -> &str {
 }
 
 impl Edit {
-    /// Makes the edit that replaces a place.
+    /// Makes the edit that replaces `span` by `text`.
     pub fn new(span: Span, text: impl Into<String>) -> Self {
         let text = text.into();
         Self { span, text }
     }
 
-    /// Makes the edit that inserts a text before a byte.
+    /// Makes the edit that inserts a text at the byte offset `at`.
     pub fn insert(source: SourceId, at: usize, text: impl Into<String>) -> Self {
         Self::new(Span::new(source, at, at), text)
     }
 
-    /// Makes the edit that adds fields at the end of a block: on its line, or on lines of their
-    /// own. Returns `None` if the block is not in the file or not closed.
+    /// Makes the edit that adds fields at the end of a block: on the line of its `}`, or on lines
+    /// of their own if the `}` starts a line. Returns `None` if the block is not in the file or not
+    /// closed.
     pub fn add_fields(block: Span, sources: &Sources, fields: &[String]) -> Option<Self> {
         if block.source != SourceId::File {
             return None;
@@ -205,7 +211,8 @@ impl Edit {
         let (end, added) = match gap.rsplit_once('\n') {
             Some((_, indent)) => {
                 let last = tight.lines().next_back()?;
-                // In the first line of the block, a comment or a field may stand behind the `{`.
+                // If the block has no line of fields yet, the fields are indented by two more than
+                // the `}`.
                 let deeper = if last.ends_with('{') || !tight.contains('\n') {
                     format!("{indent}  ")
                 } else {
@@ -220,13 +227,14 @@ impl Edit {
         Some(Self::new(Span::new(SourceId::File, at, end), added))
     }
 
-    /// Makes the edit that removes a place: the whole line if nothing else stands on it, or else
-    /// with the blanks on one side. The words on both sides stay apart.
+    /// Makes the edit that removes the text at `span`: the whole line if nothing else stands on it,
+    /// and otherwise the text with the blanks on one side, so that the words on both sides stay
+    /// apart.
     pub fn remove(span: Span, sources: &Sources) -> Self {
         Self::remove_in(span, sources.get(span.source).text())
     }
 
-    /// Makes the edit that removes a place, as [`Self::remove`] does, in a text.
+    /// Makes the edit that removes `span` from `text`, as [`Self::remove`] does.
     pub fn remove_in(span: Span, text: &str) -> Self {
         let Span { source, start, end } = span;
         let before = text.get(..start).unwrap_or_default();
@@ -282,7 +290,7 @@ impl Edit {
     }
 }
 
-/// Applies those edits of a fix that belong to a source to its text.
+/// Returns the text of a source with those edits of the fix applied that belong to this source.
 pub fn apply(fix: &Fix, source: SourceId, text: &str) -> String {
     let mut applied = String::with_capacity(text.len());
     let mut at = 0;

@@ -1,7 +1,7 @@
-//! A stage's problems, limited in number.
+//! Collects a stage's problems, up to a maximum number.
 //!
-//! A megabyte of signs may contain a million mistakes, and the report of one takes a thousand times
-//! the memory of its text; nobody reads the hundredth.
+//! A megabyte of punctuation may contain a million mistakes, and a report takes a thousand times
+//! the memory of the text it is about. Nobody reads the hundredth report.
 
 use std::ops::{Deref, DerefMut};
 
@@ -11,19 +11,20 @@ use crate::source::Span;
 /// Maximum number of problems that a stage reports, and of places that one fix changes.
 pub const MOST_PROBLEMS: usize = 10_000;
 
-/// Message in place of the problems that are left out; it is not a mistake itself.
+/// Message of the diagnostic that replaces the omitted problems. It is not counted as a mistake.
 pub const LEFT_OUT: &str = "there are too many mistakes, and the others are left out";
 
 /// A stage's problems, at most [`MOST_PROBLEMS`].
 #[derive(Debug, Default)]
 pub struct Problems {
     kept: Vec<Diagnostic>,
-    /// The place of the first problem that was left out.
+    /// The place of the first omitted problem.
     left_out: Option<Span>,
 }
 
 impl Problems {
-    /// Adds a problem, unless the limit is reached or one was left out before it.
+    /// Adds a problem. If the limit is reached, records that the problem is omitted; if one was
+    /// omitted already, does nothing.
     pub fn push(&mut self, problem: Diagnostic) {
         if self.is_full() {
             return;
@@ -35,29 +36,30 @@ impl Problems {
         }
     }
 
-    /// Adds a problem that was found before another one was left out, unless the limit is reached.
+    /// Adds a problem unless the limit is reached, even if a later one was omitted already.
     pub fn push_earlier(&mut self, problem: Diagnostic) {
         if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);
         }
     }
 
-    /// Records that a problem at a place is left out.
+    /// Records that a problem at `span` is omitted, unless an earlier one was.
     pub fn leave_out(&mut self, span: Span) {
         self.left_out.get_or_insert(span);
     }
 
-    /// Returns whether a problem was left out, so that looking for others is of no use.
+    /// Returns whether a problem was omitted, so that further problems need not be searched for.
     pub fn is_full(&self) -> bool {
         self.left_out.is_some()
     }
 
-    /// Removes the problems from index `length` on.
+    /// Removes the problems from index `length` on; if there were any, others can be added again.
     pub fn truncate(&mut self, length: usize) {
         self.split_off(length);
     }
 
-    /// Removes and returns the problems from index `length` on, which makes room again.
+    /// Removes and returns the problems from index `length` on; if there were any, others can be
+    /// added again.
     pub fn split_off(&mut self, length: usize) -> Vec<Diagnostic> {
         if length < self.kept.len() {
             self.left_out = None;
@@ -66,7 +68,7 @@ impl Problems {
     }
 }
 
-/// Returns the problems; if others were left out, the last one says so.
+/// Returns the problems. If others were omitted, the last diagnostic says so.
 impl From<Problems> for Vec<Diagnostic> {
     fn from(Problems { mut kept, left_out }: Problems) -> Self {
         kept.extend(left_out.map(|span| Diagnostic {

@@ -1,46 +1,42 @@
 //! Reports for people.
 //!
 //! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette or
-//! narrated. miette receives only the labelled lines, cut to what can be shown.
+//! as sentences. miette receives only the labelled lines, shortened to what can be shown.
 
-use std::{cmp::Reverse, collections::BTreeMap, fmt::Write, ops::Range};
+use std::{cmp::Reverse, collections::BTreeMap, fmt::Write};
 
-use miette::{
-    GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents,
-    SourceCode, SourceSpan, SpanContents,
-};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
 
 use super::{
-    Diagnostic, Label, Severity, clamp, problems, summary,
-    visible::{push_visible, visible_line},
+    Diagnostic, Severity, clamp,
+    excerpt::{Excerpt, LONG_LINE_BYTES, MIN_COLUMNS, excerpts},
+    problems, summary,
+    visible::visible_line,
 };
-use crate::{
-    explain::short,
-    source::{Source, SourceId, Sources, Span},
-};
+use crate::{explain::short, source::Sources};
 
 /// Style of the reports for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Style {
-    /// What the report is drawn with.
+    /// How a report is drawn.
     pub drawing: Drawing,
-    /// Whether the terminal shows colours.
+    /// Whether colours are used.
     pub color: bool,
-    /// The terminal's width in columns; help is wrapped to it.
+    /// Width in columns to which help is wrapped.
     pub width: usize,
-    /// Width of a terminal in columns, to which the lines of an excerpt are cut and its labels and
-    /// the title are wrapped. `None` without a terminal: only very long lines are cut.
+    /// Width of the terminal in columns. Lines of an excerpt are cut to it, and labels and titles
+    /// are wrapped. If it is `None`, there is no terminal, and only very long lines are cut.
     pub excerpt: Option<usize>,
 }
 
-/// Characters that a report is drawn with.
+/// How a report is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drawing {
     /// Box-drawing characters.
     Unicode,
-    /// ASCII only, unless the scene has other characters.
+    /// ASCII only, except characters of the scene itself.
     Ascii,
-    /// No drawing: every label is a sentence, for screen readers.
+    /// Nothing is drawn: every label is a sentence, for screen readers.
     Narrated,
 }
 
@@ -62,7 +58,7 @@ pub struct Report<'s> {
     style: Style,
 }
 
-/// Returns the number of diagnostics of each kind, the most frequent kind first.
+/// Returns a line for each kind of diagnostic with its count, the most frequent kind first.
 fn counts(diagnostics: &[Diagnostic]) -> String {
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for diagnostic in diagnostics
@@ -80,18 +76,19 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
 }
 
 impl<'s> Report<'s> {
-    /// Maximum number of reports that a terminal shows. Of more, it shows the first few and the
-    /// number of each kind; JSON has all of them.
+    /// Maximum number of reports that are shown in full. If there are more, only the first
+    /// [`Self::FIRST_SHOWN`] and the count of each kind are shown; JSON has all of them.
     pub const MOST_SHOWN: usize = 100;
     /// Number of reports that are shown if there are more than [`Self::MOST_SHOWN`].
     pub const FIRST_SHOWN: usize = 20;
 
-    /// Makes a printer for diagnostics of these sources.
+    /// Makes a printer for diagnostics about `sources`.
     pub fn new(sources: &'s Sources, style: Style) -> Self {
         Self { sources, style }
     }
 
-    /// Returns all reports, separated by empty lines, and their number.
+    /// Returns the reports, separated by empty lines, and a summary of their number. Returns an
+    /// empty text if there are no diagnostics.
     pub fn human(&self, diagnostics: &[Diagnostic]) -> String {
         if diagnostics.is_empty() {
             return String::new();
@@ -129,7 +126,7 @@ impl<'s> Report<'s> {
         text
     }
 
-    /// Returns the report of one diagnostic.
+    /// Returns the report of one diagnostic, drawn or narrated.
     pub fn one(&self, diagnostic: &Diagnostic) -> String {
         match self.style.drawing {
             Drawing::Narrated => self.narrated(diagnostic),
@@ -173,7 +170,7 @@ impl<'s> Report<'s> {
         text
     }
 
-    /// Returns the labelled lines of one source, drawn by miette.
+    /// Returns the labelled lines of one source and the help, drawn by miette.
     fn snippet(&self, excerpt: Excerpt<'_>, help: Option<String>) -> String {
         let theme = match (self.style.drawing, self.style.color) {
             (Drawing::Unicode, true) => GraphicalTheme::unicode(),
@@ -188,9 +185,11 @@ impl<'s> Report<'s> {
             .without_syntax_highlighting();
         let mut text = String::new();
         let snippet = Snippet { excerpt, help };
-        // Writing to a string does not fail, and an excerpt holds all of its labels.
+        // Rendering cannot fail: writing to a string does not fail, and an excerpt contains all of
+        // its labels.
         let _ = handler.render_report(&mut text, &snippet);
-        // miette's own header is a line with an icon; ours stands above already.
+        // The first line is miette's own header with an icon. It is dropped, since the report has a
+        // header already.
         match text.split_once('\n') {
             Some((_, rest)) => rest
                 .lines()
@@ -234,7 +233,7 @@ impl<'s> Report<'s> {
     }
 }
 
-/// An excerpt in the form that miette takes.
+/// An excerpt and a help in the form that miette takes.
 #[derive(Debug)]
 struct Snippet<'s> {
     excerpt: Excerpt<'s>,
@@ -261,239 +260,4 @@ impl miette::Diagnostic for Snippet<'_> {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         Some(Box::new(self.excerpt.labels.iter().cloned()))
     }
-}
-
-/// The labelled lines of one source, with long lines cut to the parts around the labels.
-///
-/// miette reads the excerpt instead of the text: a line of ten megabytes is neither printed nor
-/// scanned, and every label lies within it (miette omits a label at the end of a text, and panics
-/// at one past it).
-#[derive(Debug)]
-struct Excerpt<'s> {
-    source: &'s Source,
-    text: String,
-    lines: Vec<ExcerptLine>,
-    labels: Vec<LabeledSpan>,
-}
-
-#[derive(Debug)]
-struct ExcerptLine {
-    /// Line number in the source, from 1.
-    number: usize,
-    /// Start in the excerpt, in bytes.
-    start: usize,
-    /// End in the excerpt, in bytes, without the line feed.
-    end: usize,
-    /// Offsets of each shown character in the source and in the excerpt, and those of the end.
-    shown: Vec<(usize, usize)>,
-}
-
-/// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
-const LONG_LINE_BYTES: usize = 160;
-/// Minimum number of columns, however narrow the terminal is.
-const MIN_COLUMNS: usize = 30;
-/// Columns between a label and its message.
-const HOOK_COLUMNS: usize = 4;
-/// Minimum number of columns for a message, wherever its label stands.
-const MIN_MESSAGE_COLUMNS: usize = 16;
-/// Maximum number of lines of a label; a longer one is drawn under its first line only.
-const MAX_LABEL_LINES: usize = 6;
-
-/// Returns an excerpt of every source that has labels, in the order of the labels.
-fn excerpts<'s>(diagnostic: &Diagnostic, sources: &'s Sources, columns: usize) -> Vec<Excerpt<'s>> {
-    let mut ids: Vec<SourceId> = Vec::new();
-    for label in &diagnostic.labels {
-        if !ids.contains(&label.span.source) {
-            ids.push(label.span.source);
-        }
-    }
-    let excerpt = |id| {
-        let labels = diagnostic.labels.iter().filter(|l| l.span.source == id);
-        Excerpt::new(sources.get(id), labels, columns)
-    };
-    ids.into_iter().map(excerpt).collect()
-}
-
-impl<'s> Excerpt<'s> {
-    /// Makes the excerpt, with lines of at most `columns` bytes.
-    fn new<'l>(
-        source: &'s Source,
-        labels: impl Iterator<Item = &'l Label>,
-        columns: usize,
-    ) -> Self {
-        let labels: Vec<_> = labels
-            .map(|label| (shorten(label.span, source, columns), label.message.as_str()))
-            .collect();
-        let mut numbers: Vec<usize> = labels
-            .iter()
-            .flat_map(|(span, _)| source.line(span.start)..=source.line(span.end))
-            .collect();
-        numbers.sort_unstable();
-        numbers.dedup();
-        let mut excerpt = Self {
-            source,
-            text: String::new(),
-            lines: Vec::new(),
-            labels: Vec::new(),
-        };
-        for number in numbers {
-            excerpt.push_line(number, &labels, columns);
-        }
-        for (index, (span, message)) in labels.into_iter().enumerate() {
-            let start = excerpt.offset_of(span.start);
-            let end = excerpt.offset_of(span.end).max(start + 1);
-            let inner = SourceSpan::from((start, end - start));
-            let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
-            // miette draws the hook at the label's middle.
-            let left = start.midpoint(end) - line + HOOK_COLUMNS;
-            let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
-            let message = textwrap::fill(&visible_line(message), room);
-            // miette shows line and column of the primary label.
-            excerpt.labels.push(match index {
-                0 => LabeledSpan::new_primary_with_span(Some(message), inner),
-                _ => LabeledSpan::new_with_span(Some(message), inner),
-            });
-        }
-        excerpt
-    }
-
-    fn push_line(&mut self, number: usize, labels: &[(Span, &str)], columns: usize) {
-        let mut range = self.source.line_range(number);
-        if number == 1 {
-            range.start = self.source.bom_len().min(range.end);
-        }
-        // miette joins the frames of labels whose lines follow one another, and numbers them on
-        // from the first.
-        let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
-        if apart {
-            self.text.push('\n');
-        }
-        let start = self.text.len();
-        let mut shown = Vec::new();
-        for piece in shown_pieces(self.source, range.clone(), labels, columns) {
-            if piece.start > range.start {
-                self.text.push('…');
-            }
-            for (at, character) in self.source.slice(piece.clone()).char_indices() {
-                shown.push((piece.start + at, self.text.len()));
-                // An escaped control character is longer than its own bytes.
-                push_visible(&mut self.text, character);
-            }
-            shown.push((piece.end, self.text.len()));
-        }
-        if shown.last().is_some_and(|(end, _)| *end < range.end) {
-            self.text.push('…');
-        }
-        // A label at the end of the line needs a character to stand under.
-        self.text.push(' ');
-        self.lines.push(ExcerptLine {
-            number,
-            start,
-            end: self.text.len(),
-            shown,
-        });
-        self.text.push('\n');
-    }
-
-    /// Returns the place of a source's offset in the excerpt.
-    fn offset_of(&self, offset: usize) -> usize {
-        let number = self.source.line(offset);
-        let line = self.lines.iter().find(|line| line.number == number);
-        let mut shown = line.into_iter().flat_map(|line| line.shown.iter().rev());
-        let found = shown.find(|(at, _)| *at <= offset);
-        // A byte order mark is not shown.
-        let start = line.map_or(0, |line| line.start);
-        found.map_or(start, |(_, place)| *place)
-    }
-
-    fn line_at(&self, offset: usize) -> Option<(usize, &ExcerptLine)> {
-        let index = self.lines.partition_point(|line| line.start <= offset);
-        let index = index.checked_sub(1)?;
-        Some((index, self.lines.get(index)?))
-    }
-}
-
-impl SourceCode for Excerpt<'_> {
-    fn read_span<'a>(
-        &'a self,
-        span: &SourceSpan,
-        _before: usize,
-        _after: usize,
-    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
-        let last = (span.offset() + span.len()).saturating_sub(1);
-        let (Some((first_index, first)), Some((last_index, last))) = (
-            self.line_at(span.offset()),
-            self.line_at(last.max(span.offset())),
-        ) else {
-            return Err(MietteError::OutOfBounds);
-        };
-        // Lines that do not follow one another stay in frames of their own.
-        if last.number - first.number != last_index - first_index {
-            return Err(MietteError::OutOfBounds);
-        }
-        let data = self.text.as_bytes();
-        let data = data.get(first.start..last.end).unwrap_or_default();
-        let mut shown = first.shown.iter().rev();
-        let real = shown.find(|(_, place)| *place <= span.offset());
-        let real = real.map_or(0, |(at, _)| *at);
-        Ok(Box::new(MietteSpanContents::new_named(
-            visible_line(self.source.name()).into_owned(),
-            data,
-            (first.start, last.end - first.start).into(),
-            first.number - 1,
-            self.source.place(real).column - 1,
-            last_index - first_index + 1,
-        )))
-    }
-}
-
-/// Returns the part of a label that is drawn.
-fn shorten(span: Span, source: &Source, columns: usize) -> Span {
-    let mut span = clamp(span, source);
-    let first = source.line(span.start);
-    let line = source.line_range(first);
-    if source.line(span.end) - first >= MAX_LABEL_LINES {
-        span.end = line.end.max(span.start);
-    }
-    if source.line(span.end) == first && line.len() > columns {
-        let long = source.floor_char_boundary(span.start + columns / 2);
-        span.end = span.end.min(long);
-    }
-    span
-}
-
-/// Returns the parts of a line that are shown: all of a short line; of a long one, or one without
-/// room for a label's message, a quarter of the columns to the left and right of each label.
-fn shown_pieces(
-    source: &Source,
-    line: Range<usize>,
-    labels: &[(Span, &str)],
-    columns: usize,
-) -> Vec<Range<usize>> {
-    let mut ends: Vec<usize> = labels
-        .iter()
-        .flat_map(|(span, _)| [span.start, span.end])
-        .filter(|&end| line.start <= end && end <= line.end)
-        .collect();
-    ends.sort_unstable();
-    let with_message = ends.last().unwrap_or(&line.start) + HOOK_COLUMNS + MIN_MESSAGE_COLUMNS;
-    if line.end.max(with_message) - line.start <= columns {
-        return vec![line];
-    }
-    let around = columns / 4;
-    let mut pieces: Vec<Range<usize>> = Vec::new();
-    for end in ends {
-        let from = source.floor_char_boundary(end.saturating_sub(around).max(line.start));
-        let to = source.floor_char_boundary((end + around).min(line.end));
-        match pieces.last_mut() {
-            // An ellipsis in place of one or two letters would help nobody.
-            Some(last) if from <= last.end + 3 => last.end = last.end.max(to),
-            _ => pieces.push(from..to),
-        }
-    }
-    if pieces.is_empty() {
-        let to = source.floor_char_boundary((line.start + 2 * around).min(line.end));
-        pieces.push(line.start..to);
-    }
-    pieces
 }

@@ -1,13 +1,13 @@
-//! Text that a terminal may show.
+//! Makes text safe to show in a terminal.
 //!
-//! In: text from a scene, a file's name, a picture or an argument. Out: the same with all
-//! characters escaped that could act on a terminal, change the order of what is shown, or show
-//! nothing: control characters, and those that Unicode calls ignorable.
+//! In: text from a scene, a file's name, a picture or an argument. Out: the text with some
+//! characters escaped: those that could act on a terminal, change the order of what is shown, or
+//! show nothing. These are the control characters and those that Unicode calls ignorable.
 
 use std::{borrow::Cow, fmt::Write};
 
-/// Returns the text with invisible characters escaped, as in `\u{1b}`; line feeds and tabs stay as
-/// they are.
+/// Returns the text with invisible characters escaped, as in `\u{1b}`. Line feeds and tabs are
+/// kept.
 pub fn visible(text: &str) -> Cow<'_, str> {
     if !text.chars().any(is_invisible) {
         return Cow::Borrowed(text);
@@ -19,9 +19,9 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// Returns a text that stands within one line, such as a name or a message, with invisible
-/// characters, line feeds and tabs escaped, so that it can forge neither a second line nor a cell
-/// of a table.
+/// Returns a text for use within one line, such as a name or a message. Invisible characters, line
+/// feeds and tabs are escaped, so that the text can forge neither a second line nor a cell of a
+/// table.
 pub fn visible_line(text: &str) -> Cow<'_, str> {
     let breaks = |character| matches!(character, '\n' | '\t' | '\u{2028}' | '\u{2029}');
     let shown = visible(text);
@@ -39,7 +39,8 @@ pub fn visible_line(text: &str) -> Cow<'_, str> {
     Cow::Owned(line)
 }
 
-/// Returns the text of [`visible_line`] escaped for HTML and XML, including attributes.
+/// Returns the text as [`visible_line`] does, and also escaped for HTML and XML, including
+/// attributes.
 pub fn escaped(text: &str) -> String {
     visible_line(text)
         .replace('&', "&amp;")
@@ -48,7 +49,7 @@ pub fn escaped(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-/// Adds a character as [`visible`] shows it.
+/// Appends a character as [`visible`] shows it.
 pub fn push_visible(text: &mut String, character: char) {
     if is_invisible(character) {
         // Writing to a string does not fail.
@@ -58,9 +59,9 @@ pub fn push_visible(text: &mut String, character: char) {
     }
 }
 
-/// Returns whether a character is escaped: control characters, characters with the property
+/// Returns whether a character must be escaped: it is a control character, has the property
 /// `Default_Ignorable_Code_Point` of the Unicode Character Database (DerivedCoreProperties), which
-/// includes the controls of bidirectional text, and the marks of annotations.
+/// includes the controls of bidirectional text, or marks an annotation.
 fn is_invisible(character: char) -> bool {
     // Most characters are ASCII.
     if character.is_ascii() {

@@ -1,8 +1,8 @@
 //! The boundaries of what is seen in a sub-pixel.
 //!
 //! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it:
-//! outlines, intersections of surfaces, and intersections with the near and far planes. They are
-//! computed in double-double, and once more in the last precision if double-double leaves too large
+//! silhouettes, intersections of surfaces, and intersections with the near and far planes. They are
+//! computed in double-double, and again in the highest precision if double-double leaves too large
 //! an error.
 
 use std::{cell::OnceCell, ops::ControlFlow};
@@ -17,23 +17,24 @@ use crate::{
 
 use super::budget::PixelBudget;
 
-/// Doubtful area of a conic, in square pixels, above which double-double is not accurate enough. It
-/// equals eight roundings of a mean in `f64`.
+/// Doubtful area of a conic, in square pixels, from which on double-double is not accurate enough.
+/// It equals eight roundings of a mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Work per pair of objects whose depths are compared, in units.
+/// Work per pair of objects whose depths are compared, in units of about 50 ns.
 const PAIR_WORK: f64 = 1.0 / 16.0;
-/// Work per object or pair that is asked for its curves, in units.
+/// Work per object or pair whose curves are computed, in units of about 50 ns.
 const CURVES_WORK: f64 = 8.0;
-/// Work to prepare a triangle or a box that the cache does not keep, in units.
+/// Work to prepare a triangle or a box that the cache does not keep, in units of about 50 ns.
 const PREPARATION_WORK: f64 = 140.0;
-/// Work per object and per pair of surfaces in the last precision, in units.
+/// Additional work per object and per pair of surfaces in the highest precision, in units of about
+/// 50 ns.
 const BIG_CURVE_WORK: f64 = 1500.0;
 
-/// What a boundary belongs to, with indices into the candidates.
+/// Source of boundaries: an object or a pair of objects, as indices into the candidates.
 #[derive(Clone, Copy, Debug)]
 enum BoundarySource {
-    /// The outline of an object.
+    /// The silhouette of an object.
     Outline(usize),
     /// The intersections of an object with the near and far planes.
     Clips(usize),
@@ -41,17 +42,17 @@ enum BoundarySource {
     Pair(usize, usize),
 }
 
-/// Computes the boundaries of candidates in a sub-pixel, in one precision.
+/// State for computing the boundaries of candidates in a sub-pixel, in the precision `T`.
 struct Boundaries<'a, T: Precision> {
     world: &'a World,
     candidates: &'a [VisibilityCandidate],
-    /// The candidates prepared so far.
+    /// The objects of the candidates, prepared on first use.
     objects: Vec<OnceCell<ObjectRef<'a, T>>>,
     frame: SubPixelFrame<T>,
     budget: &'a PixelBudget<'a>,
 }
 
-/// Collects the candidates that may be seen in a sub-pixel, in file order.
+/// Returns those of the candidates that may be seen in a sub-pixel, in file order.
 pub fn visible(
     world: &World,
     sub_pixel: SubPixel,
@@ -64,9 +65,9 @@ pub fn visible(
     visible
 }
 
-/// Collects the curves in a sub-pixel that may bound what is seen of the candidates. Returns
-/// whether they are complete: the search ends if there are more than `max_curves`, counting equal
-/// ones once, or if the budget is spent.
+/// Collects in `out` the curves in a sub-pixel that may bound what is seen of the candidates.
+/// Returns whether they are all there. The search ends early if there are more than `max_curves`
+/// after equal ones are merged, or if the budget is spent.
 pub fn curves(
     world: &World,
     sub_pixel: SubPixel,
@@ -77,9 +78,9 @@ pub fn curves(
 ) -> bool {
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
-    // Imprecise sources have curves that double-double does not know well enough. Incomplete
-    // sources have pairs of surfaces without an intersection in double-double, which only the last
-    // precision decides.
+    // For imprecise sources, double-double leaves too large an error in a curve. For incomplete
+    // sources, some pair of surfaces has no intersection in double-double, and only the highest
+    // precision decides whether there is one.
     let (mut imprecise, mut incomplete) = (Vec::new(), Vec::new());
     let mut incomplete_curves = Vec::new();
     let mut room = max_curves;
@@ -98,14 +99,14 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // Equal curves have been merged, and still too many are left.
+        // If this holds, too many curves are left although equal ones have been merged.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     };
-    // Outlines come first: in a heap they exceed the maximum long before all pairs have been
-    // examined.
+    // Silhouettes come first: in a heap they alone exceed the maximum long before all pairs have
+    // been examined.
     let outlines = boundaries.outlines(&mut take);
     if outlines.is_break() || boundaries.pairs(&mut take).is_break() {
         return false;
@@ -125,8 +126,8 @@ pub fn curves(
     out.len() <= max_curves
 }
 
-/// Merges curves with equal forms, such as those of objects that share planes or edges, and keeps
-/// the largest error of each group.
+/// Merges curves with equal forms, such as those of objects that share planes or edges. Each merged
+/// curve keeps the largest error of its group.
 fn merge_equal_curves(curves: &mut Vec<Boundary>) {
     curves.sort_by_cached_key(Boundary::key);
     curves.dedup_by(|again, curve| {
@@ -157,7 +158,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         }
     }
 
-    /// Visits outlines and clip-plane intersections until `take` breaks.
+    /// Calls `take` for the silhouette and the clip-plane intersections of each candidate that does
+    /// not cover the whole sub-pixel, until it breaks.
     fn outlines(&self, mut take: impl FnMut(BoundarySource) -> ControlFlow<()>) -> ControlFlow<()> {
         for (i, candidate) in self.candidates.iter().enumerate() {
             if !candidate.is_whole {
@@ -168,7 +170,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         ControlFlow::Continue(())
     }
 
-    /// Visits pairs of objects that may intersect until `take` breaks.
+    /// Calls `take` for each pair of objects that may intersect, until it breaks or the budget is
+    /// spent.
     fn pairs(&self, mut take: impl FnMut(BoundarySource) -> ControlFlow<()>) -> ControlFlow<()> {
         let geometry = &self.world.geometry;
         let is_board = |candidate: &VisibilityCandidate| {
@@ -186,7 +189,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
-                // Boards are parallel: they meet at the horizon, which is the outline of both.
+                // Boards are parallel, and both have the horizon as their silhouette.
                 let are_parallel = is_board(a) && is_board(b);
                 if !apart && !are_parallel {
                     take(BoundarySource::Pair(i, j))?;
@@ -196,8 +199,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         ControlFlow::Continue(())
     }
 
-    /// Appends the curves of a source that may pass through the sub-pixel. Returns whether all its
-    /// pairs of surfaces intersect somewhere, as all unequal surfaces do.
+    /// Appends the curves of a source that may pass through the sub-pixel to `out`. Returns whether
+    /// all its pairs of surfaces have an intersection, as all unequal surfaces do.
     fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
             if curve.may_cross_pixel() {
@@ -241,7 +244,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         self.objects[at].get_or_init(|| {
             self.charge_big_curve();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
-            // The cache keeps only some objects.
+            // The cache keeps only some of the objects.
             if self.candidates.len() > CACHE_SLOTS && matches!(*object, Object::Convex(_)) {
                 self.budget.charge(PREPARATION_WORK);
             }
@@ -270,7 +273,8 @@ impl Boundary {
         }
     }
 
-    /// Returns whether a higher precision would gain next to nothing.
+    /// Returns whether the curve's error is so small that a higher precision would gain next to
+    /// nothing.
     fn is_tight(&self) -> bool {
         match self {
             Self::Line(line) => line.rad < LOOSE_LINE,
@@ -278,7 +282,7 @@ impl Boundary {
         }
     }
 
-    /// Returns the form, normalised so that equal curves have equal keys.
+    /// Returns the factors of the curve's form, normalised so that equal curves have equal keys.
     fn key(&self) -> [u64; 12] {
         let mut factors = [0.0; 12];
         match self {

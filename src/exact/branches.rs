@@ -1,9 +1,9 @@
-//! Curves as x-monotone branches: over a range of x, a line is the graph of one function y(x) and a
-//! conic that of two.
+//! Curves as x-monotone branches: over a range of x, a line is the graph of one function y(x), and
+//! a conic consists of the graphs of two.
 //!
-//! In: lines and conics of a sub-pixel. Out: over a range of x, each branch as a chord and an arc
-//! between its tangents, with an error bound. If the roundings of `f64` leave too large an error in
-//! an arc, its ends and tangents are computed in double-double.
+//! In: lines and conics of a sub-pixel. Out: each branch over a range of x, as a chord and an arc
+//! with the branch's end tangents, with an error bound. If the roundings of `f64` leave too large
+//! an error in an arc, its ends and tangents are computed in double-double.
 
 use glam::DVec2;
 
@@ -14,72 +14,74 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// Maximum error of an arc's area divided by its width for which `f64` is accurate enough. The
-/// total is 4e-15 for a pixel, far below the usual tolerance.
+/// Maximum error of an arc's area, divided by its width, for which `f64` is accurate enough; above
+/// it, double-double is used. The total is 4e-15 for a pixel, far below the usual tolerance.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
-/// Slope above which a line counts as vertical. Its x then changes by less than eight roundings
-/// across the pixel.
+/// Absolute slope dy/dx above which a line counts as vertical. Across the pixel, x then changes by
+/// less than eight roundings.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Distance from the pixel, relative to the size of its values, at which a branch is certainly
-/// outside. It is millions of times their rounding errors.
+/// Margin by which a branch must lie above or below the pixel to be left out, as a fraction of its
+/// largest |y| (or of 1 if that is greater). Rounding errors of y are millions of times smaller.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).
 #[derive(Clone, Copy, Debug)]
 pub enum Track<'a> {
-    /// The line y = const.
+    /// A horizontal line, y = const.
     Level(f64),
-    /// A line that is not vertical: y = slope · x + start.
+    /// A line that is not vertical, y = slope·x + start.
     Line {
-        /// dy/dx.
+        /// Slope dy/dx.
         slope: f64,
-        /// y at x = 0.
+        /// Value of y at x = 0.
         start: f64,
     },
     /// One of the two functions of a conic.
     Branch {
         /// The conic.
         graph: &'a ConicGraph,
-        /// Sign of the root, 1 or −1: the upper or the lower function.
+        /// Sign of the root: 1 or −1.
         side: f64,
     },
 }
 
-/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions: y = (−b ± √Δ)/C with b = Bx + E,
-/// Δ = b² − Cg and g = Ax² + 2Dx + F.
+/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions of x:
+///
+/// y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − C·g, g = Ax² + 2Dx + F.
 #[derive(Clone, Copy, Debug)]
 pub struct ConicGraph {
     factors: [Double; 6],
-    /// Δ as a polynomial in x: the coefficients of x², 2x and 1.
+    /// Polynomial Δ in x: the coefficients of x², 2x and 1.
     delta: [Double; 3],
 }
 
-/// A conic's two functions over a range of x.
+/// Two functions of a conic over a range of x.
 #[derive(Debug)]
 pub struct ConicSpan<'a> {
     graph: &'a ConicGraph,
-    /// Left end, middle and right end.
+    /// Values of x at the left end, in the middle and at the right end.
     x: [f64; 3],
-    /// √Δ at the left end, the middle and the right end.
+    /// Values of √Δ at the left end, in the middle and at the right end.
     roots: [f64; 3],
 }
 
-/// A track over a range of x, which lies between its chord and two of its tangents.
+/// A part of a track over a range of x. The track lies between its chord there and two of its
+/// tangents.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
-    /// y at the left end, in the middle, and at the right end.
+    /// Values of y at the left end, in the middle and at the right end.
     pub y: [f64; 3],
-    /// The arc unless the section is straight, with 1 if it bulges upwards (greater y) or −1 if
-    /// downwards.
+    /// The arc, with 1 if it bulges upwards (to greater y) or −1 if downwards; `None` if the
+    /// section is straight.
     pub arc: Option<(f64, Arc)>,
-    /// Maximum distance of the track from this section, in y.
+    /// Maximum distance in y between the track and this section.
     pub error: f64,
 }
 
 impl ConicGraph {
-    /// Derives the functions of a conic.
+    /// Derives the two functions of a conic.
     pub fn new(conic: &Conic) -> Self {
         let [a, b, c, d, e, f] = conic.factors;
         let minor = |p: Double, q: Double, r: Double, s: Double| p.times(&q).minus(&r.times(&s));
@@ -89,10 +91,11 @@ impl ConicGraph {
         }
     }
 
-    /// Returns the x of the conic's vertical tangents, where its functions begin and end.
+    /// Returns the values of x inside the pixel at which the conic has vertical tangents, where its
+    /// two functions begin and end.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         let [p, q, r] = self.delta;
-        // The roots of px² + 2qx + r without cancellation.
+        // These are the roots of px² + 2qx + r, computed without cancellation.
         let discriminant = q.times(&q).minus(&p.times(&r));
         let roots = (discriminant.hi >= 0.0).then(|| {
             let root = discriminant.sqrt().hi;
@@ -102,7 +105,7 @@ impl ConicGraph {
         roots.into_iter().flatten().filter(|x| x.abs() < 0.5)
     }
 
-    /// Returns √Δ, or 0 if Δ is negative because of rounding.
+    /// Returns √Δ at `x`, or 0 if Δ is negative.
     fn root(&self, x: f64) -> f64 {
         let [p, q, r] = &self.delta;
         let at = Double::from_f64(x);
@@ -111,7 +114,8 @@ impl ConicGraph {
         delta.hi.max(0.0).sqrt()
     }
 
-    /// Returns the functions from `left` to `right`, or `None` if the conic has no point there.
+    /// Returns the two functions from `left` to `right`, or `None` if the conic has no point in the
+    /// middle between them.
     pub fn span(&self, left: f64, right: f64) -> Option<ConicSpan<'_>> {
         let x = [left, 0.5 * (left + right), right];
         let middle = self.root(x[1]);
@@ -122,13 +126,13 @@ impl ConicGraph {
         })
     }
 
-    /// Computes y at an x where √Δ is `root`.
+    /// Computes the function `side` at `x`, where `root` is √Δ.
     fn y(&self, x: f64, root: f64, side: f64) -> f64 {
         let [a, b, c, d, e, f] = &self.factors;
         let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
-        // Of the two forms of the solution, uses the one without cancellation.
+        // Of the two forms of the solution, this uses the one without cancellation.
         if minus * side >= 0.0 {
             (minus + root) / c.hi
         } else {
@@ -138,7 +142,8 @@ impl ConicGraph {
         }
     }
 
-    /// Computes the point and its root at an x in double-double.
+    /// Computes in double-double the point at `x` of the function `side`, and the signed root √Δ
+    /// there.
     fn end_in_double(&self, x: f64, side: f64) -> ArcEnd<Double> {
         let [a, b, c, d, e, f] = &self.factors;
         let [p, q, r] = &self.delta;
@@ -168,16 +173,16 @@ impl ConicGraph {
 }
 
 impl<'a> ConicSpan<'a> {
-    /// Returns one of the two functions as a track with its section. Returns `None` if it is not
-    /// finite or lies outside the pixel. The section is `None` if the branch turns too much to be
-    /// followed in one piece.
+    /// Returns the function `side` as a track with its section. Returns `None` if the function is
+    /// not finite or lies outside the pixel. The section is `None` if the branch turns too much to
+    /// be represented by one arc.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
         if !y[1].is_finite() {
             return None;
         }
-        // A function that bends in one direction is nowhere farther from its chord than twice its
+        // A function that bends in one direction is nowhere farther from its chord than twice the
         // distance in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
@@ -197,8 +202,8 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // The branch is too flat to distinguish its tangents: each y has six operations, and
-            // the middle of two has two.
+            // Here the branch is too flat to distinguish its tangents. Each y has six operations,
+            // and the mean of two y has two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -210,8 +215,9 @@ impl<'a> ConicSpan<'a> {
         Some((Track::Branch { graph, side }, section))
     }
 
-    /// Returns the arc between two points and the maximum error of the area between it and its
-    /// chord. Returns `None` if the tangents do not meet between the points.
+    /// Returns the arc of the function `side` between two points, and the maximum error of the area
+    /// between the arc and its chord. Returns `None` if the tangents do not meet between the
+    /// points, or if the arc turns by more than 120°.
     fn arc(&self, ends: [DVec2; 2], side: f64) -> Option<(Arc, f64)> {
         let Self { graph, roots, .. } = self;
         let [start, end] = ends;
@@ -221,7 +227,7 @@ impl<'a> ConicSpan<'a> {
             root: side * root,
         });
         let mut tangents = Tangents::new(&factors, &rounded);
-        // The gradient of a conic that is almost a line is hardly more than rounding error.
+        // If the conic is almost a line, its gradient in `f64` is hardly more than rounding error.
         let is_good = tangents.off <= ARC_TOLERANCE * (end.x - start.x);
         if !is_good {
             let ends = ends.map(|at| graph.end_in_double(at.x, side));
@@ -234,42 +240,45 @@ impl<'a> ConicSpan<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // Arcs that turn by more than 120° are cut: the weight is the cosine of half the turn.
+        // Arcs that turn by more than 120° are cut. For a circle, the weight is the cosine of half
+        // the turn.
         const MIN_WEIGHT: f64 = 0.5;
         let turns_little = arc.weight > MIN_WEIGHT && arc.weight < 1.0 / MIN_WEIGHT;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
     }
 }
 
-/// A point of a conic, with the signed root there, which is half of ∂/∂y of the conic's form.
+/// A point of a conic, with the signed root √Δ there, which is half of ∂/∂y of the conic's form.
 struct ArcEnd<T> {
     at: [T; 2],
     root: T,
 }
 
-/// The point where the tangents at two points of a conic meet.
+/// The intersection of the tangents at two points of a conic, the control point.
 struct Tangents {
-    /// Position relative to the first point.
+    /// Position of the intersection relative to the first point.
     control: DVec2,
-    /// The square of the arc's weight.
+    /// Square of the arc's weight.
     w2: f64,
-    /// Maximum error of the area between arc and chord.
+    /// Maximum error of the area between the arc and its chord.
     off: f64,
 }
 
 impl Tangents {
-    /// Intersects the tangents at two points of the conic with these coefficients.
+    /// Intersects the tangents at the points `ends` of the conic with the coefficients `factors`,
+    /// and bounds the error.
     ///
-    /// The gradient is off by a few roundings of its terms, that is, κ times as many roundings of
-    /// itself, and the directions of both tangents are off by as much, in radians. An angle error
-    /// at the base of a triangle changes its area by half the square of the adjacent leg. An error
-    /// of the control point along its tangent changes the triangle and the weight in opposite
-    /// directions, by no more than that. The conic's quadratic part Q is off by as many roundings
-    /// of its own terms and by the error of its vector argument, which consists of roundings of
-    /// coordinates and of the direction error. The weight's square is the quotient of two values of
-    /// Q, and the area between arc and chord grows no faster than the weight. An error of the root
-    /// corresponds to another conic that is as close as this one is known, which moves points and
-    /// tangents together.
+    /// The gradient is off by a few roundings of its terms, which are κ times as many roundings of
+    /// its length. The directions of both tangents are off by the same number, in radians. An angle
+    /// error at the base of a triangle changes the triangle's area by half the square of the
+    /// adjacent leg times the error. An error of the control point along its tangent changes the
+    /// triangle and the weight in opposite directions, and by no more than that.
+    ///
+    /// The weight's square is the quotient of two values of the conic's quadratic part Q, and the
+    /// area between arc and chord grows no faster than the weight. A value of Q is off by roundings
+    /// of its own terms and by the error of its vector argument. That error consists of roundings
+    /// of coordinates and of the direction's error. An error of the root corresponds to another
+    /// conic within the error of this one; it moves points and tangents together.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
@@ -284,7 +293,8 @@ impl Tangents {
             1.0 + terms / length(&gradients[i])
         });
         let kappa = kappa[0].max(kappa[1]);
-        // Returns Q and its relative error if the vector is off by `off`.
+        // Returns Q at the vector `v`, and the relative error in roundings, where `v` itself is off
+        // by `off` roundings.
         let quadratic = |v: &[T; 2], off: f64| {
             let half = [
                 product(&[a.clone(), b.clone()], v),
@@ -329,7 +339,7 @@ impl Track<'_> {
         (slope.abs() <= MAX_SLOPE && start.is_finite()).then_some(Self::Line { slope, start })
     }
 
-    /// Computes y at an x where the track is defined.
+    /// Computes y at `x`, where the track must be defined.
     pub fn y(&self, x: f64) -> f64 {
         match self {
             Self::Level(y) => *y,
@@ -338,7 +348,7 @@ impl Track<'_> {
         }
     }
 
-    /// Returns the straight section from `left` to `right`.
+    /// Returns the track from `left` to `right` as a straight section.
     pub fn straight(&self, left: f64, right: f64) -> Section {
         Section::straight([left, 0.5 * (left + right), right].map(|x| self.y(x)))
     }
@@ -354,8 +364,10 @@ impl Section {
         }
     }
 
-    /// Returns the maximum of `up`·y, times `up`, at the left end, the right end, or the control
-    /// point's x (any x if straight).
+    /// Bounds the section at `x` from above if `up` is 1, or from below if `up` is −1. The bound is
+    /// valid if `x` is the left end, the right end, or the x of a control point. It consists of the
+    /// two tangents on the side to which the arc bulges, and of the chord on the other; the error
+    /// is added.
     fn hull(&self, up: f64, x: f64, left: f64, right: f64) -> f64 {
         let chord = |a: DVec2, b: DVec2| {
             if b.x > a.x {
@@ -378,11 +390,13 @@ impl Section {
         at + up * self.error
     }
 
-    /// Bounds how far this section rises above another one over the same range of x.
+    /// Returns the maximum of this section's y minus that of `other`, or more, over the range of x
+    /// from `left` to `right`. The result is negative if this section is certainly below.
     pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
         let controls = [self, other].map(|section| section.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
-        // Both hulls are straight between these places.
+        // The bounds of both sections are straight between these values of x, so that their
+        // difference is greatest at one of them.
         let hulls = places
             .into_iter()
             .flatten()
@@ -392,17 +406,19 @@ impl Section {
         hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// Bounds how far this section rises above another one over the same range of x, and how far
-    /// the two are apart. Returns `None` unless both are arcs that bulge to the same side; the
-    /// bounds are tight if these are nearly parallel, however close. Points of equal parameter are
-    /// compared, with the first chord made level.
+    /// Bounds how far this section rises above `other` over the same range of x, and how far the
+    /// two are apart in y. Returns `None` unless both are arcs that bulge to the same side. If the
+    /// arcs are nearly parallel, the bounds are tight, however close the arcs are. Points with the
+    /// same parameter are compared, and heights are measured from the direction of this section's
+    /// chord.
     ///
-    /// If the weights are equal, a point of one arc is the same weighted mean of its three control
-    /// points as the other's point is of its own. An error in x counts with the steepest tangent. A
-    /// different weight moves a point by at most its distance from the control point. The control
-    /// point of a narrow arc is uncertain along the arc, where little depends on it. A point is off
-    /// by less than eight times the area's error divided by the width, and by the rounding of x,
-    /// which moves no more area than that rounding times the arc's height.
+    /// If the weights are equal, a point of each arc is the same weighted mean of that arc's three
+    /// control points. An error in x counts with the slope of the steepest tangent. A different
+    /// weight moves a point by at most the point's distance from the control point, times the
+    /// difference. The control point of a narrow arc is uncertain along the arc, where little
+    /// depends on it. The error of a point is less than eight times the area's error divided by the
+    /// width, plus the rounding of x; that rounding moves no more area than itself times the arc's
+    /// height.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
@@ -419,8 +435,8 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
-        // About twenty operations on coordinates of both arcs, and the errors of the coordinates.
-        // The error term counts on both sides, for three points and the chord.
+        // There are about twenty operations on the coordinates of both arcs, and the coordinates
+        // have errors. The error term counts on both sides, for three points and the chord.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest
             + (aside + rounding) * steepest
@@ -432,13 +448,15 @@ impl Section {
         Some([rise + off, apart + off])
     }
 
-    /// Integrates y over the range.
+    /// Integrates y over x from `left` to `right`, the ends of the section.
     pub fn integral(&self, left: f64, right: f64) -> f64 {
         let chord = 0.5 * (right - left) * (self.y[0] + self.y[2]);
         chord + self.arc.map_or(0.0, |(bulge, arc)| bulge * arc.area())
     }
 
-    /// Bounds the distance of two sections of nearly equal curves; infinite for other ones.
+    /// Bounds the distance in y between two sections over the same range of x. Returns infinity
+    /// unless both are straight or both are arcs that bulge to the same side; the bound is tight if
+    /// the curves are nearly equal.
     pub fn distance(&self, other: &Self) -> f64 {
         let ends = (self.y[0] - other.y[0])
             .abs()

@@ -1,16 +1,16 @@
-//! The work that may be spent on a pixel and on a picture, and the accuracy that is asked for.
+//! Limits on the work on a pixel and on a picture, and the requested accuracy.
 //!
-//! In: the work of the next step, in units. Out: whether to do it. A step that is not done is
-//! replaced by the mean of what may be seen, with the whole area as its bound, so that every pixel
-//! ends in any view. Work is counted instead of timed, so that the same scene gives the same
-//! picture.
+//! In: the work of the next step, in units of about 50 ns. Out: whether to do the step. If a step
+//! is not done, its result is the mean of what may be seen, with the whole area as the bound. Every
+//! pixel therefore ends in any view. Work is counted, not timed, so that the same scene gives the
+//! same picture.
 
 use std::{
     cell::Cell,
     sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
 };
 
-/// Maximum work on a pixel, in units, about 0.6 seconds. A unit is the time to cut one square of a
+/// Maximum work on a pixel, in units: about 0.6 seconds. A unit is the time to cut one square of a
 /// board out of a polygon, about 50 ns on the machine where it was measured.
 const PIXEL_WORK: f64 = 1.2e7;
 
@@ -22,7 +22,7 @@ pub(super) struct PictureWork {
 }
 
 impl PictureWork {
-    /// Starts a picture whose work is limited, in units.
+    /// Starts counting the work on a picture. `limit` is in units.
     pub fn new(limit: u64) -> Self {
         let spent = AtomicU64::new(0);
         Self { spent, limit }
@@ -48,15 +48,15 @@ impl PictureWork {
 #[derive(Debug)]
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
-    /// Error bound that is asked for, in pixel areas. Truncation errors are limited to fractions
-    /// of it.
+    /// Requested error bound, as a fraction of the pixel's area. Truncation errors are limited to
+    /// fractions of it.
     pub tolerance: f64,
     /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,
 }
 
 impl<'a> PixelBudget<'a> {
-    /// Starts the budget of a pixel.
+    /// Creates the budget of a pixel with the full work.
     pub fn new(tolerance: f64, cancel: &'a AtomicBool) -> Self {
         Self {
             left: Cell::new(PIXEL_WORK),
@@ -65,7 +65,7 @@ impl<'a> PixelBudget<'a> {
         }
     }
 
-    /// Returns the work spent so far.
+    /// Returns the work spent on the pixel so far, in units.
     pub fn spent(&self) -> f64 {
         PIXEL_WORK - self.left.get()
     }
@@ -75,13 +75,14 @@ impl<'a> PixelBudget<'a> {
         self.cancel.load(Relaxed)
     }
 
-    /// Returns whether nothing more should be computed.
+    /// Returns whether the budget is used up or the picture is cancelled, so that nothing more
+    /// should be computed.
     pub fn is_spent(&self) -> bool {
         self.left.get() <= 0.0 || self.is_cancelled()
     }
 
-    /// Charges the work of the next step if the budget affords it, and returns whether it does. An
-    /// infinite amount or NaN is never affordable.
+    /// Charges `work` if the budget affords it, and returns whether it does. It never affords
+    /// infinity or NaN, nor anything once the picture is cancelled.
     pub fn try_charge(&self, work: f64) -> bool {
         let is_affordable = self.affords(work);
         if is_affordable {
@@ -90,12 +91,12 @@ impl<'a> PixelBudget<'a> {
         is_affordable
     }
 
-    /// Returns whether the budget affords the work.
+    /// Returns whether the budget affords `work` and the picture is not cancelled.
     pub fn affords(&self, work: f64) -> bool {
         work <= self.left.get() && !self.is_cancelled()
     }
 
-    /// Charges work that is done already, even beyond the limit.
+    /// Charges work that is done in any case, even beyond the limit.
     pub fn charge(&self, work: f64) {
         self.left.set(self.left.get() - work);
     }

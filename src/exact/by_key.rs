@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-/// A number, and the value that is ordered by it.
+/// A number and a value; the number alone determines the order.
 pub(super) struct ByKey<T>(pub f64, pub T);
 
 impl<T> Ord for ByKey<T> {

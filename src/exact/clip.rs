@@ -1,4 +1,5 @@
-//! Clipping of convex polygons by lines, for all of `exact` except the SIMD lanes of `strips_simd`.
+//! Clipping of convex polygons by lines. Everything in `exact` uses it except the SIMD lanes of
+//! `strips_simd`.
 //!
 //! In: a convex polygon and a linear form. Out: the parts on both sides of the form's zero line
 //! (Sutherland and Hodgman, "Reentrant polygon clipping", 1974, one half-plane at a time). A
@@ -6,7 +7,7 @@
 
 use glam::DVec2;
 
-/// The pixel, or the sub-pixel in its place, as a polygon.
+/// Corners of the pixel, or of a sub-pixel in its own coordinates, in order.
 pub(super) const PIXEL: [DVec2; 4] = [
     DVec2::new(-0.5, -0.5),
     DVec2::new(0.5, -0.5),
@@ -14,11 +15,12 @@ pub(super) const PIXEL: [DVec2; 4] = [
     DVec2::new(-0.5, 0.5),
 ];
 
-/// The segment of a polygon that lies on its cutting line.
+/// Segment of the cutting line inside a polygon; `None` if the line misses the polygon.
 pub(super) type Chord = Option<[DVec2; 2]>;
 
-/// Appends the parts where the form is negative and where it is positive. Points where it is 0
-/// belong to both. Returns the chord between the parts, or `None` if the line misses the polygon.
+/// Splits a convex polygon by a linear form. Appends the vertices of the part where `form` is not
+/// positive to `negative`, and of the part where it is not negative to `positive`. Returns the
+/// chord between the parts, or `None` if the line misses the polygon.
 pub(super) fn split(
     polygon: &[DVec2],
     form: impl Fn(DVec2) -> f64,
@@ -50,7 +52,7 @@ pub(super) fn split(
     chord
 }
 
-/// Returns the signed area of a polygon, and its perimeter in |dx| + |dy|.
+/// Returns the signed area of a polygon and its perimeter, in which a side counts as |dx| + |dy|.
 pub(super) fn measure(polygon: &[DVec2]) -> (f64, f64) {
     let Some((&origin, others)) = polygon.split_first() else {
         return (0.0, 0.0);

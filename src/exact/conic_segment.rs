@@ -1,11 +1,11 @@
 //! The segment of a conic between an arc and its chord: its area, and the integral of a
 //! checkerboard's sign over it.
 //!
-//! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form; and the
-//! integral of the board's sign, for which the arc is cut where it crosses the board's lines, so
-//! that the segment of each piece lies in one square and the chords bound a convex polygon. The
-//! bound counts displacements by rounding and the area of segments that are neglected because they
-//! are small enough, which limits their number towards the horizon.
+//! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form, and the
+//! integral of the board's sign over the segment. For the integral, the arc is cut at each crossing
+//! with a line of the board. The segment of each piece then lies in one square, and the chords
+//! bound a convex polygon. Segments that are small enough are neglected, which limits their number
+//! towards the horizon. The bound counts their area and the displacements by rounding.
 
 use glam::DVec2;
 
@@ -14,37 +14,41 @@ use super::{
     checker::{BoundedSum, Homography, UNIT, form, square_wave},
 };
 
-/// Half-width, in 1 − w², of the range in which the series of the area is used. Of its 34 terms,
-/// the first omitted one is at most 0.36³⁴ = 8e-16.
+/// Maximum of |1 − w²|, where w is the arc's weight, for which the area is computed by a series.
+/// The first term after its 34 is at most 0.36³⁴ = 8e-16.
 const NEAR_PARABOLA: f64 = 0.36;
 
-/// Maximum number of board lines that an arc may cross without being halved. (Measured: with 48,
-/// boards of small squares behind spheres take up to half as long again.)
+/// Maximum number of lines of a board at which an arc is cut; with more, the arc is halved first.
+/// Measured: with 48, boards of small squares behind spheres take up to half as long again.
 const MAX_LINES: f64 = 12.0;
-/// Maximum area of both halves' segments, relative to the segment of the whole arc. It is a quarter
-/// for a parabola, 0.37 for half an ellipse, and less for a hyperbola; the constant is twice the
-/// largest.
+/// Maximum of the total area of both halves' segments, as a fraction of the segment of the whole
+/// arc; above it, the arc is not halved. The exact fraction is a quarter for a parabola, at most
+/// 0.37 for an ellipse (half of one), and less for a hyperbola. The constant is twice the largest.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.
 ///
-/// Its end tangents meet at `control`. It belongs to an ellipse if w < 1, to a parabola if w = 1,
-/// and to a hyperbola if w > 1 (Farin, "Curves and Surfaces for CAGD", chapter 12).
+/// The tangents at its ends meet at `control`. The arc belongs to an ellipse if w < 1, to a
+/// parabola if w = 1, and to a hyperbola if w > 1 (Farin, "Curves and Surfaces for CAGD", chapter
+/// 12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arc {
     pub start: DVec2,
     pub control: DVec2,
     pub end: DVec2,
-    /// w, greater than 0.
+    /// Weight w of the control point, greater than 0.
     pub weight: f64,
 }
 
 impl Arc {
-    /// Returns the area between the arc and its chord, never negative.
+    /// Returns the area between the arc and its chord, which is never negative.
     ///
-    /// Relative to the triangle start, control, end it is w·(θ − sin θ cos θ)/sin³θ with cos θ = w.
-    /// This is the ratio of a circle's segment of half-angle θ to its triangle, because an affine
-    /// map takes every ellipse to a circle. If w > 1, θ is imaginary.
+    /// Divided by the area of the triangle of `start`, `control` and `end`, it is
+    ///
+    /// w·(θ − sin θ·cos θ)/sin³θ with cos θ = w.
+    ///
+    /// This is the ratio of a circle's segment of half-angle θ to its triangle; an affine map takes
+    /// every ellipse to a circle. If w > 1, θ is imaginary.
     pub(crate) fn area(&self) -> f64 {
         let triangle = 0.5
             * (self.control - self.start)
@@ -53,13 +57,13 @@ impl Arc {
         triangle * triangle_share(self.weight)
     }
 
-    /// Returns the point at parameter t, from 0 to 1.
+    /// Returns the point at the parameter `t`, from 0 to 1.
     pub(crate) fn at(&self, t: f64) -> DVec2 {
         let (point, weight) = self.blossom(t, t);
         point / weight
     }
 
-    /// Returns the arc between two parameters.
+    /// Returns the part of the arc between the parameters `t0` and `t1`.
     pub(crate) fn between(&self, t0: f64, t1: f64) -> Self {
         let (start, w0) = self.blossom(t0, t0);
         let (control, w) = self.blossom(t0, t1);
@@ -72,7 +76,8 @@ impl Arc {
         }
     }
 
-    /// Evaluates the curve's polar form in homogeneous coordinates.
+    /// Evaluates the curve's polar form (blossom) at the parameters `s` and `t`. Returns the point
+    /// in homogeneous coordinates: times its weight, and the weight.
     fn blossom(&self, s: f64, t: f64) -> (DVec2, f64) {
         let (first, last) = ((1.0 - s) * (1.0 - t), s * t);
         let middle = self.weight * (s * (1.0 - t) + t * (1.0 - s));
@@ -83,7 +88,8 @@ impl Arc {
     }
 }
 
-/// Returns the area between an arc of weight w and its chord, relative to its triangle.
+/// Returns the area between an arc of weight `w` and its chord, divided by the area of the triangle
+/// of the chord and the control point.
 fn triangle_share(w: f64) -> f64 {
     let z = (1.0 - w) * (1.0 + w);
     if z.abs() < NEAR_PARABOLA {
@@ -96,8 +102,11 @@ fn triangle_share(w: f64) -> f64 {
     (w / s) * (w / s - libm::log(w + s) / s / s)
 }
 
-/// Evaluates (θ − sin θ cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k with z = sin²θ, the integral
-/// of 2x²/√(1 − x²).
+/// Evaluates the series, with z = sin²θ,
+///
+/// (θ − sin θ·cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k,
+///
+/// which follows from the integral of 2x²/√(1 − x²).
 fn series(z: f64) -> f64 {
     const TERMS: usize = 34;
     const COEFFICIENTS: [f64; TERMS] = {
@@ -111,7 +120,7 @@ fn series(z: f64) -> f64 {
         }
         all
     };
-    // As |z| < 2^−bits, these terms leave less than a rounding.
+    // Because |z| < 2^−`bits`, the terms after these add up to less than a rounding.
     let bits = (-1 - libm::ilogb(z)).max(1);
     let terms = (f64::MANTISSA_DIGITS as usize / bits as usize + 1).min(TERMS);
     let terms = COEFFICIENTS[..terms].iter().rev();
@@ -119,12 +128,14 @@ fn series(z: f64) -> f64 {
 }
 
 impl Homography {
-    /// Integrates s(a)·s(b) over the region between an arc and its chord, in square pixels.
+    /// Integrates the board's sign s(a)·s(b) over the region between an arc and its chord, in
+    /// square pixels.
     ///
     /// The arc is cut where it crosses a line of the board, so that the segment of each piece lies
-    /// in one square, and the rest is a convex polygon. Pieces with negligible segments are
-    /// replaced by their chords. Of a segment of area A, n pieces have segments of A/n³ each and
-    /// A/n² together, which equals the tolerance t if each has t^(3/2)/√A.
+    /// in one square. What remains is a convex polygon. Pieces with negligible segments are
+    /// replaced by their chords. If a segment of area A is cut into n pieces, each of their
+    /// segments has the area A/n³, and all together have A/n². This total equals the tolerance t if
+    /// each has t^(3/2)/√A.
     pub(super) fn over_segment(&self, arc: &Arc, budget: &PixelBudget) -> BoundedSum {
         let area = arc.area();
         if let Some(sign) = self.square_of(arc) {
@@ -140,7 +151,8 @@ impl Homography {
         chords.sum.or_unknown(area)
     }
 
-    /// Adds the segments of an arc whose segment has this area, and the points where it is cut.
+    /// Cuts an arc whose segment has the area `area`. Adds the integrals over the segments of its
+    /// pieces and the ends of the pieces to `chords`.
     fn cut(&self, arc: &Arc, area: f64, chords: &mut Chords) {
         if let Some(sign) = self.square_of(arc) {
             chords.sum.add(over_one_square(area, sign));
@@ -160,7 +172,7 @@ impl Homography {
         }
         let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
         let areas = halves.map(|half| half.area());
-        // Fails for numbers that are too large or too small to represent the arc.
+        // The comparison fails if numbers are too large or too small to represent the arc.
         let is_halved = areas[0] + areas[1] < MAX_HALVES_SHARE * area;
         if !is_halved {
             chords.sum.bound += if area.is_nan() { 1.0 } else { area };
@@ -197,7 +209,7 @@ impl Homography {
                     .across
                     .map(|across| square_wave(form(&across, middle) * depth));
                 let mut segment = over_one_square(piece.area(), a * b);
-                // The lines of the square are off by roundings.
+                // The lines of the board are displaced by roundings.
                 segment.bound += self.displacement_error(&[piece.start, piece.control, piece.end]);
                 chords.sum.add(segment);
                 chords.points.push(piece.end);
@@ -206,8 +218,8 @@ impl Homography {
         }
     }
 
-    /// Returns the sign of the square that contains the arc's triangle, or `None` if there is no
-    /// such square.
+    /// Returns the sign of the square that contains the arc's triangle, or `None` if no single
+    /// square certainly does.
     fn square_of(&self, arc: &Arc) -> Option<f64> {
         let mut sign = 1.0;
         for i in 0..2 {
@@ -220,8 +232,9 @@ impl Homography {
         Some(sign)
     }
 
-    /// Returns the first and last line of a family (a = i or b = i) that may cross an arc, or
-    /// `None` if the arc reaches the horizon.
+    /// Returns the numbers of the first and last line of a family (0: a = i, 1: b = i) that may
+    /// cross an arc. The first is greater than the last if none does. Returns `None` if the arc's
+    /// triangle may reach the horizon.
     fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in [arc.start, arc.control, arc.end] {
@@ -237,12 +250,12 @@ impl Homography {
     }
 }
 
-/// Integrates over a segment of this area within one square.
+/// Integrates the board's sign over a segment of area `area` within one square of sign `sign`.
 fn over_one_square(area: f64, sign: f64) -> BoundedSum {
     BoundedSum {
         value: sign * area,
-        // The area of a triangle has five operations. The ratio has up to ten, of terms whose
-        // difference is a quarter of their size at the ends of the series' range.
+        // The area of a triangle has five operations. The ratio has up to ten. At the ends of the
+        // series' range, a difference in the ratio is only a quarter of its terms.
         bound: 48.0 * UNIT * area,
     }
 }
@@ -251,11 +264,11 @@ fn over_one_square(area: f64, sign: f64) -> BoundedSum {
 struct Chords {
     points: Vec<DVec2>,
     sum: BoundedSum,
-    /// Maximum area, in square pixels, of a segment that is neglected.
+    /// Maximum area of a neglected segment, in square pixels.
     neglected: f64,
 }
 
-/// Returns the roots in (0, 1) of f0·(1 − t)² + f1·t(1 − t) + f2·t².
+/// Returns the roots between 0 and 1 of f0·(1 − t)² + f1·t·(1 − t) + f2·t².
 fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
     // Without scaling, the products underflow for extremely large squares.
     let scale = 1.0 / f0.abs().max(f1.abs()).max(f2.abs());
@@ -264,8 +277,8 @@ fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
     if discriminant < 0.0 {
         return [None, None];
     }
-    // With r = t/(1 − t) the polynomial is f2·r² + f1·r + f0, and t = r/(1 + r). Neither root is a
-    // difference of nearly equal numbers.
+    // With r = t/(1 − t) the polynomial is proportional to f2·r² + f1·r + f0, and t = r/(1 + r).
+    // Neither root is computed as a difference of nearly equal numbers.
     let q = -0.5 * (f1 + discriminant.sqrt().copysign(f1));
     [(q, f2), (f0, q)].map(|(above, below)| {
         let t = above / (above + below);
@@ -290,7 +303,7 @@ mod tests {
                 weight: cos,
             };
             let expected = if degrees < 20 {
-                // With x = 2θ, (x − sin x)/2 = x³/12 − x⁵/240 + …
+                // The segment is (x − sin x)/2 = x³/12 − x⁵/240 + … with x = 2θ.
                 let x = 2.0 * theta;
                 let mut term = x * x * x / 6.0;
                 let mut sum = 0.0;
@@ -303,7 +316,8 @@ mod tests {
                 theta - sin * cos
             };
             assert!(
-                // 1/cos θ is a coordinate, and the triangle's height is its difference from cos θ.
+                // The triangle's height is the difference between the coordinate 1/cos θ and cos
+                // θ, and loses digits for small θ.
                 (arc.area() / expected - 1.0).abs() < 4e-15 + 2.0 * f64::EPSILON / (theta * theta),
                 "{degrees}: {} {expected}",
                 arc.area()
@@ -316,7 +330,8 @@ mod tests {
     #[test]
     fn parabola_and_hyperbola() {
         assert_eq!(triangle_share(1.0), 2.0 / 3.0);
-        // x·y = 1 from x = 1 to x = k: the tangents meet at (2k, 2)/(k + 1), and w² = (k + 1)²/4k.
+        // The arc is x·y = 1 from x = 1 to x = k. Its tangents meet at (2k, 2)/(k + 1), and w² = (k
+        // + 1)²/4k.
         for k in [1.5_f64, 2.0, 3.0, 4.0, 5.0, 10.0, 1e3, 1e6, 1e12] {
             let weight = (k + 1.0) / (2.0 * k.sqrt());
             let arc = Arc {

@@ -1,21 +1,23 @@
-//! Exact pixel means: the area integral itself, without samples.
+//! Exact pixel means: the mean of a pixel is computed by exact integration over its area, not by
+//! sampling.
 //!
-//! In: the prepared scene and the wanted part of the picture. Out: for each pixel its mean in
-//! linear light, with a bound on its error. In ordinary views (a vertical field of view of 1 to 170
-//! degrees, squares of 1e-4 to 1e6 times the eye's height, numbers within 1e±9 or 0) the bound is
-//! at most 1e-9, unless the caller asks for less accuracy. In other views the bound may be larger,
-//! up to 1 where only the mean of two colours is known. The work on a pixel is limited to about a
-//! second on the machine where it was measured (`budget`).
+//! In: the prepared scene and the part of the picture to compute. Out: the mean of each pixel in
+//! linear light, with a bound on the mean's error. In ordinary views, the bound is at most 1e-9
+//! unless the caller asks for less accuracy. A view is ordinary if the vertical field of view is 1
+//! to 170 degrees, squares are 1e-4 to 1e6 times the eye's height, and all numbers are 0 or within
+//! 1e±9. In other views the bound may be larger, up to 1 if only the mean of two colours is known.
+//! The work on a pixel is limited to about a second on the machine where it was measured
+//! (`budget`).
 //!
-//! What is seen is bounded by straight lines and conics, and shows one colour or one checkerboard
-//! between them. So:
+//! Lines and conics divide a pixel into regions, each of which shows one colour or one
+//! checkerboard. The means are therefore computed in four steps:
 //!
-//! 1. The picture is quartered until a part certainly shows one colour or is a single pixel. Pixels
-//!    that show only a checkerboard, and few of its lines, are computed eight at a time
+//! 1. The picture is quartered until each part certainly shows one colour or is a single pixel.
+//!    Pixels that show only a checkerboard, and few of its lines, are computed eight at a time
 //!    (`checker::board_pixels`).
-//! 2. In any other pixel, the boundaries of what may be seen there cut it into regions: convex
-//!    polygons if all boundaries are lines (`arrangement`), slabs between neighbouring curves if
-//!    some are conics (`slabs`). A pixel with too many curves is quartered first.
+//! 2. In any other pixel, the boundaries of what may be seen there cut it into regions. These are
+//!    convex polygons if all boundaries are lines (`arrangement`), and slabs between neighbouring
+//!    curves if some are conics (`slabs`). A pixel with too many curves is quartered first.
 //! 3. One ray into each region, decided as exactly as that of a sample, determines what is seen
 //!    there (`region`). Hidden boundaries do no harm, because both sides of them get the same
 //!    colour. (Catmull, "A hidden-surface algorithm with anti-aliasing", 1978, integrates a pixel's
@@ -65,59 +67,62 @@ use self::{
     region::{Regions, Shares},
 };
 
-/// Default error bound that is asked for, in pixel areas. It is a little below 1e-9, so that the
-/// result is within 1e-9 after the rounding of sums.
+/// Default error bound that is requested, as a fraction of the pixel's area. It is a little below
+/// 1e-9, so that the result is still within 1e-9 after the rounding of sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
-/// Maximum number of curves in a piece of the side of a pixel; a piece with more is quartered
-/// before anything is computed. n curves cross in about n² places, at each of which all curves have
-/// to be examined, whereas about half of the curves pass through a quarter. (Measured: a heap of
-/// 300 objects takes half the time with 6 that it takes with 24, and with 96 seven times as long; a
-/// dozen objects take a tenth longer with 6.)
+/// Maximum number of curves that pass through a whole pixel; with more, the pixel is quartered
+/// before anything is computed. n curves cross at about n² points, and at each of them all curves
+/// have to be examined. About half of the curves pass through each quarter. Measured: a heap of 300
+/// objects takes half as long with 6 as with 24, and seven times as long with 96; a dozen objects
+/// take a tenth longer with 6.
 const MAX_CURVES: usize = 12;
-/// Number of curves by which the maximum grows with each quartering, because curves that stay
-/// together in small pieces are unlikely to part in smaller ones. (Measured on a heap: 1 takes two
-/// thirds of the time, 16 takes four times as long.)
+/// Number of curves by which the maximum grows with each quartering. Curves that are still together
+/// in a small piece are unlikely to be separated in smaller ones. Measured on a heap: with 1, the
+/// running time is two thirds; with 16, it is four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
-/// Maximum number of quarterings per pixel of pieces that are computed already, the piece with the
-/// largest bound first, as long as the bound exceeds the tolerance. Near a point that a few curves
-/// share, each quartering reduces the bound to a quarter, so that 16 reduce it by a factor of 2^32.
+/// Maximum number of times per pixel that a piece already computed is quartered. The piece with the
+/// largest bound comes first, as long as the pixel's bound exceeds the tolerance. Near a point that
+/// a few curves share, each quartering reduces the bound to a quarter, so that 16 reduce it by a
+/// factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
-/// Maximum memory of a pixel's queued pieces, in bytes, unless the whole pixel as one piece takes
-/// more. A pixel that needs more is not divided any further, and its bound counts the rest as
-/// doubtful. Memory that one piece needs while it is computed, which grows with its objects, is not
-/// counted.
+/// Maximum memory of a pixel's queued pieces, in bytes; above it, the pixel is not divided any
+/// further, and the bound counts what is not computed as doubtful. A whole pixel as a single piece
+/// may take more. The memory that a piece needs only while it is computed, which grows with its
+/// objects, is not counted.
 const MAX_MEMORY: usize = 64 << 20;
-/// Side of a piece, in pixels, below which it is not divided: its area is less than a rounding.
+/// Side of a piece, in pixels, up to which it is not quartered because of too many curves. Its area
+/// is then less than a rounding of the pixel's.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
-/// Work per piece, in units. The values of the work constants are not critical: they only end what
-/// takes too long.
+/// Work per piece, in units of about 50 ns. The values of the work constants are not critical,
+/// because they only end computations that take too long.
 const PIECE_WORK: f64 = 100.0;
-/// Work per object of a piece, in units.
+/// Work per object of a piece, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
-/// Work per pair of curves in a piece with a conic, in units. (Measured: a heap of 10⁴ spheres
-/// takes twice as long as the work of its regions alone suggests.)
+/// Work per ordered pair of curves in a piece that a conic passes through, in units of about 50 ns.
+/// It is charged in addition to the work of the regions of the piece, which accounts for only half
+/// of the time that was measured for a heap of 10⁴ spheres.
 const SLABS_WORK: f64 = 60.0;
-/// Work of a pixel that shows only a few squares of a checkerboard, in units.
+/// Work of a pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
 const BOARD_PIXEL_WORK: u64 = 10;
 
-/// A computed pixel: the means of N values of its colours, each from 0 to 1. By default these are
-/// the channels in linear light.
+/// A computed pixel: the means of the N values that each colour has, each from 0 to 1. By default
+/// the values are the three channels in linear light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactPixel<const N: usize = 3> {
     /// Mean of each value.
     pub mean: [f64; N],
-    /// Maximum error of each mean.
+    /// Maximum absolute error of each mean.
     pub bound: f64,
 }
 
-/// Computes the pixels of one picture.
+/// Computes the exact pixels of a picture.
 #[derive(Debug)]
 pub struct Integrator<'a, const N: usize = 3> {
     world: &'a World,
     quartering: Quartering<'a>,
-    /// Values of each colour of the palette.
+    /// Values of each colour, by palette slot.
     colors: Vec<[f64; N]>,
-    /// Error bound that is asked for, in pixel areas.
+    /// Error bound that is requested, as a fraction of the pixel's area.
     tolerance: f64,
     work: PictureWork,
 }
@@ -131,13 +136,14 @@ struct PixelPiece {
     state: PieceState,
 }
 
-/// How far the computation of a piece has come.
+/// State of the computation of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PieceState {
     /// Too many curves pass through the piece: nothing is computed yet.
     Crowded,
     Computed,
-    /// The piece is computed, and quartering its parent did not halve the bound.
+    /// The piece is computed and is not quartered, because quartering its parent did not halve the
+    /// bound.
     Final,
 }
 
@@ -161,14 +167,14 @@ impl PixelPiece {
 }
 
 impl<'a> Integrator<'a> {
-    /// Integrates the linear light of a prepared scene.
+    /// Prepares to integrate the linear light of a prepared scene.
     pub fn new(world: &'a World) -> Self {
         Self::for_values(world, Color::to_linear)
     }
 }
 
 impl<'a, const N: usize> Integrator<'a, N> {
-    /// Integrates N values per colour, as `values` maps them from the colour.
+    /// Prepares to integrate N values per colour, which `values` computes from the colour.
     pub fn for_values(world: &'a World, values: impl Fn(Color) -> [f64; N]) -> Self {
         Self {
             world,
@@ -179,27 +185,27 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Sets the error bound that is asked for.
+    /// Sets the requested error bound, as a fraction of the pixel's area.
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
     }
 
-    /// Limits the work, after which [`pixels`](Self::pixels) gives up and [`shares`](Self::shares)
-    /// takes the colour in the middle of each further pixel.
+    /// Limits the work, in units of about 50 ns. Above the limit, [`pixels`](Self::pixels) returns
+    /// `None`, and [`shares`](Self::shares) takes the colour in the middle of each further pixel.
     pub fn with_work_limit(mut self, limit: u64) -> Self {
         self.work = PictureWork::new(limit);
         self
     }
 
-    /// Returns the work spent so far, in units of about 50 ns. It is the same for the same pixels
+    /// Returns the work spent so far, in units of about 50 ns. The same pixels take the same work
     /// on every machine.
     pub fn work(&self) -> u64 {
         self.work.spent()
     }
 
-    /// Computes the pixels of a part of the picture, row by row. Returns `None` if it is cancelled,
-    /// which also ends within a pixel, or if the work limit is exceeded.
+    /// Computes the pixels of a part of the picture, row by row. Returns `None` if `cancel` is set,
+    /// even within a pixel, or if the work limit is exceeded.
     pub fn pixels(&self, part: Area, cancel: &AtomicBool) -> Option<Vec<ExactPixel<N>>> {
         let black = ExactPixel {
             mean: [0.0; N],
@@ -212,7 +218,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut curves = Vec::new();
         let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
-        // Checkerboard pixels for which the batches are not accurate enough.
+        // These are the checkerboard pixels that the batches do not compute accurately enough.
         let mut deferred = Vec::new();
         let is_over = || cancel.load(Relaxed) || self.work.is_exceeded();
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
@@ -253,8 +259,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Calls `show` with areas of one colour, and for each other pixel with the share of every
-    /// colour, by palette slot. Requires a world made by [`World::by_object`]. Once the work limit
+    /// Calls `show` for each area of one colour and for each other pixel, with the share of every
+    /// colour by palette slot. The world must be made by [`World::by_object`]. Once the work limit
     /// is exceeded, the colour in the middle of a pixel stands for the whole pixel. Returns whether
     /// every share is known to within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
@@ -285,7 +291,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         is_exact
     }
 
-    /// Computes the mean of one pixel in which only the candidates may be seen.
+    /// Computes the mean of the pixel (`x`, `y`), in which only the candidates may be seen.
     fn pixel(
         &self,
         x: u32,
@@ -304,8 +310,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Computes the share of each colour in one pixel. The pixel is divided if too many curves pass
-    /// through it or its bound exceeds the tolerance.
+    /// Computes the share of each colour in the pixel (`x`, `y`). The pixel is quartered if too
+    /// many curves pass through it or if its bound exceeds the tolerance.
     fn pixel_shares(
         &self,
         x: u32,
@@ -325,8 +331,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full heap moves to twice as many places, beside which the old ones exist for a
-                // moment.
+                // A full heap is copied to twice as much memory, and for a moment the old memory
+                // exists as well.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -373,8 +379,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         shares
     }
 
-    /// Moves the mean to the middle of the possible range: within its bound, and between the least
-    /// and the greatest value of all colours that may be seen there.
+    /// Returns the pixel with its mean in the middle of the possible range, and half of the range
+    /// as the bound. The range is within the bound of the given mean, and between the least and the
+    /// greatest value of all colours that may be seen in the pixel.
     fn center_in_range(
         &self,
         pixel: &ExactPixel<N>,
@@ -402,7 +409,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Sets a checkerboard pixel from its integral if that is accurate enough, or else defers it.
+    /// Sets a checkerboard pixel in `film` from its integral, or appends it to `deferred` if there
+    /// is no integral or its bound exceeds the tolerance.
     fn set(
         &self,
         pixel: BoardPixel,
@@ -410,7 +418,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film: &mut PartPixels<N>,
         deferred: &mut Vec<BoardPixel>,
     ) {
-        // A share is rounded once, in addition to the mean of two.
+        // The share is rounded once, in addition to the roundings of a mean of two colours.
         let roundings = UNIT + rounding(2);
         let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {
@@ -421,7 +429,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film.set(pixel.x, pixel.y, self.mean(&shares, bound));
     }
 
-    /// Computes the shares of a piece unless too many curves pass through it.
+    /// Computes the shares of a piece. If too many curves pass through it or the budget is spent,
+    /// returns a crowded piece with unknown shares.
     fn piece(
         &self,
         sub_pixel: SubPixel,
@@ -442,7 +451,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
             let shares = match lines.collect::<Option<Vec<_>>>() {
                 Some(lines) => arrangement::shares(&lines, regions),
                 None => {
-                    // Each conic is followed past all other curves.
+                    // The work grows with the pairs of curves, because each conic is compared with
+                    // all other curves.
                     budget.charge(SLABS_WORK * (curves.len() * curves.len()) as f64);
                     slabs::shares(curves, regions)
                 }
@@ -477,9 +487,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 }
 
-/// Returns the rounding error of a mean of `colors` colours. The sum of products and the sum of
-/// shares each have as many roundings as there are colours; a product has one and so does the
-/// quotient. A single colour has none.
+/// Returns the maximum rounding error of a mean of `colors` colours. The sum of products and the
+/// sum of shares each have as many roundings as there are colours; the products add one, and so
+/// does the quotient. A single colour has no rounding error.
 fn rounding(colors: usize) -> f64 {
     match colors {
         0..=1 => 0.0,

@@ -6,12 +6,12 @@ use crate::area::Area;
 /// The pixels of a part of the picture.
 pub(super) struct PartPixels<const N: usize> {
     pub part: Area,
-    /// Row by row.
+    /// Pixels of the part, row by row.
     pub pixels: Vec<ExactPixel<N>>,
 }
 
 impl<const N: usize> PartPixels<N> {
-    /// Fills an area that shows one colour.
+    /// Sets all pixels of an area that shows one colour, with the bound 0.
     pub fn fill(&mut self, part: Area, mean: [f64; N]) {
         for y in part.y..part.y + part.height {
             let start = self.part.index(part.x, y);
@@ -19,7 +19,7 @@ impl<const N: usize> PartPixels<N> {
         }
     }
 
-    /// Sets one pixel.
+    /// Sets the pixel (`x`, `y`) of the picture.
     pub fn set(&mut self, x: u32, y: u32, pixel: ExactPixel<N>) {
         let index = self.part.index(x, y);
         self.pixels[index] = pixel;

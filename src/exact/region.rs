@@ -1,10 +1,10 @@
 //! The regions of a sub-pixel, and what is seen in each.
 //!
 //! In: regions between boundaries, with a point inside each. Out: the share of each colour in the
-//! sub-pixel, with a bound. One ray through the point decides what is seen; a checkerboard is
-//! integrated by `checker` and `conic_segment`. The bound adds their bounds, the doubtful areas
-//! that callers report, and the difference between the total area of the regions and that of the
-//! sub-pixel.
+//! sub-pixel, with an error bound. One ray through the point decides what is seen in a region; a
+//! checkerboard is integrated by `checker` and `conic_segment`. The bound is the sum of their
+//! bounds, of the doubtful areas that callers report, and of the difference between the regions'
+//! total area and that of the sub-pixel.
 
 use std::mem;
 
@@ -21,28 +21,30 @@ use super::{
     conic_segment::Arc,
 };
 
-/// Work per region, in units.
+/// Work per region, in units of about 50 ns.
 const REGION_WORK: f64 = 4.0;
-/// Work per object that the ray of a region may meet, in units.
+/// Work per object that a region's ray may hit, in units of about 50 ns.
 const RAY_WORK: f64 = 0.5;
-/// Work per object that the ray of a region may meet, in units, in the last precision.
+/// Work per object that a region's ray may hit, in units of about 50 ns, in the highest precision
+/// ([`Big`]).
 const BIG_RAY_WORK: f64 = 200.0;
 
-/// Share of each colour in a sub-pixel.
+/// Shares of the colours in a sub-pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
-    /// Palette slots with the area that shows each; the areas add up to 1 except for rounding.
+    /// Palette slots, each with the share of the sub-pixel's area that shows its colour. The
+    /// shares add up to 1 except for rounding.
     pub by_slot: Vec<(usize, f64)>,
-    /// Maximum area that may have the wrong colour.
+    /// Maximum share of the sub-pixel that may have the wrong colour.
     pub bound: f64,
 }
 
-/// Adds up the regions of one sub-pixel.
+/// Sum of the colours' shares over the regions of a sub-pixel.
 pub struct Regions<'a> {
     world: &'a World,
     sub_pixel: SubPixel,
     candidates: &'a [VisibilityCandidate],
-    /// Boards met so far, by object.
+    /// Boards that regions have shown so far, with the index of each one's object.
     boards: Vec<(usize, LocalBoard)>,
     shares: Shares,
     /// Work that may still be spent on the pixel.
@@ -54,15 +56,16 @@ pub struct LocalBoard {
     pub board: Homography,
     /// Whether the square [0, 1)² has the second colour.
     pub odd: bool,
-    /// Maximum error of its forms' values, relative to the size of their terms.
+    /// Maximum error of the values of the board's forms, relative to the sizes of their terms.
     relative_error: f64,
 }
 
 /// A region: a polygon, with arcs over some of its sides.
 pub struct Region<'a> {
-    /// Convex, with its vertices in order.
+    /// Vertices of the polygon, which is convex, in order.
     pub polygon: &'a [DVec2],
-    /// Each with 1 if it bulges outwards, −1 if inwards.
+    /// Arcs over sides of the polygon, each with 1 if it bulges outwards or −1 if it bulges
+    /// inwards.
     pub arcs: &'a [(f64, Arc)],
     /// Area, in square pixels.
     pub area: f64,
@@ -71,7 +74,7 @@ pub struct Region<'a> {
 }
 
 impl<'a> Regions<'a> {
-    /// Starts a sub-pixel in which only the candidates may be seen.
+    /// Starts an empty sub-pixel in which only the candidates may be seen.
     pub fn new(
         world: &'a World,
         sub_pixel: SubPixel,
@@ -88,7 +91,7 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// Adds a region that no boundary crosses.
+    /// Adds the colours of a region, which no boundary crosses, to the shares.
     pub fn add(&mut self, region: &Region) {
         let Some(object) = self.seen(region) else {
             return self.shares.add(self.world.background(), region.area);
@@ -110,8 +113,8 @@ impl<'a> Regions<'a> {
             sum.bound += segment.bound;
         }
         let half = if local_board.odd { -0.5 } else { 0.5 } * sum.value;
-        // The board's own bound assumes forms with one rounding per factor. No share exceeds the
-        // area, whatever the forms.
+        // The board's own bound assumes that each factor of a form has one rounding; here the forms
+        // may have greater errors. No share exceeds the area, however large these errors.
         let bound = 0.5 * sum.bound * (1.0 + local_board.relative_error / f64::UNIT);
         let bound = bound.min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
@@ -119,8 +122,9 @@ impl<'a> Regions<'a> {
         self.shares.bound += bound;
     }
 
-    /// Returns the object that is seen in a region. If double-double is not certain, the point may
-    /// lie next to a boundary, and all of the region counts as doubtful.
+    /// Returns the object that is seen in a region, `None` for the background. If double-double
+    /// arithmetic does not decide this with certainty, the point may lie next to a boundary, and
+    /// the region's whole area is added to the doubtful area.
     fn seen(&mut self, region: &Region) -> Option<usize> {
         let (object, is_certain) = self.object_at(region.inside);
         if !is_certain {
@@ -129,8 +133,9 @@ impl<'a> Regions<'a> {
         object
     }
 
-    /// Returns the object that is seen at a point, and whether double-double is certain. Returns
-    /// `None` and `false` if the budget does not afford the last precision, which may be needed.
+    /// Returns the object that is seen at a point (`None` for the background), and whether
+    /// double-double arithmetic decides this with certainty. Returns `None` and `false` if the
+    /// budget does not afford the highest precision, which may be needed.
     fn object_at(&self, at: DVec2) -> (Option<usize>, bool) {
         let (budget, count) = (self.budget, self.candidates.len() as f64);
         budget.charge(REGION_WORK + RAY_WORK * count);
@@ -148,19 +153,19 @@ impl<'a> Regions<'a> {
         found
     }
 
-    /// Adds area that may be counted in a wrong region, or in none.
+    /// Adds an area, as a share of the sub-pixel, that may be counted in a wrong region or in none.
     pub fn add_doubtful_area(&mut self, area: f64) {
         self.shares.bound += area;
     }
 
-    /// Returns the shares of all regions.
+    /// Returns the shares of the colours in all regions, with a bound of at most 1.
     pub fn finish(mut self) -> Shares {
         let mut shares = mem::take(&mut self.shares);
         // Area that the regions omit or count twice may have any colour.
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // The numbers overflowed.
+            // If numbers overflowed, nothing is known.
             return self.unknown();
         }
         // The error of a channel is at most 1.
@@ -168,7 +173,8 @@ impl<'a> Regions<'a> {
         shares
     }
 
-    /// Returns shares of which only what is seen in the middle of the sub-pixel is known.
+    /// Returns shares with the bound 1. Only the object in the middle of the sub-pixel is examined;
+    /// each of its two colours gets half.
     pub fn unknown(&self) -> Shares {
         let (object, _) = self.object_at(DVec2::ZERO);
         let background = [self.world.background(); 2];
@@ -179,7 +185,8 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// Returns the index of an object's board, or `None` if the object is no checkerboard.
+    /// Returns the index in `boards` of an object's board, which is derived on first use. Returns
+    /// `None` if the object is not a checkerboard.
     fn board(&mut self, object: usize) -> Option<usize> {
         let known = self.boards.iter().position(|(known, _)| *known == object);
         if known.is_some() {
@@ -192,7 +199,9 @@ impl<'a> Regions<'a> {
 }
 
 impl LocalBoard {
-    /// Returns an object in the coordinates of a sub-pixel, or `None` if it is no checkerboard.
+    /// Derives the board of an object in the coordinates of a sub-pixel, in the highest precision
+    /// if double-double leaves too large an error. Returns `None` if the object is not a
+    /// checkerboard.
     pub fn new(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
         let local_board = Self::in_precision::<Double>(world, object, sub_pixel)?;
         if local_board.relative_error < LOOSE_LINE {
@@ -214,7 +223,7 @@ impl LocalBoard {
         let seen = board.local(&sub_pixel.middle(camera), &[side.clone(), side]);
         let forms = [seen.across[0], seen.across[1], seen.below].into_iter();
         let errors = forms.zip(seen.rads).map(|(form, rad)| {
-            // Squares may be too small for the range of `f64`.
+            // The squares may be too small for the range of `f64`.
             let size = size(&form);
             let is_known = size.is_finite() && size > 0.0;
             if is_known { rad / size } else { f64::INFINITY }
@@ -228,7 +237,7 @@ impl LocalBoard {
 }
 
 impl Shares {
-    /// Adds the shares of a part that has `area` of the whole.
+    /// Adds the shares of a part whose area is `area` as a fraction of the whole.
     pub fn add_part(&mut self, part: &Self, area: f64) {
         for &(slot, share) in &part.by_slot {
             self.add(slot, area * share);
@@ -240,7 +249,7 @@ impl Shares {
         match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
             Some((_, share)) => {
                 *share += area;
-                // The rounding of a sum that is at most 1.
+                // This is the rounding of the sum, which is at most 1.
                 self.bound += f64::UNIT;
             }
             None => self.by_slot.push((slot, area)),

@@ -3,10 +3,10 @@
 //! In: the lines and conics that pass through a sub-pixel. Out: the regions between neighbouring
 //! branches in each slab, which are added to [`Regions`].
 //!
-//! Nothing relies on finding every crossing. Each curve lies between its chord and its tangents.
-//! If, by these, two neighbours might cross within a slab, the slab is cut at their crossing if it
-//! is visible from the ends, or else in the middle. If slabs become too narrow to separate the
-//! curves, the remaining area is added to the bound.
+//! Not every crossing has to be found. Each curve lies between its chord and its tangents. If these
+//! do not exclude that two neighbours cross within a slab, the slab is cut: at the crossing if the
+//! order at one of the slab's ends shows it, otherwise in the middle. If slabs become too narrow to
+//! separate the curves, the remaining area is added to the bound.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 
@@ -21,45 +21,46 @@ use super::{
     region::{Region, Regions, Shares},
 };
 
-/// Distance by which curves may be out of order: two y of at most 1, each accurate to eight
-/// roundings.
+/// Maximum distance, in pixels, by which curves may be out of order because of rounding: two y of
+/// at most 1, each accurate to eight roundings.
 const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
-/// Distance, in pixels, below which curves are not separated: a thousand roundings of a coordinate,
-/// and 10⁻¹³ of area.
+/// Distance, in pixels, up to which two curves are not separated; the area between them is added to
+/// the bound. It is a thousand roundings of a coordinate, and amounts to 10⁻¹³ of area.
 const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 
-/// Width, in pixels, below which slabs are not cut. (Measured: a quarter of it and four times as
-/// much change bounds by a fiftieth and times by about a tenth at most.)
+/// Width, in pixels, below which slabs are not cut. Measured: with 2^−50 or 2^−46, bounds change by
+/// at most a fiftieth and the running time by at most about a tenth.
 const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
-/// Number of slabs, in addition to the initial ones, above which slabs are not cut; those still
-/// queued are counted. The remaining doubtful area is in the bound. (Measured: a quarter as many
-/// and four times as many change bounds by a fiftieth and times by about a tenth at most.)
+/// Maximum number of slabs in addition to the initial ones, counting those still queued; above it,
+/// slabs are not cut, and their doubtful area is added to the bound. Measured: with 1024 or 16,384,
+/// bounds change by at most a fiftieth and the running time by at most a tenth.
 const MAX_ADDED_SLABS: usize = 4096;
 
-/// Maximum number of steps of the false position method. Bisection alone gets from a pixel to a
-/// rounding in 53.
+/// Maximum number of steps of the false position method. Bisection alone takes 53 steps from a
+/// pixel to a rounding.
 const MAX_STEPS: usize = 60;
 
-/// Rounding error of the area of a region in a slab, divided by its width: two y of at most 1/2,
-/// each accurate to eight roundings, and as much for products and sums.
+/// Maximum rounding error of the area of a region in a slab, divided by the slab's width. It counts
+/// two y of at most 1/2, each accurate to eight roundings, and as much again for products and sums.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
-/// Returns the shares of a sub-pixel that is cut by curves.
+/// Returns the shares of the colours in a sub-pixel that lines and conics cut.
 pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     let (mut lines, mut graphs) = (Vec::new(), Vec::new());
     let mut cuts = vec![-0.5, 0.5];
     for curve in curves {
         match curve {
             Boundary::Line(line) => {
-                // As in `arrangement`, except that the rounding is that of y, which `ROUNDING`
-                // counts.
+                // The factor is derived in `arrangement`. There the rounding is added to `rad`;
+                // here `ROUNDING` counts it.
                 regions.add_doubtful_area(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
                     None => {
                         let [a, b, c] = line.factors;
-                        // Otherwise the line is too far away, or degenerate.
+                        // If |b| < |a|, the line is nearly vertical. Otherwise it is too far away
+                        // or degenerate, and is left out.
                         if b.abs() < a.abs() {
                             regions.add_doubtful_area((b / a).abs());
                             cuts.push(-c / a);
@@ -78,8 +79,8 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // If each slab leaves one pair of neighbours unseparated, all slabs together leave no more
-    // doubtful area than the tolerance.
+    // If each slab leaves one pair of neighbours unseparated, the doubtful area of all slabs
+    // together is no more than the tolerance.
     let doubtful_limit = regions.budget.tolerance / MAX_ADDED_SLABS as f64;
     let mut all = Slabs {
         lines,
@@ -108,13 +109,15 @@ struct Slabs<'a> {
     graphs: Vec<ConicGraph>,
     regions: Regions<'a>,
     slabs: usize,
-    /// Doubtful area between two neighbours, in square pixels, up to which their slab is not cut.
+    /// Maximum doubtful area between two neighbours, in square pixels, for which their slab is not
+    /// cut.
     doubtful_limit: f64,
 }
 
 impl Slabs<'_> {
-    /// Adds a slab's regions, or returns where to cut the slab. A slab that is too narrow, or
-    /// beyond the limit `max_slabs`, is never cut.
+    /// Adds the regions of the slab from `left` to `right` and returns `None`, or returns the x at
+    /// which to cut the slab. A slab is never cut if it is too narrow or `max_slabs` are reached;
+    /// its doubtful area is then added to the bound.
     fn slab(&mut self, left: f64, right: f64, max_slabs: usize) -> Option<f64> {
         let (middle, width) = (0.5 * (left + right), right - left);
         let is_last = width < MIN_WIDTH || self.slabs >= max_slabs;
@@ -139,8 +142,8 @@ impl Slabs<'_> {
         sections.sort_by(|(_, a), (_, b)| a.y[1].total_cmp(&b.y[1]));
         let place = |y: f64| sections.partition_point(|(_, section)| section.y[1] < y);
         let (first, end) = (place(-0.5), place(0.5));
-        // Compares the pixel's sides with the curves outside, and neighbours inside with each
-        // other.
+        // The pixel's lower and upper side are compared with the curves outside, and neighbours
+        // inside with each other.
         let [bottom, top] = [-0.5, 0.5].map(|y| (Track::Level(y), Section::straight([y; 3])));
         let below = sections[..first].iter().map(|below| (below, &bottom));
         let above = sections[end..].iter().map(|above| (&top, above));
@@ -170,9 +173,10 @@ impl Slabs<'_> {
     }
 }
 
-/// Adds the region between two neighbours.
+/// Adds the region between two neighbours from `left` to `right`, and its doubtful area.
 fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right: f64) {
-    // A steep curve may leave the pixel within a slab that is not cut any more.
+    // A steep curve may leave the pixel within a slab that is not cut any more; its area is
+    // therefore limited to that of the slab.
     let area = (upper.integral(left, right) - lower.integral(left, right)).min(right - left);
     regions.add_doubtful_area((right - left) * (ROUNDING + lower.error + upper.error));
     if area <= 0.0 {
@@ -200,8 +204,8 @@ fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right
     });
 }
 
-/// Returns where to cut a slab in which two tracks may cross: at their crossing if their order at
-/// one end differs from that in the middle, or else in the middle.
+/// Returns the x at which to cut a slab in which two tracks may cross. This is their crossing if
+/// their order at one end differs from the order in the middle, and otherwise the middle.
 fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, right: f64) -> f64 {
     let middle = 0.5 * (left + right);
     let gap = |x: f64| upper.y(x) - lower.y(x);
@@ -215,7 +219,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
     };
     let (mut inside, mut gap_in) = (middle, gap_middle);
     let mut last = Ordering::Equal;
-    // The Illinois variant of false position: an end that stays twice has its value halved.
+    // This is the Illinois variant of false position: if the same end stays twice, its value is
+    // halved.
     for _ in 0..MAX_STEPS {
         let mut at = inside - gap_in * (inside - out) / (gap_in - gap_out);
         if !((at > out.min(inside)) && (at < out.max(inside))) {
@@ -240,7 +245,7 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
             last = Ordering::Less;
         }
     }
-    // A cut closer to an end would gain nothing.
+    // If the crossing is closer to an end than this, a cut there would gain nothing.
     if inside > left + 0.5 * MIN_WIDTH && inside < right - 0.5 * MIN_WIDTH {
         inside
     } else {

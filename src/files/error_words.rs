@@ -1,9 +1,9 @@
-//! The system's errors about files, in plain words.
+//! Expresses the system's errors about files in plain words.
 
 use std::io;
 
-/// Replaces the message of an error with a system's number by plain words; returns any other error
-/// as it is.
+/// Replaces the message of an error of the operating system by plain words. Returns any other error
+/// unchanged.
 pub fn in_words(error: io::Error) -> io::Error {
     use io::ErrorKind;
     let said = error.to_string();
@@ -13,7 +13,7 @@ pub fn in_words(error: io::Error) -> io::Error {
     let kind = error.kind();
     let words = match kind {
         ErrorKind::NotFound => "there is no such file or folder",
-        // EPERM
+        // This is EPERM, as for an immutable file.
         ErrorKind::PermissionDenied if cfg!(unix) && number.starts_with("1)") => {
             "the system protects it from being changed"
         }

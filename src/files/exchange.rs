@@ -1,4 +1,4 @@
-//! Replaces a file such that its previous content can still be checked, and restored.
+//! Replaces a file so that its previous content can still be checked and restored.
 
 use std::{
     fs::{self, File},
@@ -13,15 +13,15 @@ use super::{
     original::{Original, changed, id},
 };
 
-/// Replaces the file that was read by a temporary file.
+/// Replaces the file at `path`, which was read as `original`, by the temporary file.
 ///
 /// Another program may save the file between the last check and the replacement. Therefore the two
 /// files exchange their names, and the replaced file is checked once more: if it is not what was
-/// read, the names are exchanged back. On systems that cannot exchange names, the file is replaced
-/// without the second check.
+/// read, the original state is restored and the result is an error. On systems that cannot exchange
+/// names, the file is replaced without the second check.
 pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io::Result<()> {
-    // The file gets the name of a temporary one; the lock keeps other processes from removing it as
-    // a leftover.
+    // After the exchange, the old file has a temporary name. The lock keeps other processes from
+    // removing it as a leftover.
     let found = kind::open(path).ok();
     let _is_locked = found.as_ref().map(File::try_lock);
     original.check(path)?;
@@ -39,8 +39,8 @@ pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io
     }
 }
 
-/// Restores the file that now has the temporary name. A file that another program saved at the path
-/// in the meantime is newer, and keeps the path.
+/// Gives the file that now has the temporary name its path back. If another program has saved a
+/// file at the path in the meantime, that file is newer and keeps the path.
 fn bring_back(temporary: &NamedTempFile, path: &Path) -> io::Result<()> {
     let mut at_path = id(&temporary.as_file().metadata()?);
     loop {
@@ -65,7 +65,7 @@ fn exchange(_: &Path, _: &Path) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Whether the error says that the system or the file system cannot exchange names.
+/// Returns whether the error says that the system or the file system cannot exchange names.
 fn is_not_known(error: &io::Error) -> bool {
     use io::ErrorKind;
     matches!(
@@ -82,10 +82,11 @@ mod tests {
 
     use super::*;
 
-    /// Index of the last round.
+    /// Index of the last round of the test.
     const LAST: u32 = 400;
 
-    /// Another program saves the file at moments from before the replacement to after it.
+    /// Another program saves the file at moments from before the replacement to after it; what it
+    /// saved must never be lost.
     #[test]
     fn what_is_saved_meanwhile_stays() {
         let folder = tempdir().unwrap();
@@ -99,8 +100,8 @@ mod tests {
             let theirs = folder.path().join("theirs");
             fs::write(&theirs, "theirs").unwrap();
             let save = || fs::rename(&theirs, &path).unwrap();
-            // Before the replacement in the first round and after it in the last: on a busy machine
-            // the thread may never run in between.
+            // The first round saves before the replacement and the last round after it: on a busy
+            // machine, the thread of the other rounds may never run in between.
             let done = match round {
                 0 => {
                     save();

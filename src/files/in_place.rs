@@ -1,5 +1,5 @@
-//! Writes files in place that cannot be replaced by renaming another one: their folder cannot be
-//! written to, or something is mounted on them.
+//! Writes files in place that cannot be replaced by renaming a new file, because their folder
+//! cannot be written to or something is mounted on them.
 
 use std::{
     fs::{self, OpenOptions},
@@ -17,7 +17,7 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Whether a file may be written in place if replacing it failed with this error.
+/// Returns whether a file may be written in place after replacing it failed with this error.
 pub fn is_reason(error: &io::Error) -> bool {
     use io::ErrorKind;
     matches!(
@@ -29,10 +29,10 @@ pub fn is_reason(error: &io::Error) -> bool {
     )
 }
 
-/// Overwrites a file that is still what was read. Until that is done, a copy of the new content
-/// stands beside it, or else in the user's state folder: whatever happens meanwhile, one of the two
-/// is complete. If no copy can be made, returns `reason`, the error that kept the file from being
-/// replaced.
+/// Overwrites the file at `path` if it is still what was read. Meanwhile, a complete copy of the
+/// new content exists beside the file or, if that is not possible, in the user's state folder. So
+/// whatever happens, either the file or the copy is complete. If no copy can be created, returns
+/// `reason`, the error that prevented the replacement.
 pub fn write_in_place(
     path: &Path,
     original: &Original,
@@ -66,8 +66,8 @@ pub fn write_in_place(
     }
 }
 
-/// Returns the copies of a file, complete or not, that processes left when they were killed while
-/// writing it: those beside it and those in the user's state folder.
+/// Returns the copies of a file, complete or not, that were left by processes that were killed
+/// while they wrote the file. Searches beside the file and in the user's state folder.
 pub fn copies_left(path: &Path) -> Vec<PathBuf> {
     // A copy is named after the file itself, not after a link to it.
     let beside = match fs::read_link(path) {
@@ -88,22 +88,22 @@ pub fn copies_left(path: &Path) -> Vec<PathBuf> {
     left
 }
 
-/// Prefix of the name of a copy beside its file.
+/// Returns the prefix of the name of a copy beside its file.
 fn copy_prefix(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name: String = name.chars().take(50).collect();
     format!("{name}.copy-")
 }
 
-/// Prefix of the name of a copy in the state folder, which has the copies of all folders; `path` is
-/// canonical.
+/// Returns the prefix of the name of a copy in the state folder. It contains a hash of the
+/// canonical path `path`, since the copies of files in all folders lie there.
 fn prefix_in_state(path: &Path) -> String {
     let digest = digest(path.as_os_str().as_encoded_bytes());
     format!("{digest}-{}", copy_prefix(path))
 }
 
-/// Creates an empty file for the copy of the file at a canonical path. Returns `None` if neither
-/// its folder nor the state folder takes one.
+/// Creates an empty file for the copy of the file at the canonical path `path`, beside that file or
+/// else in the state folder. Returns `None` if neither is possible.
 fn copy_beside(path: &Path) -> Option<NamedTempFile> {
     let copy_in = |folder: &Path, prefix: &str| {
         let mut builder = Builder::new();

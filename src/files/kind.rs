@@ -1,4 +1,4 @@
-//! The kind of file that a path leads to. It is checked before opening: opening a pipe may block
+//! Determines the kind of file at a path before the file is opened: opening a pipe may block
 //! forever, and opening a device may have effects.
 
 use std::{
@@ -10,7 +10,7 @@ use std::{
 
 use super::error_words::in_words;
 
-/// Kind of file at a path, links followed.
+/// Kind of file at a path, after links are followed.
 #[cfg_attr(
     not(unix),
     allow(dead_code, reason = "other systems do not tell these kinds")
@@ -32,7 +32,7 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// Returns the kind that metadata says.
+    /// Returns the kind of file that the metadata describe.
     pub fn of(found: &Metadata) -> Self {
         if found.is_dir() {
             return Self::Folder;
@@ -54,7 +54,7 @@ impl FileKind {
         Self::File
     }
 
-    /// Returns the error that refuses this kind where a regular file is needed.
+    /// Returns the error for a file of this kind where a regular file is needed.
     pub fn refused(self) -> io::Error {
         let kind = match self {
             Self::Folder => io::ErrorKind::IsADirectory,
@@ -77,7 +77,7 @@ impl fmt::Display for FileKind {
     }
 }
 
-/// Returns the folder of a file: `.` for a bare name.
+/// Returns the folder of a file; `.` if the path is only a name.
 pub fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -85,14 +85,14 @@ pub fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Opens a regular file for reading. Rejects any other kind, also at the end of a link, and never
-/// blocks on it.
+/// Opens a regular file for reading, and follows links. Fails for any other kind of file, and never
+/// blocks.
 pub fn open(path: &Path) -> io::Result<File> {
     open_if(path, |kind| kind == FileKind::File)
 }
 
-/// Whether a path names a descriptor that this process has open already: `/dev/stdin`, or the
-/// `/dev/fd/63` that a shell writes for `<(…)`.
+/// Returns whether a path names a descriptor that this process has open already: `/dev/stdin`, or a
+/// path such as `/dev/fd/63`, which a shell writes for `<(…)`.
 fn is_argument(path: &Path) -> bool {
     path == Path::new("/dev/stdin")
         || [Path::new("/dev/fd"), Path::new("/proc/self/fd")]
@@ -101,7 +101,7 @@ fn is_argument(path: &Path) -> bool {
 }
 
 /// Opens an argument of the command line for reading: a regular file, or anything except a folder
-/// that the shell has connected.
+/// if the path names a descriptor that the shell has opened.
 pub fn open_argument(path: &Path) -> io::Result<File> {
     if !is_argument(path) {
         return open(path);
@@ -123,13 +123,13 @@ fn open_at_once(path: &Path, is_wanted: impl Fn(FileKind) -> bool) -> io::Result
     };
     check(&fs::metadata(path)?)?;
     let file = without_waiting(OpenOptions::new().read(true)).open(path)?;
-    // Another program may have put something else there meanwhile.
+    // Another program may have replaced the file since the first check.
     check(&file.metadata()?)?;
     Ok(file)
 }
 
-/// Sets flags such that opening a pipe does not wait for its other end, and no terminal becomes the
-/// controlling one of this process.
+/// Sets flags so that opening a pipe does not wait for its other end, and opening a terminal does
+/// not make it the controlling terminal of this process.
 #[cfg(unix)]
 pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     use rustix::fs::OFlags;
@@ -155,20 +155,22 @@ pub(super) fn wait_for_it(_: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads a file of at most `most` bytes.
+/// Reads a regular file. Fails if it has more than `most` bytes.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     read_from(file, most)
 }
 
-/// Reads a text file of the system, such as `/proc/meminfo`. Returns `None` if it cannot be read.
+/// Reads a text file of the system, such as `/proc/meminfo`. Returns `None` if the file cannot be
+/// read.
 pub fn read_system_text(path: impl AsRef<Path>) -> Option<String> {
-    /// Maximum length in bytes: a table has a few thousand for each processor.
+    /// Maximum length in bytes. The longest file that is read, `/proc/cpuinfo`, has at most a few
+    /// thousand bytes for each processor.
     const LIMIT: u64 = 16 << 20;
     String::from_utf8(read(path.as_ref(), LIMIT).ok()?).ok()
 }
 
-/// Reads a stream of at most `most` bytes to its end.
+/// Reads a stream to its end. Fails if it has more than `most` bytes.
 pub fn read_from(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut from = from.take(most.saturating_add(1));

@@ -1,13 +1,13 @@
-//! The one place where files are opened, created and replaced.
+//! The only module that opens, creates and replaces files.
 //!
-//! In: a path and a purpose. Out: a file, or an error in words. `kind` checks what a path leads to
-//! before it is opened, so that nothing blocks on a pipe. `original` recognises a file that was
-//! read. `write` writes every file completely or not at all, through a `temporary` one; the two
-//! `exchange` their names if another program may save the old one meanwhile, and a file that cannot
-//! be replaced is written `in_place`. `output_folder` replaces only files that Pinhole itself wrote
-//! into a folder. `user_files` has small files for the user alone, in the `state` folder.
-//! `error_words` turns the system's errors into plain words. The content of files is left to
-//! others.
+//! In: a path and a purpose. Out: a file, or an error in words. `kind` checks what kind of file a
+//! path names before it is opened, so that nothing blocks on a pipe. `original` recognises a file
+//! that was read. `write` writes every file completely or not at all, through a `temporary` one.
+//! The two `exchange` their names if another program may save the old one meanwhile; a file that
+//! cannot be replaced is written `in_place`. `output_folder` replaces only files that Pinhole
+//! itself wrote into a folder. `user_files` stores small files for the user alone in the `state`
+//! folder. `error_words` expresses the system's errors in plain words. Other modules decide what
+//! files contain.
 #![allow(
     clippy::disallowed_methods,
     reason = "everything else opens, makes and replaces files by this module"

@@ -1,5 +1,5 @@
-//! A file as it was read. It is compared before it is replaced, as another program may have saved
-//! it meanwhile.
+//! A file as it was read. Before the file is replaced, it is compared with this, since another
+//! program may have saved it meanwhile.
 
 use std::{
     fmt,
@@ -10,50 +10,50 @@ use std::{
 
 use super::{error_words::in_words, kind::read};
 
-/// Identity of a file: its device and its inode number there. A file that replaces it has another
-/// identity.
+/// Identity of a file: its device and its inode number there. If another file replaces it, the
+/// identity at the path changes.
 pub type FileId = (u64, u64);
 
-/// Returns the identity of the file that the metadata is of.
+/// Returns the identity of the file that the metadata describe.
 #[cfg(unix)]
 pub fn id(found: &Metadata) -> FileId {
     use std::os::unix::fs::MetadataExt as _;
     (found.dev(), found.ino())
 }
 
-/// Returns (0, 0): the standard library has no file numbers on this system.
+/// Returns (0, 0), since the standard library has no file numbers on this system.
 #[cfg(not(unix))]
 pub fn id(_: &Metadata) -> FileId {
     (0, 0)
 }
 
-/// A file as it was read, its identity and its bytes; or the fact that there was none.
+/// A file as it was read, with its identity and its bytes; or the fact that there was no file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Original(Option<(FileId, Vec<u8>)>);
 
 impl Original {
-    /// Reads the file at a path by `read`.
+    /// Reads the file at `path` with the function `read`.
     pub fn read(path: &Path, read: impl FnOnce(&Path) -> io::Result<Vec<u8>>) -> io::Result<Self> {
-        // A file that replaces it between the two calls has another identity, and so counts as
-        // changed.
+        // If another file replaces this one between the two calls, the identity differs later, and
+        // the file counts as changed.
         let found = fs::metadata(path).map_err(in_words)?;
         Ok(Self(Some((id(&found), read(path)?))))
     }
 
-    /// Returns the original of a file that does not exist.
+    /// Makes the original of a file that does not exist.
     pub fn missing() -> Self {
         Self(None)
     }
 
-    /// Returns the bytes; `None` if there was no file.
+    /// Returns the bytes that were read; `None` if there was no file.
     pub fn bytes(&self) -> Option<&[u8]> {
         self.0.as_ref().map(|(_, bytes)| bytes.as_slice())
     }
 
-    /// Fails unless the file at the path is still what was read.
+    /// Fails if the file at the path is not the one that was read. If there was none, does nothing.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
-            // The system checks that there is still no file when the new one is created.
+            // Creating the new file fails if there is a file by then.
             return Ok(());
         };
         let is_same = || {
@@ -68,7 +68,7 @@ impl Original {
     }
 }
 
-/// Error: a file is not replaced, because it is no longer what was read.
+/// Error: a file was not replaced, because it is no longer the file that was read.
 #[derive(Debug)]
 struct Changed;
 
@@ -84,7 +84,8 @@ pub(super) fn changed() -> io::Error {
     io::Error::other(Changed)
 }
 
-/// Whether an error says that another program has changed the file, so that it was not replaced.
+/// Returns whether an error says that another program has changed the file, so that it was not
+/// replaced.
 pub fn is_changed(error: &io::Error) -> bool {
     error.get_ref().is_some_and(|cause| cause.is::<Changed>())
 }

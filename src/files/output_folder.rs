@@ -1,8 +1,8 @@
-//! A folder for the files of a command, in which no other files are replaced.
+//! A folder for the output files of a command, in which the user's own files are never replaced.
 //!
-//! The folder keeps a list, `.pinhole`, of the files that Pinhole wrote there, with the SHA-256 of
-//! each content, in the format that `sha256sum --check` reads. A file that is not in the list, or
-//! whose hash is not one of its hashes there, belongs to the user.
+//! The folder contains a list, `.pinhole`, of the files that Pinhole wrote there, with the SHA-256
+//! of each content, in the format that `sha256sum --check` reads. A file belongs to the user if it
+//! is not in the list, or if its hash is none of those in the list.
 
 use std::{
     collections::BTreeMap,
@@ -29,19 +29,19 @@ const HEAD: &str = "# Files that pinhole made here, and replaces unless they wer
 /// Maximum length of the list, in bytes.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// Maximum length of a file that Pinhole wrote into the folder, in bytes.
+/// Maximum length, in bytes, of a file that Pinhole wrote into the folder.
 const FILE_LIMIT: u64 = 256 << 20;
 
 /// A folder for the files of a command.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// The files that Pinhole wrote: the name, with `/` between folders, and the hashes that its
-    /// content may have.
+    /// For each file that Pinhole wrote: its name, with `/` between folders, and the hashes that
+    /// its content may have.
     hashes: BTreeMap<String, Vec<String>>,
 }
 
-/// Error: a file or folder that keeps the files from being written.
+/// Error: a file or folder prevents the files from being written.
 #[derive(Debug)]
 pub struct NotWritten {
     /// The file or folder.
@@ -60,12 +60,13 @@ impl NotWritten {
 }
 
 impl OutputFolder {
-    /// Opens the folder at a path, which is created if it is missing, for files with these names.
+    /// Opens the folder at `path` for files with the given names. Creates the folder if it is
+    /// missing.
     ///
     /// # Errors
     ///
-    /// The folder cannot be created or written to, or a file there is in the way. Nothing was
-    /// written.
+    /// The folder cannot be created or written to, or one of the names is taken by a file of the
+    /// user. No file was written then.
     pub fn open<'n>(
         path: &Path,
         names: impl IntoIterator<Item = &'n str>,
@@ -99,20 +100,20 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Writes files, after all of their places have been checked.
+    /// Writes files, after checking that none of them would replace a file of the user.
     ///
     /// # Errors
     ///
-    /// A file is in the way, which is found before the first one is written unless another program
-    /// puts it there meanwhile; or a file cannot be written. The files after it are missing.
+    /// A file of the user is in the way, or a file cannot be written. The first is usually found
+    /// before any file is written. Otherwise the files after the failing one are missing.
     pub fn write<T: AsRef<[u8]>>(&mut self, files: &[(String, T)]) -> Result<(), NotWritten> {
         // Another run may have written other files here since the folder was opened.
         let list = self.read_list()?;
         for (name, _) in files {
             self.check(name)?;
         }
-        // The list gets all new hashes first: wherever this process is ended, it has the hash of
-        // each file's content.
+        // The list first gets all new hashes. So whenever this process is ended, the list contains
+        // the hash of each file's content, old or new.
         for (name, text) in files {
             let hashes = self.hashes.entry(name.clone()).or_default();
             let hash = hash(text.as_ref());
@@ -122,7 +123,7 @@ impl OutputFolder {
         }
         self.write_list(&list)?;
         for (name, text) in files {
-            // Another program may have put a file there while the files before it were written.
+            // Another program may have created a file there while the previous files were written.
             let original = self.check(name)?;
             let path = self.path.join(name);
             let folder = folder(&path);
@@ -136,7 +137,7 @@ impl OutputFolder {
         self.write_list(&list)
     }
 
-    /// Writes a file, if its place is still as it was read.
+    /// Writes a file if the file at its path is still `original`.
     fn write_one(&self, name: &str, original: &Original, bytes: &[u8]) -> Result<(), NotWritten> {
         let path = self.path.join(name);
         let go_on = AtomicBool::new(false);
@@ -148,7 +149,8 @@ impl OutputFolder {
             .map_err(|error| NotWritten { path, error })
     }
 
-    /// Reads the list.
+    /// Reads the list from the folder, and replaces the hashes by those in it. Returns the list as
+    /// it was read.
     fn read_list(&mut self) -> Result<Original, NotWritten> {
         let path = self.path.join(LIST);
         let list = read_list_file(&path).map_err(|error| NotWritten::new(&path, error))?;
@@ -156,7 +158,7 @@ impl OutputFolder {
         Ok(list)
     }
 
-    /// Replaces the list that was read.
+    /// Replaces the list, if it has changed and its file is still `original`.
     fn write_list(&self, original: &Original) -> Result<(), NotWritten> {
         let text = self.list();
         if original.bytes() == Some(text.as_bytes()) {
@@ -173,8 +175,8 @@ impl OutputFolder {
         HEAD.to_owned() + &lines.collect::<String>()
     }
 
-    /// Reads the file of a name, if it exists. Rejects a file that Pinhole did not write or that
-    /// was changed since, and a path on the way to it that is not a folder.
+    /// Reads the file of a name, if it exists. Fails if Pinhole did not write the file or it was
+    /// changed since, or if a part of the path to it is not a folder.
     fn check(&self, name: &str) -> Result<Original, NotWritten> {
         let mut path = self.path.clone();
         let mut parts = name.split('/').peekable();
@@ -234,7 +236,7 @@ fn refused(message: &str) -> io::Error {
 
 const LINK: &str = "it is a symbolic link, and nothing is written outside of the folder";
 
-/// Reads the list at a path, if it exists.
+/// Reads the list at a path, if it exists. Fails if the path is a symbolic link.
 fn read_list_file(path: &Path) -> io::Result<Original> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => return Err(io::Error::other(LINK)),
@@ -245,7 +247,7 @@ fn read_list_file(path: &Path) -> io::Result<Original> {
     Original::read(path, |path| read(path, LIST_LIMIT))
 }
 
-/// Parses a list: the files' names and their hashes.
+/// Parses a list into the names of the files and their hashes.
 fn parse_list(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
     let Some(bytes) = list.bytes() else {
         return Ok(BTreeMap::new());

@@ -1,12 +1,12 @@
-//! The folder for the state of programs, for each user.
+//! The folder in which programs keep state for each user.
 
 use std::{
     env, fs, io,
     path::{Path, PathBuf},
 };
 
-/// Returns Pinhole's folder in the user's folder for the state of programs; `None` if no absolute
-/// path is known.
+/// Returns the path of Pinhole's folder in the user's state folder; `None` if the environment has
+/// no absolute path for it.
 pub(super) fn state_folder() -> Option<PathBuf> {
     let absolute = |name| {
         env::var_os(name)
@@ -21,7 +21,8 @@ pub(super) fn state_folder() -> Option<PathBuf> {
     Some(base.join("pinhole"))
 }
 
-/// Creates the state folder, or a folder in it, if it is missing. No other user can read it.
+/// Creates the state folder, or a folder in it, if it is missing, so that no other user can read
+/// it.
 pub(super) fn make(folder: &Path) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
     builder.recursive(true);
@@ -30,7 +31,7 @@ pub(super) fn make(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
-/// Returns 128 bits of the SHA-256 of a key in hexadecimal, as a part of a file's name.
+/// Returns the first 128 bits of the SHA-256 of `long` in hexadecimal, for use in a file's name.
 pub(super) fn digest(long: &[u8]) -> String {
     let digest = hmac_sha256::Hash::hash(long);
     let digits = digest[..16].iter().map(|byte| format!("{byte:02x}"));

@@ -1,5 +1,5 @@
-//! Temporary files beside others, until their content is complete. Each is locked as long as it is
-//! open: one without a lock was left by a process that was killed.
+//! Temporary files that stand beside the final ones until their content is complete. Each is locked
+//! as long as it is open, so one without a lock was left by a process that was killed.
 
 use std::{
     ffi::OsString,
@@ -12,18 +12,18 @@ use tempfile::NamedTempFile;
 
 use super::kind;
 
-/// Maximum number of files that are created until one can be locked. Other processes may lock a new
-/// file while they look for leftovers, but not this many times in a row.
+/// Maximum number of files that are created until one of them can be locked. Other processes may
+/// lock a new file while they look for leftovers, but not this many times in a row.
 const MOST_TRIES: usize = 100;
 
-/// Calls `make` until it creates a file that can be locked. Does not wait for other processes'
-/// locks.
+/// Calls `make` until it creates a file that can be locked, at most [`MOST_TRIES`] times. Does not
+/// wait for the locks of other processes.
 pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
     for _ in 0..MOST_TRIES {
         let file = make()?;
-        // On a file system without locks, no process can lock the file as a leftover either.
+        // If the file system has no locks, no process can lock the file as a leftover either.
         let is_locked = !matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
-        // Before it was locked, another process may have removed it as a leftover.
+        // Before the file was locked, another process may have removed it as a leftover.
         if is_locked && file.path().exists() {
             return Ok(file);
         }
@@ -32,9 +32,8 @@ pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result
     Err(io::Error::other(message))
 }
 
-/// Returns the unlocked files in a folder whose names have six random characters between this
-/// prefix and this suffix: their names and the files, which are now locked as long as they are
-/// open.
+/// Returns the unlocked files in a folder whose names consist of `prefix`, six random characters,
+/// and `suffix`. Each is returned with its name, and stays locked as long as it is open.
 pub fn left(folder: &Path, prefix: &str, suffix: &str) -> Vec<(OsString, File)> {
     let is_ours = |name: &OsString| {
         let name = name.to_str();

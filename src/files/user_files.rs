@@ -14,13 +14,14 @@ use super::{
     write::{Purpose, write},
 };
 
-/// Returns the path of a folder of this name in the state folder; `None` if the system has no state
+/// Returns the path of the folder `name` in the state folder; `None` if the system has no state
 /// folder.
 pub fn kept_folder(name: &str) -> Option<PathBuf> {
     Some(state_folder()?.join(name))
 }
 
-/// Writes a text to a file in a folder from [`kept_folder`]. No other user can read it.
+/// Writes a text to a file in a folder from [`kept_folder`], so that no other user can read it.
+/// Creates the folder if it is missing.
 pub fn keep(path: &Path, text: &str) -> io::Result<()> {
     let folder = folder(path);
     state::make(folder).map_err(in_words)?;
@@ -30,12 +31,12 @@ pub fn keep(path: &Path, text: &str) -> io::Result<()> {
     })
 }
 
-/// Removes a kept file, if it exists.
+/// Removes a kept file, if it exists. Errors are ignored.
 pub fn forget(path: &Path) {
     let _ = fs::remove_file(path);
 }
 
-/// Removes the files in a folder that were last changed longer ago than `age`.
+/// Removes the files in a folder that were last changed more than `age` ago. Errors are ignored.
 pub fn forget_older(folder: &Path, age: Duration) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let changed = entry.metadata().and_then(|found| found.modified());
@@ -45,7 +46,7 @@ pub fn forget_older(folder: &Path, age: Duration) {
     }
 }
 
-/// Returns a file name for a key of any length.
+/// Returns a short file name for a key of any length.
 pub fn name_of(long: &[u8]) -> String {
     digest(long) + ".json"
 }

@@ -1,5 +1,5 @@
-//! The one writer of files. A file is written completely or not at all, and only to the place that
-//! its purpose allows.
+//! The only function that writes files. It writes a file completely or not at all, and only to a
+//! place that the file's purpose allows.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -23,32 +23,33 @@ pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// Purpose of a file, which decides what may be at its path already.
+/// Purpose of a file. It decides which existing file may be replaced.
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
-    /// The user named the file: an existing one is replaced, a link is followed, and a pipe or a
-    /// device gets the content once it is complete.
+    /// The user named the file. An existing file is replaced, and a link is followed. A pipe or a
+    /// device gets the content once the content is complete.
     Named,
-    /// Pinhole chose the name, in or below this folder: an existing file is replaced, also at the
+    /// Pinhole chose the name, in or below this folder. An existing file is replaced, also at the
     /// end of a link, but never outside of the folder.
     Within(&'a Path),
-    /// As `Within`, if the file is still what was read, or still missing.
+    /// As `Within`, but only if the file is still what was read, or still missing.
     Again {
-        /// The folder that the file must not lead out of.
+        /// The folder that a link must not lead out of.
         within: &'a Path,
         /// The file as it was read.
         original: &'a Original,
     },
-    /// As `Within`, and no other user can read the file.
+    /// As `Within`, but no other user can read the file.
     Private(&'a Path),
-    /// The file is new: an existing one is left as it is.
+    /// The file is new. If a file exists, it is left unchanged, and writing fails.
     New,
-    /// A file that was read is changed, if it is still what was read; a link is followed.
+    /// The file was read and is changed. It is replaced only if it is still what was read; a link
+    /// is followed.
     Change(&'a Original),
 }
 
 impl<'a> Purpose<'a> {
-    /// Returns the folder that the file must not lead out of, if there is one.
+    /// Returns the folder that a link must not lead out of, if there is one.
     fn outer(self) -> Option<&'a Path> {
         match self {
             Self::Within(outer) | Self::Private(outer) | Self::Again { within: outer, .. } => {
@@ -58,7 +59,7 @@ impl<'a> Purpose<'a> {
         }
     }
 
-    /// Returns the file that must still be at the path, if there is one.
+    /// Returns the original that the file at the path must still be equal to, if there is one.
     fn original(self) -> Option<&'a Original> {
         match self {
             Self::Change(original) | Self::Again { original, .. } => Some(original),
@@ -67,15 +68,15 @@ impl<'a> Purpose<'a> {
     }
 }
 
-/// Writes the file at `path` by `write`. The old file stays as it is until the new content is
-/// complete.
+/// Writes the file at `path` with the content that the function `write` produces. The old file
+/// stays unchanged until the new content is complete.
 ///
-/// The content goes into a temporary file in the same folder, which then replaces the old one. It
-/// gets the old permissions, except setuid and its kin, and the old owner if that is allowed. Other
-/// hard links keep the old content. A file that is changed and cannot be replaced in this way is
-/// written in place, with a complete copy elsewhere meanwhile. If `cancel` is set or an error
-/// occurs, the temporary file is removed; if this process is killed, the next process that writes
-/// the file removes it.
+/// The content goes into a temporary file in the same folder, which then replaces the old file. The
+/// new file gets the old permissions, except setuid, setgid and the sticky bit, and the old owner
+/// if the system allows that. Other hard links keep the old content. If a file that was read cannot
+/// be replaced in this way, it is written in place, and a complete copy exists elsewhere meanwhile.
+/// If `cancel` is set or an error occurs, the temporary file is removed. If this process is killed,
+/// the next process that writes the file removes it.
 pub fn write(
     path: &Path,
     purpose: Purpose<'_>,
@@ -113,8 +114,8 @@ fn write_at_once(
     }
 }
 
-/// Writes a stream, such as standard output, by `write`, until `cancel` is set. Bytes that were
-/// written by then cannot be taken back.
+/// Writes the content that the function `write` produces to a stream, such as standard output.
+/// Fails once `cancel` is set; bytes that were written by then cannot be taken back.
 pub fn write_stream(
     sink: impl Write,
     cancel: &AtomicBool,
@@ -125,8 +126,8 @@ pub fn write_stream(
     out.flush()
 }
 
-/// Checks that a file can be written at `path`, as far as that can be known beforehand: nobody
-/// wants to learn it after a long render.
+/// Checks that a file can be written at `path`, as far as that can be known beforehand, so that the
+/// user learns of an error before a long render.
 pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     let is_writable = match target(path, purpose) {
         Ok(WriteTarget::File(target)) => temporary(&target, purpose).and_then(NamedTempFile::close),
@@ -136,7 +137,7 @@ pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     is_writable.map_err(|error| writing_error(path, error))
 }
 
-/// Returns an error of writing to a path in plain words.
+/// Expresses an error of writing to a path in plain words.
 fn writing_error(path: &Path, error: io::Error) -> io::Error {
     match error.kind() {
         kind @ io::ErrorKind::NotFound if !folder(path).exists() => {
@@ -146,15 +147,15 @@ fn writing_error(path: &Path, error: io::Error) -> io::Error {
     }
 }
 
-/// Target of the content.
+/// Where the content is written.
 enum WriteTarget {
     File(FileTarget),
     /// A pipe or a device, which is written to and not replaced.
     Stream,
 }
 
-/// A file that is created or replaced, with all links followed, and the metadata of the existing
-/// one.
+/// A file that is created or replaced: its path after all links are followed, and the metadata of
+/// the existing file, if there is one.
 struct FileTarget {
     path: PathBuf,
     found: Option<Metadata>,
@@ -201,8 +202,8 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
     match fs::metadata(path) {
         Ok(found) => match FileKind::of(&found) {
             FileKind::File => {
-                // Replacing a file takes only the permission to write to its folder, but its owner
-                // expects that a write-protected file is not touched.
+                // Replacing a file requires only the permission to write to its folder, but its
+                // owner expects that a write-protected file is not changed.
                 without_waiting(OpenOptions::new().write(true)).open(path)?;
                 Ok(WriteTarget::File(FileTarget {
                     path: fs::canonicalize(path)?,
@@ -213,8 +214,8 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
             kind => Err(kind.refused()),
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
-            // A dangling link: the target is the file that it names. Links in a circle are another
-            // error.
+            // For a dangling link, the target is the file that the link names. A cycle of links is
+            // another error.
             Ok(target) => behind_links(&folder(path).join(target)),
             Err(_) => Ok(WriteTarget::File(FileTarget {
                 path: path.to_owned(),
@@ -233,13 +234,14 @@ fn replace(
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
     let temporary = temporary(target, purpose)?;
-    // The `File` and not the `NamedTempFile`, whose errors would name the temporary path.
+    // The sink is the `File` rather than the `NamedTempFile`, whose errors would name the temporary
+    // path.
     let sink = temporary.as_file();
     let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
     write(&mut out)?;
     out.flush()?;
     drop(out);
-    // Only the sync tells whether there was room for all of the content.
+    // Only syncing reveals whether there was room for all of the content.
     temporary.as_file().sync_all()?;
     check(cancel)?;
     check_folder(target, purpose)?;
@@ -268,8 +270,8 @@ fn exists() -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, message)
 }
 
-/// Writes to a pipe or a device. Does not wait until another program opens the other end; if one
-/// has, the write takes as long as that program needs.
+/// Writes to a pipe or a device once the content is complete. Does not wait until another program
+/// opens the other end of a pipe. If one has, writing takes as long as that program reads.
 fn write_device(
     path: &Path,
     cancel: &AtomicBool,
@@ -300,11 +302,12 @@ fn write_device(
 /// Suffix of the name of a temporary file.
 const SUFFIX: &str = ".tmp";
 
-/// Creates a temporary file for a target.
+/// Creates a temporary file in the target's folder, after removing leftover ones of the same
+/// target.
 fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempFile> {
     let FileTarget { path, found } = target;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // On most systems a name has at most 255 bytes, and each character may take four.
+    // On most systems a name has at most 255 bytes, and each character may take four bytes.
     let name: String = name.chars().take(50).collect();
     let prefix = format!(".pinhole-{name}-");
     remove_leftovers(folder(path), &prefix);
@@ -314,7 +317,7 @@ fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempF
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     if found.is_none() && !is_private {
-        // The usual permissions of a new file, from which the system removes those of the umask.
+        // These are the usual permissions of a new file; the system removes those in the umask.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = locked(|| builder.tempfile_in(folder(path)))?;
@@ -326,16 +329,16 @@ fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempF
     Ok(temporary)
 }
 
-/// Removes temporary files of processes that were killed. Failures are ignored.
+/// Removes temporary files that killed processes left in the folder. Errors are ignored.
 fn remove_leftovers(folder: &Path, prefix: &str) {
-    // Each file stays locked until it is removed, so that no process begins to write to it.
+    // Each file stays locked until it is removed, so that no other process starts to write to it.
     for (name, _lock) in temporary::left(folder, prefix, SUFFIX) {
         let _ = fs::remove_file(folder.join(name));
     }
 }
 
-/// Gives a file the owner and the permissions of another one, as far as the system allows. Only
-/// root may change the owner; other users may choose among their own groups.
+/// Gives a file the owner and the permissions of the file that `found` describes, as far as the
+/// system allows. Only root may change the owner; other users may choose among their own groups.
 #[cfg(unix)]
 fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     use std::{
@@ -348,7 +351,7 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
         .or_else(|_| fchown(file, None, group))
         .is_ok();
     let mode = found.mode() & 0o777;
-    // If the group could not be kept, the new group gets no more permissions than all users.
+    // If the group could not be kept, the new group gets no more permissions than all other users.
     let allowed = if has_group {
         mode
     } else {
@@ -370,7 +373,7 @@ struct Checked<'a, S> {
 
 fn check(cancel: &AtomicBool) -> io::Result<()> {
     if cancel.load(Ordering::Relaxed) {
-        // Not `Interrupted`, which means "try again" to whoever writes.
+        // The error is not `Interrupted`, since writers try again after that.
         return Err(io::Error::other("interrupted"));
     }
     Ok(())

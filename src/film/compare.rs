@@ -1,38 +1,40 @@
-//! How far two pictures are apart, and where.
+//! The difference of two pictures, and its position.
 //!
 //! In: two films. Out: the root mean square of their differences in linear light, in which means
-//! are taken; and the largest difference and the number of pixels beyond a tolerance, in steps of
-//! 8-bit sRGB, in which differences are seen. A step is 1/255 of the way from black to white.
+//! are taken. Also, in steps of 8-bit sRGB, in which differences are visible, the largest
+//! difference and the number of pixels beyond a tolerance. A step is 1/255 of the way from black to
+//! white.
 
 use thiserror::Error;
 
 use super::{memory::TooLarge, pixels::Film};
 use crate::color::linear_to_srgb;
 
-/// Number of steps between black and white.
+/// Number of steps of 8-bit sRGB between black and white.
 const STEPS: f64 = 255.0;
 
-/// Error bound of decoding and encoding, in steps: a few roundings of numbers up to 255, and the
-/// two pieces of the curve, which meet within 3e-8 of the whole.
+/// Error bound of decoding and encoding, in steps of 8-bit sRGB. It covers a few roundings of
+/// numbers up to 255, and the two pieces of the curve, which meet within 3e-8 of the whole range.
 const SLACK: f64 = 1e-5;
 
-/// Steps per unit of light where the curve is steepest, in the dark.
+/// Steps of 8-bit sRGB per unit of linear light in the dark, where the curve is steepest.
 const STEEPEST: f64 = 12.92 * STEPS;
 
 /// Names of a pixel's channels.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// The largest difference that counts as none.
+/// The largest difference that is ignored.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<'a> {
     /// Tolerance of every channel, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// Error bound of each pixel of a picture, in linear light, if it is known; added to `steps`.
+    /// Error bound of each pixel of a picture, in linear light, if known. Converted to steps, it
+    /// is added to `steps`.
     pub bounds: Option<&'a [f32]>,
 }
 
 impl Tolerance<'_> {
-    /// Extra tolerance of a pixel, in steps, from the exact picture's error bound.
+    /// Extra tolerance of the pixel with index `at`, in steps of 8-bit sRGB, from its error bound.
     fn slack(&self, at: usize) -> f64 {
         let bound = self.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
         bound * STEEPEST
@@ -46,22 +48,21 @@ pub struct Comparison {
     pub width: u32,
     /// Number of rows.
     pub height: u32,
-    /// The root of the mean square of the differences of all channels of all pixels, in linear
-    /// light, 0 to 1.
+    /// Root mean square of the differences of all channels of all pixels, in linear light, 0 to 1.
     pub rmse: f64,
-    /// The largest difference; of equal ones the first, row by row.
+    /// The largest difference. Of equal differences, it is the first one, row by row.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
-    /// Number of pixels that may differ by more than the tolerance, since their error bound leaves
-    /// it open.
+    /// Number of pixels that may or may not differ by more than the tolerance, depending on their
+    /// error bounds.
     pub undecided: u64,
 }
 
-/// The largest difference.
+/// The largest difference of a channel, and its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Largest {
-    /// The difference, in steps.
+    /// The difference, in steps of 8-bit sRGB.
     pub steps: f64,
     /// The pixel's column.
     pub x: u32,
@@ -69,9 +70,9 @@ pub struct Largest {
     pub y: u32,
     /// The channel: 0 for red, 1 for green, 2 for blue.
     pub channel: usize,
-    /// Value in the first picture, in steps: 0 to 255.
+    /// Value in the first picture, in steps of 8-bit sRGB, 0 to 255.
     pub a: f64,
-    /// Value in the second picture, in steps: 0 to 255.
+    /// Value in the second picture, in steps of 8-bit sRGB, 0 to 255.
     pub b: f64,
 }
 
@@ -86,12 +87,12 @@ pub struct SizesDiffer(
 );
 
 impl Comparison {
-    /// Whether no pixel differs by more than the tolerance.
+    /// Returns whether no pixel certainly differs by more than the tolerance.
     pub fn is_equal(&self) -> bool {
         self.beyond == 0
     }
 
-    /// Share of pixels that differ by more than the tolerance, 0 to 1.
+    /// Returns the share of pixels that differ by more than the tolerance, 0 to 1.
     pub fn share(&self) -> f64 {
         self.beyond as f64 / (f64::from(self.width) * f64::from(self.height))
     }
@@ -140,8 +141,8 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
     })
 }
 
-/// Returns the channel in which two pixels differ most, the first of equal ones, and the difference
-/// in steps.
+/// Returns the channel in which two pixels differ most, and the difference in steps of 8-bit sRGB.
+/// Of equal differences, the first channel is returned.
 fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
     let differences = [0, 1, 2].map(|channel| (steps(p[channel]) - steps(q[channel])).abs());
     let most = differences.into_iter().fold(0.0, f64::max);
@@ -149,8 +150,7 @@ fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
     (channel.unwrap_or(0), most)
 }
 
-/// Returns the root of the mean square of the differences of two pictures of one size, in linear
-/// light.
+/// Returns the root mean square of the differences of two pictures of one size, in linear light.
 pub fn rmse(a: &Film, b: &Film) -> f64 {
     let squares = a.pixels().iter().zip(b.pixels());
     let sum: f64 = squares
@@ -159,9 +159,10 @@ pub fn rmse(a: &Film, b: &Film) -> f64 {
     (sum / (3.0 * a.pixels().len() as f64)).sqrt()
 }
 
-/// Draws the differences of two pictures of one size; each pixel shows its channel that differs
-/// most. Differences within the tolerance are black. Beyond it, the colour goes through red and
-/// yellow to white at 255 steps, linearly in the difference: noise stays dark.
+/// Draws the differences of two pictures of one size as a picture. Each pixel shows the largest
+/// difference of its channels. Differences within the tolerance are black. Beyond it, the colour
+/// goes through red and yellow to white at 255 steps, linearly in the difference, so that noise
+/// stays dark. Fails if there is not enough memory.
 pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLarge> {
     let mut map = Film::new(a.width(), a.height())?;
     let pairs = a.pixels().iter().zip(b.pixels());
@@ -178,13 +179,13 @@ pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLar
 pub const HEAT_LEGEND: &str =
     "black: within the tolerance; red: 85 steps of 255; yellow: 170; white: 255 (linear)";
 
-/// Returns the light of a heat map's colour for a difference in steps.
+/// Returns the linear light of a heat map's colour for a difference in steps of 8-bit sRGB.
 fn heat(steps: f64) -> [f64; 3] {
     let t = 3.0 * steps / STEPS;
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
 }
 
-/// Converts light to steps of 8-bit sRGB, 0 to 255 for what a screen can show.
+/// Converts linear light to steps of 8-bit sRGB. Light from 0 to 1 gives 0 to 255.
 fn steps(light: f64) -> f64 {
     STEPS * linear_to_srgb(light)
 }

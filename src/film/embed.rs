@@ -1,4 +1,4 @@
-//! Pictures within a page of HTML.
+//! Pictures embedded in an HTML page.
 
 use std::io;
 
@@ -7,8 +7,8 @@ use base64::{Engine, prelude::BASE64_STANDARD};
 use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_png};
 use crate::area::Area;
 
-/// Shrinks a picture to at most this number of columns and rows, by averaging squares of pixels in
-/// linear light.
+/// Shrinks a picture to at most `columns` and `rows`, by averaging squares of pixels in linear
+/// light. Fails if there is not enough memory.
 pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge> {
     let whole = Area::whole(film.width(), film.height());
     let side = (whole.width.div_ceil(columns)).max(whole.height.div_ceil(rows));

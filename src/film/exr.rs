@@ -1,6 +1,7 @@
 //! OpenEXR: linear means, rounded to 32-bit floats, in the channels R, G and B.
 //!
-//! The display window is the whole picture, the data window the part of it that the file contains.
+//! The display window is the whole picture. The data window is the part of it that the file
+//! contains.
 
 use std::{
     collections::BTreeSet,
@@ -79,7 +80,8 @@ impl LinearFilm<'_> {
     }
 }
 
-/// Writes a film that is a part of a whole picture, or all of it.
+/// Writes `film`, which shows `part` of the picture `whole`, as an OpenEXR file. `part` may be all
+/// of it.
 pub fn write_exr<'a>(
     film: impl Into<LinearFilm<'a>>,
     part: Area,
@@ -95,8 +97,8 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
         <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
     });
     let encoding = Encoding {
-        // A block of 16 rows is in memory several times at once; for the widest pictures that would
-        // be more than the film.
+        // A block of 16 rows is in memory several times at once. For the widest pictures, that
+        // would take more memory than the film, so their blocks have one row.
         compression: match film.width() {
             0..=0x1_0000 => Compression::ZIP16,
             _ => Compression::ZIP1,
@@ -112,7 +114,7 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
         ..LayerAttributes::default()
     };
     image.attributes = ImageAttributes {
-        // The primaries of sRGB, which readers also assume if a file has none.
+        // These are the primaries of sRGB, which readers also assume if a file has none.
         chromaticities: Some(Chromaticities {
             red: Vec2(0.64, 0.33),
             green: Vec2(0.3, 0.6),
@@ -124,7 +126,7 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
             whole.height as usize,
         )))
     };
-    // Block by block, so that at most one is in memory.
+    // The file is written block by block, so that at most one block is in memory.
     image
         .write()
         .non_parallel()
@@ -135,15 +137,15 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
         })
 }
 
-/// Reads a picture. Its colours are premultiplied already, as seen on black, so an alpha channel is
-/// ignored.
+/// Reads a picture. Rejects one that is decoded to more than `limit` bytes. An alpha channel is
+/// ignored, since colours in OpenEXR are premultiplied, as seen on black.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let file = block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     for header in file.headers() {
-        // Checked before anything is decompressed.
+        // The size is checked before anything is decompressed.
         let Vec2(width, height) = header.layer_size;
         let channels = &header.channels.list;
-        // Channels other than the four usual ones are decoded, too.
+        // Channels other than the usual four are decoded, too.
         let sizes = channels
             .iter()
             .map(|channel| channel.sample_type.bytes_per_sample());
@@ -202,7 +204,7 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
 }
 
 /// Returns the names of the channels to read: R, G and B, or those of the only layer that has all
-/// three.
+/// three. Fails if there are no such channels.
 fn channels(headers: &[Header]) -> Result<[Text; 3], Unreadable> {
     let names = headers.iter().flat_map(|header| &header.channels.list);
     let names: BTreeSet<String> = names.map(|channel| channel.name.to_string()).collect();

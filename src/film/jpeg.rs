@@ -1,30 +1,31 @@
 //! The compression of a JPEG file, and its effect on another picture.
 //!
-//! In: a file. Out: its quantization tables of luma and of chroma: the first two, as programs write
-//! them, or the only one for both; and its chroma subsampling. A lossy WebP is treated as a JPEG
-//! with 2 × 2 subsampling and steps that are large enough.
+//! In: a file. Out: its quantization tables of luma and of chroma, and its chroma subsampling. The
+//! tables are the first two in the file, as programs write them, or the only one for both. A lossy
+//! WebP is treated as a JPEG with 2 × 2 subsampling and sufficiently large steps.
 
 use image::ImageFormat;
 use jpeg_encoder::{
     ChromaSubsamplingMethod, ColorType, Encoder, QuantizationTableType, SamplingFactor,
 };
 
-/// Quantization step that is assumed everywhere in a lossy WebP: that of a quality of about 75.
+/// Quantization step that is assumed for all coefficients of a lossy WebP: that of a quality of
+/// about 75.
 const WEBP_STEP: u16 = 16;
 
-/// The coding of a file (ITU-T T.81).
+/// The lossy coding of a JPEG file (ITU-T T.81).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jpeg {
     /// Quantization table of luma.
     pub luma: JpegTable,
     /// Quantization table of chroma.
     pub chroma: JpegTable,
-    /// Number of columns, and of rows, that share one chroma sample.
+    /// Number of columns and number of rows of pixels that share one chroma sample.
     pub shared: [u8; 2],
 }
 
-/// A quantization table: a block's coefficients are rounded to multiples of its steps, of which the
-/// first belongs to the block's mean.
+/// A quantization table of 64 steps. Each coefficient of a block is rounded to a multiple of its
+/// step; the first step belongs to the block's mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
     /// Square of the first step.
@@ -36,10 +37,10 @@ pub struct JpegTable {
 }
 
 impl JpegTable {
-    /// Builds a table from its steps in a file's order, in zigzag from corner to corner.
+    /// Builds a table from its steps in zigzag order, as files contain them.
     fn new(zigzag: [u16; 64]) -> Self {
         let mut order: Vec<usize> = (0..64).collect();
-        // Diagonal by diagonal, in alternating directions.
+        // The zigzag runs diagonal by diagonal, in alternating directions.
         order.sort_by_key(|at| {
             let (x, y) = (at % 8, at / 8);
             (x + y, if (x + y) % 2 == 0 { x } else { y })
@@ -59,7 +60,8 @@ impl JpegTable {
 }
 
 impl Jpeg {
-    /// Returns the coding of a file. Returns `None` if it is no JPEG.
+    /// Returns the coding of a JPEG, or an assumed one for a lossy WebP. Returns `None` for other
+    /// files, and for a JPEG without tables.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         if bytes.starts_with(b"RIFF") && bytes.windows(4).take(64).any(|name| name == b"VP8 ") {
             let table = JpegTable::new([WEBP_STEP; 64]);
@@ -84,8 +86,8 @@ impl Jpeg {
             let segment = rest.get(4..2 + length)?;
             match marker {
                 0xdb => read_tables(segment, &mut tables)?,
-                // The frame header: for each component its number, its sampling factors, across and
-                // down, and its table.
+                // The frame header contains for each component its number, its sampling factors
+                // (horizontal and vertical), and its table.
                 0xc0..=0xc2 => {
                     let components = segment.get(6..)?.chunks_exact(3);
                     let factors: Vec<[u8; 2]> = components
@@ -95,7 +97,7 @@ impl Jpeg {
                         shared = [0, 1].map(|i| luma[i] / chroma[i].max(1));
                     }
                 }
-                // The scan, which contains the pixels, follows.
+                // The scan, which contains the pixels, follows this marker.
                 0xda => {
                     let mut tables = tables.into_iter().flatten();
                     let luma = tables.next()?;
@@ -112,8 +114,9 @@ impl Jpeg {
         }
     }
 
-    /// Codes and decodes a picture, given by its rows of red, green and blue bytes, with this
-    /// coding. Returns `None` if it cannot be coded so.
+    /// Encodes and decodes a picture with this coding. `bytes` are its red, green and blue bytes,
+    /// row by row. Returns the decoded bytes, or `None` if the picture cannot be encoded in this
+    /// way.
     pub fn coded(&self, bytes: &[u8], [width, height]: [u32; 2]) -> Option<Vec<u8>> {
         let mut file = Vec::new();
         let mut encoder = Encoder::new(&mut file, 100);
@@ -133,17 +136,17 @@ impl Jpeg {
     }
 }
 
-/// Whether a JPEG continues to its end marker. Decoders fill a truncated one with gray below the
-/// cut, which looks like a picture.
+/// Returns whether a JPEG continues to its end marker. Decoders fill a truncated file with gray
+/// below the cut, which looks like a picture.
 pub fn is_whole(bytes: &[u8]) -> bool {
-    /// Marker before entropy-coded data.
+    /// The marker in front of entropy-coded data.
     const SCAN: u8 = 0xda;
     const END: u8 = 0xd9;
-    // After the start marker.
+    // The position after the start marker.
     let mut at = 2;
     loop {
-        // In entropy-coded data, a byte of 255 is followed by a 0; the markers 0xd0 to 0xd7 restart
-        // the decoder.
+        // In entropy-coded data, a byte of 255 is followed by a 0. The markers 0xd0 to 0xd7, which
+        // restart the decoder, may also occur there.
         let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 0xd0..=0xd7 | 0xff);
         let rest = bytes.get(at..).unwrap_or_default();
         let Some(found) = rest.windows(2).position(is_marker) else {

@@ -2,28 +2,28 @@
 
 use crate::math::{Double, Real, two_product};
 
-/// Returns the mean of a pixel's samples, Σ count · colour / n with n the sum of the counts,
-/// rounded once.
+/// Returns the mean of a pixel's samples, Σ count · colour / n, rounded once, where n is the sum of
+/// the counts.
 ///
-/// The colours are given in the order of the palette, so that the same counts give the same bits in
-/// whichever order they were found. The sum and the quotient are double-doubles with errors of
-/// about 2^−100 of the mean, and a single colour is returned unchanged.
+/// `seen` contains the counts and colours in the order of the palette, so that the same counts
+/// always give the same bits. The sum and the quotient are double-doubles with errors of about
+/// 2^−100 of the mean. A single colour is returned unchanged.
 pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     let mut samples = 0;
     let mut sums = [Double::from_f64(0.0); 3];
     for (count, color) in seen {
         samples += count;
         for (sum, channel) in sums.iter_mut().zip(color) {
-            // A count is at most 2^53, so it is an f64.
+            // A count is at most 2^53, so its conversion to `f64` is exact.
             *sum = sum.plus(&two_product(count as f64, channel));
         }
     }
     sums.map(|sum| quotient(&sum, samples as f64))
 }
 
-/// Returns sum / count by two steps of long division. The first remainder is exact except for the
-/// rounding of what `lo` adds, so that a quotient halfway between two `f64` is exact before its
-/// only rounding, too.
+/// Returns sum/count by two steps of long division. The first remainder is exact except for the
+/// rounding when `lo` is added. A quotient halfway between two `f64` is therefore also exact before
+/// its only rounding.
 fn quotient(sum: &Double, count: f64) -> f64 {
     let first = sum.hi / count;
     let product = two_product(first, count);

@@ -1,4 +1,4 @@
-//! Whether there is enough memory for a picture, checked before it is allocated.
+//! A check before a picture is allocated whether there is enough memory.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::files::read_system_text;
 
-/// A picture for which there is not enough memory.
+/// Error of a picture for which there is not enough memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "a picture of {width} × {height} pixels needs {} of memory, {}",
@@ -18,14 +18,14 @@ pub struct TooLarge {
     pub width: u32,
     /// Number of rows of pixels.
     pub height: u32,
-    /// Number of bytes that it needs.
+    /// Number of bytes that the picture needs.
     pub needed: u64,
-    /// Number of available bytes, if the system tells it.
+    /// Number of available bytes; `None` if it is unknown.
     pub available: Option<u64>,
 }
 
-/// Rejects a picture for which there is not enough memory; otherwise returns the number of bytes
-/// that it needs.
+/// Returns the number of bytes that a picture needs. Fails if more than the available memory is
+/// needed.
 pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLarge> {
     let pixels = u64::from(width) * u64::from(height);
     let needed = pixels.saturating_mul(bytes_per_pixel);
@@ -40,8 +40,8 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
     }
 }
 
-/// Rejects a picture also if the system does not allocate as much. The allocation that tests this
-/// is freed at once.
+/// Fails as `check` does, or if the system does not allocate the needed bytes. The allocation
+/// that tests this is freed at once.
 pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
     let needed = check(width, height, bytes_per_pixel)?;
     let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
@@ -56,10 +56,10 @@ pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooL
     })
 }
 
-/// Returns the number of bytes that this process may still allocate: the smaller one of what the
-/// machine has available and of what its control group has left. Without this check, a system that
-/// overcommits memory would end the process halfway. Returns `None` on systems other than Linux,
-/// where the allocation itself must fail.
+/// Returns the number of bytes that this process may still allocate: the smaller of the machine's
+/// available memory and the rest of its control group's limit. Without this check, a system that
+/// overcommits memory would kill the process later. Returns `None` if neither is known, as on
+/// systems other than Linux; there, only a failing allocation shows that memory is short.
 fn available() -> Option<u64> {
     [machine(), control_group()].into_iter().flatten().min()
 }
@@ -70,7 +70,8 @@ fn machine() -> Option<u64> {
     Some(entry(&table, "MemAvailable:")? * 1024)
 }
 
-/// Returns the least of what the control groups around this process have left.
+/// Returns the least number of bytes that one of the control groups around this process may still
+/// allocate. Returns `None` if there is no limit.
 fn control_group() -> Option<u64> {
     const ROOT: &str = "/sys/fs/cgroup";
     let groups = read_system_text("/proc/self/cgroup")?;
@@ -83,18 +84,19 @@ fn control_group() -> Option<u64> {
         .min()
 }
 
-/// Returns what a group may still allocate. Cached file pages, which count as its usage, are
-/// reclaimed on demand.
+/// Returns the number of bytes that a control group may still allocate. Cached file pages count as
+/// its usage, but are reclaimed on demand, so they are added. Returns `None` if the group has no
+/// limit.
 fn left(group: &Path) -> Option<u64> {
     let read = |name| read_system_text(group.join(name));
-    // Without a limit, the file contains a word.
+    // Without a limit, the file contains the word `max`, which is not a number.
     let limit: u64 = read("memory.max")?.trim().parse().ok()?;
     let usage: u64 = read("memory.current")?.trim().parse().ok()?;
     let cache = entry(&read("memory.stat").unwrap_or_default(), "inactive_file ").unwrap_or(0);
     Some(limit.saturating_sub(usage.saturating_sub(cache)))
 }
 
-/// Returns the number after a name in a table.
+/// Returns the number after `name` at the beginning of a line of a table.
 fn entry(table: &str, name: &str) -> Option<u64> {
     let entry = table.lines().find_map(|line| line.strip_prefix(name))?;
     entry.split_whitespace().next()?.parse().ok()

@@ -1,9 +1,9 @@
 //! Pixels in memory, and the files they are written to and read from.
 //!
-//! In: how often each colour was seen in a pixel. Out: its mean in linear light, `pixels` in
-//! memory, and a picture file: `png` with the scene that made it, or `exr`. `read` makes a
-//! `picture` of a file, also of other programs' files; `compare` measures how far two films are
-//! apart, and `embed` puts one into a page.
+//! In: how often each colour was seen in a pixel. Out: its mean in linear light (`mean`), the
+//! `pixels` in memory, and a picture file: `png`, which contains the scene, or `exr`. `read` reads
+//! a `picture` from a file, also from files of other programs. `compare` measures how much two
+//! films differ, and `embed` puts a film into a page.
 
 mod compare;
 #[cfg(any(feature = "cli", feature = "report"))]

@@ -1,7 +1,6 @@
-//! Files that are no pictures although they are in a picture's place: what they are, and the way
-//! out.
+//! Files that are no pictures although one is expected: what they are, and what to do about it.
 
-/// First bytes of such files, and the message about each.
+/// First bytes of files that are no pictures, and the message about each kind.
 const BEGINNINGS: [(&[u8], &str); 8] = [
     (
         b"version https://git-lfs",
@@ -22,11 +21,11 @@ const BEGINNINGS: [(&[u8], &str); 8] = [
 const WEB: &str = "a web page: the download was of a page around the picture, or failed";
 const PFM: &str = "a PFM: OpenEXR is the format of floats that is read here";
 
-/// Brands of pictures from telephones and cameras, after the eight bytes that begin an ISO base
-/// media file.
+/// Brands of HEIC pictures, from telephones and cameras. They follow the eight bytes that begin an
+/// ISO base media file.
 const CAMERAS: [&[u8]; 5] = [b"heic", b"heix", b"hevc", b"mif1", b"msf1"];
 
-/// Returns what a file is that is no picture. Returns `None` if it is unknown.
+/// Returns a description of a file that is no picture. Returns `None` if its kind is unknown.
 pub(super) fn of(bytes: &[u8]) -> Option<&'static str> {
     if bytes.is_empty() {
         return Some("an empty file");

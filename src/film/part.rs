@@ -1,19 +1,21 @@
-//! The place of a cropped part in a whole picture, if the part itself does not tell it.
+//! The position of a cropped part in a whole picture, for parts whose file does not contain it.
 
 use super::pixels::Film;
 use crate::area::Area;
 
-/// Maximum number of pixels that are compared, over all places.
+/// Maximum number of pixels that are compared, summed over all positions.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum share of the mean difference at the place where a part lies. Sampling noise leaves less.
+/// Maximum ratio of the difference at the part's position to the mean difference over all
+/// positions. Sampling noise leaves less.
 const MAX_LEFT: f64 = 0.2;
 
-/// Minimum share of the whole picture: a smaller part resembles too many places.
+/// Minimum ratio of the part's area to that of the whole picture. A smaller part resembles too many
+/// positions.
 const MIN_SHARE: f64 = 0.05;
 
-/// Finds the place in a whole picture where a part of it differs far less than elsewhere. Returns
-/// `None` if there is no such place.
+/// Finds the position in a whole picture where a part differs far less than elsewhere. Returns the
+/// part's area there, or `None` if there is no such position.
 pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     let area = Area::whole(part.width(), part.height());
     let columns = whole.width().checked_sub(area.width)? + 1;
@@ -24,8 +26,8 @@ pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     }
     let places = u64::from(columns) * u64::from(rows);
     let compared = (MAX_COMPARED / places).clamp(16, 400).min(area.pixels());
-    // One of every `step` pixels. The step is odd, so that it rarely divides the width, and the
-    // columns differ from row to row.
+    // One of every `step` pixels is compared. The step is odd, so that it rarely divides the width,
+    // and the compared columns vary from row to row.
     let step = (area.pixels() / compared).max(1) | 1;
     let points: Vec<(u32, u32)> = (0..area.pixels())
         .step_by(step as usize)

@@ -1,4 +1,4 @@
-//! A picture as a file contains it, and why a file is none.
+//! A picture as a file contains it, and the reasons why a file cannot be read as one.
 
 use image::ImageFormat;
 use thiserror::Error;
@@ -6,8 +6,8 @@ use thiserror::Error;
 use super::{memory::TooLarge, pixels::Film};
 use crate::area::Area;
 
-/// Maximum number of bytes that a picture is decoded to, unless the caller allows more: 2^26 pixels
-/// of four bytes, whose film takes 1.5 GiB.
+/// Maximum number of bytes that a picture is decoded to, unless the caller allows more. It suffices
+/// for 2^26 pixels of four bytes, whose film takes 1.5 GiB.
 pub const DECODED_LIMIT: u64 = 1 << 28;
 
 /// A picture as a file contains it.
@@ -19,7 +19,7 @@ pub struct Picture {
     pub rounding: Rounding,
     /// Other changes that the file's coding makes to colours.
     pub coding: Coding,
-    /// The part of a whole picture that it is, if the file says so.
+    /// The part of a whole picture that the file shows, if the file contains this.
     pub crop: Option<Area>,
     /// The opacity; `None` for an opaque picture.
     pub opacity: Option<Opacity>,
@@ -28,13 +28,13 @@ pub struct Picture {
 /// The opacity of a picture.
 #[derive(Clone, Debug)]
 pub struct Opacity {
-    /// Least and greatest opacity of its pixels, from 0 to 1.
+    /// Least and greatest opacity of the pixels, from 0 to 1.
     pub range: [f64; 2],
-    /// The colours of the picture without their opacity.
+    /// The colours of the picture, in linear light, if its opacity is ignored.
     pub film: Film,
 }
 
-/// The numbers that a file's values are rounded to.
+/// The kind of numbers to which a file's values are rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
     /// Bytes of sRGB, or fewer bits.
@@ -48,11 +48,12 @@ pub enum Rounding {
 }
 
 impl Rounding {
-    /// Maximum rounding error of a number between 0 and 1, in steps of 8-bit sRGB; a step is 1/255
-    /// of the way from black to white.
+    /// Returns the maximum rounding error of a number between 0 and 1, in steps of 8-bit sRGB; a
+    /// step is 1/255 of the way from black to white.
     ///
-    /// That of floats is their relative rounding, 2^−11 or 2^−24 of the light, times the 255 ·
-    /// 1.055/2.4 steps per unit of light at white, where this product is greatest, rounded up.
+    /// For floats, it is the relative rounding error of the light, 2^−11 or 2^−24, times the 255 ·
+    /// 1.055/2.4 steps per unit of light at white, rounded up. The error in steps is greatest at
+    /// white.
     pub fn steps(self) -> f64 {
         match self {
             Self::Byte => 0.5,
@@ -63,29 +64,31 @@ impl Rounding {
     }
 }
 
-/// What a file's coding does to colours besides rounding.
+/// The effect of a file's coding on colours besides rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
-    /// Nothing.
+    /// No effect.
     Exact,
-    /// Colours change where that is hardly visible: JPEG, and one kind of WebP.
+    /// Colours change where it is hardly visible: JPEG and lossy WebP.
     Lossy,
     /// Colours are replaced by the nearest of at most 256: GIF.
     Palette,
-    /// The file declares a curve other than sRGB's, but is read as sRGB: a PNG's `gAMA` or `iCCP`.
+    /// The file declares a curve other than sRGB's, by a PNG's `gAMA` or `iCCP`, but is read as
+    /// sRGB.
     OtherCurve,
-    /// A PNM after a byte order mark or lines of text, which are skipped.
+    /// A PNM behind a byte order mark or lines of text, which are skipped.
     TextBefore,
     /// A PNM whose numbers are in UTF-16.
     Utf16,
-    /// A PNM of bytes in which every line feed had become two bytes, as in a text file.
+    /// A binary PNM in which every line feed was replaced by two bytes, as in a text file.
     TextMode,
-    /// A PNM of bytes in which each byte above 127 had become two, as in UTF-8 text.
+    /// A binary PNM in which each byte above 127 was replaced by two bytes, as in UTF-8 text.
     Utf8,
 }
 
 impl Coding {
-    /// Returns a warning for people who compare such a picture.
+    /// Returns a warning for people who compare such a picture. Returns `None` for
+    /// [`Exact`](Self::Exact).
     pub fn warning(self) -> Option<&'static str> {
         match self {
             Self::Exact => None,
@@ -112,16 +115,16 @@ impl Coding {
     }
 }
 
-/// Why a file is no picture.
+/// Why a file cannot be read as a picture.
 #[derive(Debug, Error)]
 pub enum Unreadable {
-    /// The file is no picture, or has a format that is not read.
+    /// The file is no picture, or its format is not supported.
     #[error(
         "it is no picture in PNG, OpenEXR, PNM, BMP, TIFF, WebP, GIF or JPEG, the formats that are read here{}",
         .0.map_or(String::new(), |format| format!(", but seems to be {}", name(format)))
     )]
     Format(Option<ImageFormat>),
-    /// The file is something else that is known.
+    /// The file is something else, which is recognised.
     #[error("it is no picture, but {0}")]
     Other(&'static str),
     /// The file does not follow its format.
@@ -143,7 +146,7 @@ pub enum Unreadable {
         /// The part that is not supported.
         cause: String,
     },
-    /// Decompression takes too much memory, besides that of the picture itself.
+    /// Decompression takes too much memory besides the picture itself.
     #[error("unpacking it takes more than 512 MiB of memory")]
     Unpacking,
     /// The picture is larger than the limit.
@@ -174,13 +177,13 @@ pub enum Unreadable {
     },
 }
 
-/// Returns the name of a format.
+/// Returns the name of a format in capital letters.
 pub(super) fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
 
-/// Rejects a picture without pixels, or one that is decoded to more than `limit` bytes, with four
-/// channels of `channel` bytes each.
+/// Rejects a picture without pixels, or one that is decoded to more than `limit` bytes. Four
+/// channels of `channel` bytes each are counted per pixel.
 pub(super) fn check_size(
     [width, height]: [u64; 2],
     channel: u64,
@@ -201,7 +204,8 @@ pub(super) fn check_size(
     }
 }
 
-/// Shortens a decoder's message, which may contain a part of the file of any length.
+/// Shortens a decoder's message, which may contain a part of the file of any length, to 200
+/// characters.
 fn shortened(cause: &str) -> String {
     const LONGEST: usize = 200;
     let mut characters = cause.trim_end().chars();

@@ -1,4 +1,4 @@
-//! A picture in memory: row by row of pixels.
+//! A picture in memory: its pixels, row by row.
 
 use super::{
     memory::{self, TooLarge},
@@ -6,20 +6,20 @@ use super::{
 };
 use crate::area::Area;
 
-/// What a film stores of a pixel: its mean in linear light, the mean rounded to 32-bit floats, or
-/// the bytes of sRGB, which take an eighth of the memory.
+/// The value that a film stores for a pixel: its mean in linear light, the mean rounded to 32-bit
+/// floats, or the bytes of sRGB, which take an eighth of the memory.
 pub trait Pixel: Copy + Default + Send + Sync {
-    /// Converts a mean.
+    /// Converts a mean in linear light.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
-    /// Whether all means within an error bound of this one, in each channel, are converted to the
-    /// same value.
+    /// Returns whether all means that differ from `light` by at most `bound` in each channel are
+    /// converted to the same value. For `f64` means, the conversion to 32-bit floats counts.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
 /// A pixel that can be converted to bytes of sRGB.
 pub trait AsBytes: Pixel {
-    /// Returns the bytes of a row; `buffer` stores them if they must be computed.
+    /// Returns the bytes of sRGB of a row. If they must be computed, `buffer` stores them.
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, buffer: &'a mut Vec<u8>) -> &'a [u8];
 }
 
@@ -29,7 +29,7 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // An EXR file contains 32-bit floats.
+        // The floats of 32 bits in an EXR file decide.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -50,7 +50,7 @@ impl AsBytes for [f64; 3] {
         buffer.clear();
         let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
         for &light in row {
-            // Most pixels equal the one before.
+            // Most pixels equal the pixel before, so the last conversion is kept.
             if light != before {
                 (before, last) = (light, encoder.pixel(light));
             }
@@ -97,7 +97,7 @@ impl<P: Pixel> Film<P> {
     /// There is not enough memory for it.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
         memory::reserve(width, height, size_of::<P>() as u64)?;
-        // The system provides zeroed memory, so that a page is touched only when something is
+        // The system provides zeroed memory, in which a page takes no memory before something is
         // written to it.
         Ok(Self {
             width,
@@ -138,17 +138,17 @@ impl<P: Pixel> Film<P> {
         })
     }
 
-    /// Number of columns.
+    /// Returns the number of columns.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Returns one pixel.
+    /// Returns the pixel in column `x` and row `y`.
     pub fn pixel(&self, x: u32, y: u32) -> P {
         self.row(y)[x as usize]
     }
@@ -159,17 +159,17 @@ impl<P: Pixel> Film<P> {
         &self.pixels[y as usize * width..][..width]
     }
 
-    /// All pixels, row by row.
+    /// Returns all pixels, row by row.
     pub fn pixels(&self) -> &[P] {
         &self.pixels
     }
 
-    /// All pixels, row by row, for changes.
+    /// Returns all pixels, row by row, as a mutable slice.
     pub fn pixels_mut(&mut self) -> &mut [P] {
         &mut self.pixels
     }
 
-    /// Sets the pixels of a part of the picture, row by row.
+    /// Overwrites the pixels of a part of the picture with `pixels`, row by row.
     pub fn put(&mut self, part: Area, pixels: &[P]) {
         let (left, width) = (part.x as usize, part.width as usize);
         for (y, row) in (part.y as usize..).zip(pixels.chunks_exact(width)) {
@@ -179,8 +179,8 @@ impl<P: Pixel> Film<P> {
     }
 }
 
-/// Counts the pixels of a film whose bytes are certainly the rounding of the true mean's, given the
-/// error bound of each.
+/// Counts the pixels of a film whose bytes are certainly those of the true mean. `bounds` is the
+/// error bound of each pixel's mean.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {

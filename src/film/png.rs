@@ -1,9 +1,9 @@
 //! Portable Network Graphics: 8 bits of sRGB per channel, and the scene that the picture shows.
 //!
 //! The text is stored in compressed iTXt chunks before the pixels: `Software`, a keyword of PNG
-//! itself, `pinhole:scene`, one `pinhole:set` for each override in their order, and `pinhole:crop`
-//! as `X,Y,W,H`. There is no date and nothing about the machine, so that the same scene makes the
-//! same file.
+//! itself; `pinhole:scene`; one `pinhole:set` for each override, in order; and `pinhole:crop` as
+//! `X,Y,W,H`. The file contains no date and nothing about the machine, so that the same scene gives
+//! the same file.
 
 use std::io::{self, Write};
 
@@ -20,10 +20,10 @@ use crate::area::Area;
 /// The first bytes of every PNG.
 pub const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// Maximum number of bytes of a recipe's text. A longer recipe is not stored in a picture.
+/// Maximum number of bytes of a recipe's text. A recipe with more text is not stored in a picture.
 pub const TEXT_LIMIT: usize = 1 << 20;
 
-/// Maximum number of a recipe's overrides. A recipe with more is not stored in a picture.
+/// Maximum number of a recipe's overrides. A recipe with more overrides is not stored in a picture.
 pub const OVERRIDES_LIMIT: usize = 1000;
 
 const SOFTWARE: &str = "Software";
@@ -31,7 +31,7 @@ const SCENE: &str = "pinhole:scene";
 const SET: &str = "pinhole:set";
 const CROP: &str = "pinhole:crop";
 
-/// What a picture was made from.
+/// The scene, the overrides and the crop from which a picture was made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recipe {
     /// The text of the scene.
@@ -42,7 +42,7 @@ pub struct Recipe {
     pub crop: Option<Area>,
 }
 
-/// Why a picture cannot be read as a scene.
+/// Why a picture's recipe cannot be read.
 #[derive(Debug, Error)]
 pub enum NotOurs {
     /// The file does not follow the format.
@@ -62,13 +62,13 @@ pub enum NotOurs {
     /// A text of the picture is not UTF-8.
     #[error("the picture carries a scene or an override that is not UTF-8 text")]
     NotUtf8,
-    /// The crop is no area.
+    /// The crop in the picture is not a valid area.
     #[error("the picture carries a crop that makes no sense, `{0}`")]
     Crop(String),
 }
 
 impl Recipe {
-    /// Whether the recipe is short enough to be stored in a picture.
+    /// Returns whether the recipe is short enough to be stored in a picture.
     pub fn fits(&self) -> bool {
         let overrides: usize = self.overrides.iter().map(String::len).sum();
         let crop = self.crop.map_or(0, |crop| crop.to_string().len());
@@ -85,7 +85,7 @@ impl Recipe {
     }
 }
 
-/// Writes a picture, with what it was made from if that is given and [`fits`](Recipe::fits).
+/// Writes a picture as a PNG. Also stores `recipe` if it is given and [`fits`](Recipe::fits).
 ///
 /// # Errors
 ///
@@ -99,7 +99,7 @@ pub fn write_png<P: AsBytes>(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    // Rows of flat colours repeat, and compress better as they are than as the differences of
+    // Rows of flat colours repeat. They compress better unfiltered than as the differences of
     // neighbours that the format's filters store. A higher level makes files of such pictures
     // smaller by a few hundredths, and takes three times as long.
     encoder.set_filter(Filter::NoFilter);
@@ -115,7 +115,8 @@ pub fn write_png<P: AsBytes>(
         writer.write_text_chunk(&chunk)?;
     }
 
-    // Row by row: the bytes of the whole picture are never in memory at once.
+    // Rows are written one by one, so that the bytes of the whole picture are never in memory at
+    // once.
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
     let encoder = srgb::Encoder::default();
     let mut buffer = Vec::new();
@@ -127,12 +128,13 @@ pub fn write_png<P: AsBytes>(
     Ok(())
 }
 
-/// Reads what a picture was made from. Only what precedes the pixels is read, and at most
+/// Reads the recipe from a picture. Only the chunks before the pixels are read, and at most
 /// [`TEXT_LIMIT`] bytes are decompressed.
 ///
 /// # Errors
 ///
-/// The picture contains no scene, or more than a recipe may have.
+/// The file is damaged, contains no scene or an invalid text, or contains more text or overrides
+/// than a recipe may have.
 pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     let mut rest = picture.strip_prefix(&SIGNATURE).ok_or(NotOurs::Damaged)?;
     let (mut scene, mut overrides, mut crop) = (None, Vec::new(), None);
@@ -172,13 +174,13 @@ pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     })
 }
 
-/// Returns a chunk's kind and content, and the bytes after it. Returns `None` if it is cut off or
-/// its checksum is wrong.
+/// Returns a chunk's kind, its content, and the bytes after it. Returns `None` if the chunk is cut
+/// off or its checksum is wrong. For the pixels, only the kind is returned.
 fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;
     if rest.starts_with(b"IDAT") {
-        // The pixels may be longer than what was read of the file.
+        // The chunk of pixels may extend beyond the bytes that were read of the file.
         return Some((&rest[..4], &[], &[]));
     }
     let (checked, rest) = rest.split_at_checked(length.checked_add(4)?)?;
@@ -187,7 +189,8 @@ fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     (crc32fast::hash(checked) == u32::from_be_bytes(*checksum)).then_some((kind, content, rest))
 }
 
-/// Returns the keyword of an iTXt chunk, whether its text is compressed, and the text.
+/// Returns the keyword of an iTXt chunk, whether its text is compressed, and the text. Returns
+/// `None` if the chunk is malformed.
 fn international_text(content: &[u8]) -> Option<(&[u8], bool, &[u8])> {
     let (keyword, rest) = before_zero(content)?;
     let (&[is_packed, _method], rest) = rest.split_first_chunk()?;

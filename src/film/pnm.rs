@@ -2,8 +2,8 @@
 //!
 //! Damage that a shell or a system may have done to a file is repaired if it can be recognised for
 //! certain: a byte order mark or lines of text in front, UTF-16 instead of bytes, a carriage return
-//! before every line feed. What is missing or out of range is reported with its position. PAM is
-//! left to `image`.
+//! before every line feed. Missing numbers and numbers out of range are reported with their
+//! position. PAM is left to `image`.
 
 use super::{
     memory,
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Maximum number of bytes before a picture that may be other output of a program.
+/// Maximum number of bytes of other output in front of a picture.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
@@ -20,7 +20,7 @@ const BOM: &[u8] = b"\xef\xbb\xbf";
 /// The beginning of a PNM file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// The letter P, after this many bytes: none, or a byte order mark.
+    /// The letter P, after this number of bytes: 0, or the 3 of a byte order mark.
     Plain(usize),
     /// UTF-16.
     Utf16 {
@@ -31,7 +31,7 @@ pub enum Start {
     },
 }
 
-/// Returns the beginning of a file if it is a PNM without text in front.
+/// Returns how a file begins, if it is a PNM without text in front. Returns `None` for other files.
 pub fn start(bytes: &[u8]) -> Option<Start> {
     let mark = if bytes.starts_with(BOM) { 3 } else { 0 };
     if is_head(&bytes[mark..]) {
@@ -47,23 +47,25 @@ pub fn start(bytes: &[u8]) -> Option<Start> {
     is_head(&text).then_some(Start::Utf16 { mark, is_big })
 }
 
-/// Returns the position of the line in which a PNM begins, after lines of other text.
+/// Returns the position at which a PNM begins after lines of other text. Returns `None` if there is
+/// none.
 pub fn after_lines(bytes: &[u8]) -> Option<usize> {
     let start = &bytes[..bytes.len().min(LINES_BEFORE)];
     let feeds = (0..start.len()).filter(|&at| start[at] == b'\n');
     feeds.map(|at| at + 1).find(|&at| {
-        // A picture states its size; a first line that merely looks like a picture's is not enough.
+        // The header must contain the picture's size; a line that merely begins as a PNM does is
+        // not enough.
         let mut head = PnmReader::new(&start[at..]);
         is_head(&start[at..]) && head.number().is_ok() && head.number().is_ok()
     })
 }
 
-/// Whether bytes begin as a PNM does: with its two letters, and the end of a word.
+/// Returns whether bytes begin as a PNM does: with its two letters and the end of that word.
 fn is_head(bytes: &[u8]) -> bool {
     matches!(bytes, [b'P', b'1'..=b'6', end, ..] if end.is_ascii_whitespace() || *end == b'#')
 }
 
-/// Converts UTF-16 to bytes. Returns `None` if a character is no byte.
+/// Converts UTF-16 to bytes. Returns `None` if a character is above 255.
 fn narrowed(bytes: &[u8], is_big: bool) -> Option<Vec<u8>> {
     let (pairs, _) = bytes.as_chunks::<2>();
     let byte = |&[a, b]: &[u8; 2]| match if is_big { (a, b) } else { (b, a) } {
@@ -73,11 +75,13 @@ fn narrowed(bytes: &[u8], is_big: bool) -> Option<Vec<u8>> {
     pairs.iter().map(byte).collect()
 }
 
-/// Reads a PNM.
+/// Reads a PNM, after repairing damage if possible. Rejects one that is decoded to more than
+/// `limit` bytes.
 ///
 /// # Errors
 ///
-/// The file is no picture, or a damaged one; the message says what is wrong with it, and where.
+/// The file is no PNM, is damaged, or is too large. The message says what is wrong with it, and
+/// where.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     match start(bytes) {
         Some(Start::Plain(0)) => read_bytes(bytes, limit, Coding::Exact),
@@ -178,7 +182,8 @@ impl Raster {
         self.width * self.height * self.channels
     }
 
-    /// Returns the name of the pixel, and the channel, that a number belongs to.
+    /// Returns the name of the pixel, and of the channel, to which the number with this index
+    /// belongs.
     fn place(&self, index: usize) -> String {
         let pixel = index / self.channels;
         let (x, y) = (pixel % self.width, pixel / self.width);
@@ -208,7 +213,8 @@ impl Raster {
         ))
     }
 
-    /// Reads numbers with white space between them. Bits need none, and 1 is black.
+    /// Reads numbers with white space between them. For bits, white space is optional, and 1 is
+    /// black.
     fn in_text(&self, reader: &mut PnmReader, is_bits: bool) -> Result<Vec<u16>, Unreadable> {
         let mut numbers = Vec::with_capacity(self.count());
         for index in 0..self.count() {
@@ -232,7 +238,7 @@ impl Raster {
         Ok(numbers)
     }
 
-    /// Reads bits, of which 1 is black. Each row begins with a new byte.
+    /// Reads bits, where 1 is black. Each row begins with a new byte.
     fn in_bits(&self, raster: &[u8]) -> Result<Vec<u16>, Unreadable> {
         let row = self.width.div_ceil(8);
         let bit = |index: usize| {
@@ -244,8 +250,8 @@ impl Raster {
         (0..self.count()).map(bit).collect()
     }
 
-    /// Reads bytes, or words of two bytes with the high one first. Returns also which damage was
-    /// repaired.
+    /// Reads numbers of one byte, or of two bytes with the high one first. Also returns which
+    /// damage was repaired.
     fn in_bytes(
         &self,
         reader: &PnmReader,
@@ -276,7 +282,8 @@ impl Raster {
     }
 }
 
-/// Repairs a raster that was written as text, if that gives it the wanted length.
+/// Repairs a raster that was written as text. Returns the bytes and the kind of damage, or `None`
+/// if no repair gives the wanted length.
 fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     let of_lines = |raster: &[u8]| without_returns(raster, wanted);
     if let Some(raster) = of_lines(raster) {
@@ -291,13 +298,14 @@ fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     Some((of_lines(&bytes)?, Coding::Utf8))
 }
 
-/// Whether bytes are a text in which characters that were none had been replaced.
+/// Returns whether bytes are UTF-8 text in which invalid characters were replaced.
 fn is_text_with_losses(raster: &[u8]) -> bool {
     str::from_utf8(raster).is_ok_and(|text| text.contains(char::REPLACEMENT_CHARACTER))
 }
 
-/// Repairs a raster that was written as text on a system where lines end in two bytes: every line
-/// feed follows a carriage return, and without these the raster has the wanted length.
+/// Repairs a raster that was written as text on a system whose lines end in two bytes. Returns
+/// `None` unless every line feed follows a carriage return and the raster has the wanted length
+/// without these.
 fn without_returns(raster: &[u8], wanted: usize) -> Option<Vec<u8>> {
     let is_feed = |at: usize| raster[at] == b'\n';
     let mut feeds = (0..raster.len()).filter(|&at| is_feed(at));
@@ -312,14 +320,14 @@ fn without_returns(raster: &[u8], wanted: usize) -> Option<Vec<u8>> {
     (kept.len() == wanted).then_some(kept)
 }
 
-/// A reader of numbers in a text, past comments.
+/// A reader of the numbers in a PNM, which skips comments.
 struct PnmReader<'b> {
     bytes: &'b [u8],
     at: usize,
 }
 
 impl<'b> PnmReader<'b> {
-    /// Starts after the two letters.
+    /// Starts behind the two letters of the format.
     fn new(bytes: &'b [u8]) -> Self {
         Self { bytes, at: 2 }
     }
@@ -328,7 +336,7 @@ impl<'b> PnmReader<'b> {
         self.at >= self.bytes.len()
     }
 
-    /// Line number, from 1, as editors count.
+    /// Returns the current line number, from 1.
     fn line(&self) -> usize {
         let before = &self.bytes[..self.at];
         1 + before.iter().filter(|&&byte| byte == b'\n').count()
@@ -361,7 +369,8 @@ impl<'b> PnmReader<'b> {
             self.at += word.len();
             return Ok(number);
         }
-        // Lines are counted from the beginning, which would take too long for every number.
+        // Lines are counted from the beginning only for an error message, since this would take too
+        // long for every number.
         let line = self.line();
         Err(damaged(match word {
             [] => "it ends before its size and maxval".to_owned(),
@@ -377,7 +386,7 @@ impl<'b> PnmReader<'b> {
         }))
     }
 
-    /// Reads a number of one digit.
+    /// Reads a digit, 0 or 1.
     fn bit(&mut self) -> Result<u64, Unreadable> {
         let byte = self.bytes[self.at];
         self.at += 1;
@@ -394,12 +403,12 @@ impl<'b> PnmReader<'b> {
         }
     }
 
-    /// Returns what follows the single white space after a header.
+    /// Returns the bytes after the single white-space character that ends the header.
     fn after_one_space(&self) -> &'b [u8] {
         self.bytes.get(self.at + 1..).unwrap_or_default()
     }
 
-    /// Returns what follows the end of the header's line.
+    /// Returns the bytes after the header's line. Returns `None` if no line end follows the header.
     fn after_line_end(&self) -> Option<&'b [u8]> {
         let rest = self.bytes.get(self.at..)?;
         rest.strip_prefix(b"\r\n").or(rest.strip_prefix(b"\n"))

@@ -1,12 +1,12 @@
 //! Reads picture files of any program into films.
 //!
 //! In: the bytes of a picture in PNG, in OpenEXR, or in any other format that `image` reads here.
-//! Out: linear means, the maximum error of the file's rounding, and what else its coding does to
+//! Out: linear means, the kind of the file's rounding, and the other effects of its coding on
 //! colours.
 //!
-//! Whole numbers are taken for sRGB, whatever a `gAMA` or a colour profile says: the pictures of a
-//! scene are meant so, and most programs write them so without saying it. Floats are taken for
-//! linear light. Transparent pixels are shown on black, mixed in linear light.
+//! Whole numbers are read as sRGB, whatever a `gAMA` chunk or a colour profile says: pictures of a
+//! scene are meant as sRGB, and most programs write them so without a declaration. Floats are read
+//! as linear light. Transparent pixels are shown on black, mixed in linear light.
 
 use std::{error::Error, io::Cursor};
 
@@ -24,22 +24,23 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Maximum number of bytes that a decoder may allocate besides the picture: the default of `image`.
+/// Maximum number of bytes that the PNG decoder may allocate besides the picture: the default of
+/// `image`.
 const UNPACKING: usize = 512 << 20;
 
-/// Whether a file begins as a picture does, in a format that is read here or not.
+/// Returns whether a file begins as a picture does, even if its format is not supported.
 pub fn is_picture(bytes: &[u8]) -> bool {
     pnm::start(bytes).is_some() || format(bytes).is_some()
 }
 
-/// Whether a PNM begins after lines of text, within the first bytes of a file.
+/// Returns whether a PNM begins after lines of text, within the first 64 KiB of a file.
 pub fn is_picture_behind_lines(bytes: &[u8]) -> bool {
     pnm::after_lines(bytes).is_some()
 }
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {
     let format = image::guess_format(bytes).ok()?;
-    // The two letters of this format could begin a name in a scene.
+    // A name in a scene may begin with the two letters of a PNM.
     let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
     if format == ImageFormat::Pnm && bytes.get(2).is_some_and(is_word) {
         return None;
@@ -51,17 +52,17 @@ fn format(bytes: &[u8]) -> Option<ImageFormat> {
 ///
 /// # Errors
 ///
-/// The file is no picture that can be read.
+/// The file is not a picture that can be read.
 pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
     read_picture_up_to(bytes, DECODED_LIMIT)
 }
 
-/// Reads a picture of at most `limit` decoded bytes, which its first bytes tell, if there is memory
-/// for it.
+/// Reads a picture of at most `limit` decoded bytes. The size is taken from the file's header and
+/// rejected before decoding, also if there is not enough memory.
 ///
 /// # Errors
 ///
-/// The file is no picture that can be read.
+/// The file is not a picture that can be read.
 pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let picture = match format(bytes) {
         Some(ImageFormat::OpenExr) => exr::read(bytes, limit)?,
@@ -94,7 +95,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     if limit > DECODED_LIMIT {
-        // Whether there is memory is checked below.
+        // The available memory is checked below instead.
         reader.no_limits();
     }
     let decoder = reader.into_decoder().map_err(unreadable)?;
@@ -107,7 +108,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
         2 => Rounding::Word,
         _ => Rounding::Float,
     };
-    // The decoded picture, its copy with all four channels, and the film.
+    // Memory is needed for the decoded picture, its copy with four channels, and the film.
     let channels = match rounding {
         Rounding::Float => size_of::<[f32; 4]>(),
         _ => size_of::<[u16; 4]>(),
@@ -118,7 +119,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     let opacity = match rounding {
         Rounding::Float => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
-        // A byte k equals the word 257 k, as a fraction of the whole range.
+        // As a fraction of its range, the byte k equals the word 257 · k.
         _ => {
             let light = light_of_words();
             let light = |word: u16| light[usize::from(word)];
@@ -154,7 +155,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     };
     let limits = png::Limits { bytes: UNPACKING };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    // Bytes or words of gray or of colours, with opacity.
+    // The decoder then returns bytes or words of gray or of colours, with opacity.
     decoder.set_transformations(Transformations::EXPAND | Transformations::ALPHA);
     let header = decoder.read_header_info().map_err(unreadable)?;
     let (width, height) = (header.width, header.height);
@@ -182,7 +183,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let light = light_of_words();
     let word = |index: usize| match rounding {
         Rounding::Word => u16::from_be_bytes([samples[2 * index], samples[2 * index + 1]]),
-        // A byte k equals the word 257 k, as a fraction of the whole range.
+        // As a fraction of its range, the byte k equals the word 257 · k.
         _ => 257 * u16::from(samples[index]),
     };
     let count = film.pixels().len();
@@ -201,8 +202,8 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     })
 }
 
-/// Whether a PNG declares a curve other than sRGB's. A chunk `sRGB` overrules `gAMA`, and `iCCP`
-/// both.
+/// Returns whether a PNG declares a curve other than sRGB's. An `sRGB` chunk overrules `gAMA`, and
+/// `iCCP` overrules both.
 fn says_other_curve(info: &png::Info) -> bool {
     match (&info.icc_profile, info.srgb, info.gama_chunk) {
         (Some(profile), ..) => is_other_profile(profile).unwrap_or(false),
@@ -211,8 +212,8 @@ fn says_other_curve(info: &png::Info) -> bool {
     }
 }
 
-/// Whether the curve of red, or of gray, in an ICC profile (ICC.1:2010, 10.5 and 10.15) is far from
-/// sRGB's. Returns `None` if the profile has no such curve.
+/// Returns whether an ICC profile's curve of red, or of gray, is far from sRGB's (ICC.1:2010, 10.5
+/// and 10.15). Returns `None` if the profile has no such curve.
 fn is_other_profile(profile: &[u8]) -> Option<bool> {
     let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let count = number(128)?.min(100) as usize;
@@ -223,31 +224,32 @@ fn is_other_profile(profile: &[u8]) -> Option<bool> {
     let at = number(tag + 4)? as usize;
     let word = |at: usize| Some(u16::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let fixed = |index: usize| Some(f64::from(number(at + 12 + 4 * index)? as i32) / 65536.0);
-    // The light of one half, which is 0.2140 in sRGB and 0.2176 by a power of 2.2.
+    // The curve's light at one half is compared: 0.2140 in sRGB, and 0.2176 for a power of 2.2.
     let light = match (profile.get(at..at + 4)?, number(at + 8)?) {
         (b"curv", 0) => 0.5,
         (b"curv", 1) => libm::pow(0.5, f64::from(word(at + 12)?) / 256.0),
         (b"curv", count) => f64::from(word(at + 12 + 2 * (count as usize / 2))?) / 65535.0,
         (b"para", 0) => libm::pow(0.5, fixed(0)?),
-        // At one half, the other functions are (a x + b)^g; two of them add a constant to it.
+        // At one half, the other functions are (a·x + b)^g. Two of them add a constant, which is
+        // ignored.
         (b"para", _) => libm::pow(0.5 * fixed(1)? + fixed(2)?, fixed(0)?),
         _ => return None,
     };
     Some((light - srgb_to_linear(0.5)).abs() > 0.01)
 }
 
-/// Converts a word to a fraction of the range of words.
+/// Converts a 16-bit word to a fraction from 0 to 1.
 fn part(word: u16) -> f64 {
     f64::from(word) / f64::from(u16::MAX)
 }
 
-/// Returns the light of every word of sRGB.
+/// Returns the linear light of every 16-bit word of sRGB.
 fn light_of_words() -> Vec<f64> {
     let words = 0..=u16::MAX;
     words.map(|word| srgb_to_linear(part(word))).collect()
 }
 
-/// Fills a film from samples of red, green, blue and opacity.
+/// Fills a film as [`mix`] does, from samples of red, green, blue and opacity in turn.
 fn fill<T: Copy>(
     film: &mut Film,
     samples: &[T],
@@ -257,7 +259,8 @@ fn fill<T: Copy>(
     mix(film, samples.as_chunks().0.iter().copied(), light, opacity)
 }
 
-/// Fills a film from pixels of red, green, blue and opacity, on black.
+/// Fills a film from pixels of red, green, blue and opacity, mixed with black. Returns the opacity,
+/// or `None` if all pixels are opaque. Fails if there is not enough memory.
 fn mix<T: Copy>(
     film: &mut Film,
     pixels: impl Iterator<Item = [T; 4]>,
@@ -288,7 +291,7 @@ fn mix<T: Copy>(
 
 fn unreadable(error: &ImageError, format: ImageFormat) -> Unreadable {
     let format = name(format);
-    // The error's own text would name the format again.
+    // The error's own text would repeat the format's name, so its source is used.
     let cause = error
         .source()
         .map_or_else(|| error.to_string(), ToString::to_string);

@@ -1,26 +1,26 @@
 //! Linear light as bytes of sRGB.
 //!
-//! Encoding and rounding are one comparison with thresholds: byte k stands for the light between
-//! that of k − 1/2 and that of k + 1/2. The thresholds are exact, so every light gets the nearest
-//! byte; and an unmixed colour of the scene is encoded as
+//! Encoding and rounding are done by one comparison with thresholds: byte k stands for the light
+//! from that of k − 1/2 up to that of k + 1/2. The thresholds are exact, so every light gets the
+//! nearest byte. An unmixed colour of the scene is encoded as
 //! [`Color::to_bytes`](crate::color::Color::to_bytes) does, ties included.
 
 use std::array;
 
 use crate::color::half_byte;
 
-/// Number of intervals of linear light in the table of first bytes.
+/// Number of equal intervals of linear light in the table [`Encoder::start`].
 const PARTS: usize = 4096;
 
 /// An encoder of linear light as bytes.
 pub struct Encoder {
-    /// The light of k + 1/2 for each byte k below 255.
+    /// The linear light of k + 1/2, for each byte k below 255.
     thresholds: [f64; 255],
-    /// The byte at the dark end of each interval.
+    /// The byte of the light at the dark end of each interval.
     start: [u8; PARTS + 1],
 }
 
-/// Computes the thresholds.
+/// Computes the thresholds and the table.
 impl Default for Encoder {
     fn default() -> Self {
         let thresholds = array::from_fn(|k| half_byte(k as u8));
@@ -38,9 +38,9 @@ impl Encoder {
         light.map(|channel| self.encode(channel))
     }
 
-    /// Encodes one channel. Light below 0 or above 1 counts as 0 or 1.
+    /// Encodes one channel. Light below 0 counts as 0, and above 1 as 1.
     pub fn encode(&self, light: f64) -> u8 {
-        // The conversion saturates on both sides, and the scaling is exact.
+        // The scaling is exact, and the conversion saturates on both sides.
         let part = ((light * PARTS as f64) as usize).min(PARTS);
         let mut byte = self.start[part];
         while byte < 255 && self.thresholds[usize::from(byte)] <= light {

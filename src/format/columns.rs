@@ -1,11 +1,11 @@
-//! Alignment.
+//! Alignment of the entries in columns.
 //!
-//! In a group (lines without a blank one between them) these are aligned: the `=` of definitions,
-//! the names and braces of objects that each stand on one line, the values of a block's fields, and
-//! the fields of objects of one kind as far as they have the same names. A line of comments
-//! separates groups of objects. The braces of `image`, `camera` and `sampler` are aligned wherever
-//! these blocks stand, as they belong together by their meaning. Lines that would need many blanks
-//! do not share a column.
+//! A group is a sequence of lines without a blank line. Within a group these are aligned: the `=`
+//! of definitions; the names and braces of objects that each stand on one line; the values of a
+//! block's fields; and the fields of objects of one kind, up to the first field whose name differs.
+//! A line of comments separates groups of objects. The braces of `image`, `camera` and `sampler`
+//! are aligned wherever these blocks stand, since they belong together by their meaning. Lines that
+//! would need many blanks do not share a column.
 
 use super::{
     entries::{BlockEntry, Entry, EntryKind},
@@ -16,10 +16,10 @@ use crate::schema;
 /// Maximum difference in width, in characters, between parts that share a column.
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
-/// Minimum number of blocks of one kind that form a table.
+/// Minimum number of consecutive blocks of one kind that form a table.
 const MIN_TABLE_ROWS: usize = 3;
 
-/// Sets the columns of a file's entries.
+/// Sets the columns of a file's entries, and of the entries in its blocks.
 pub fn align(entries: &mut [Entry<'_>]) {
     keep_rows(entries);
     settings(entries);
@@ -44,8 +44,8 @@ pub fn align(entries: &mut [Entry<'_>]) {
     }
 }
 
-/// Keeps neighbouring blocks of one kind on a line each if they were written so, even if some are
-/// slightly too wide: such a table is readable at a glance.
+/// Keeps neighbouring blocks of one kind on one line each if they were written so, even if some
+/// lines are slightly too wide: such a table is readable at a glance.
 fn keep_rows(entries: &mut [Entry<'_>]) {
     for rows in entries.chunk_by_mut(|a, b| !b.blank && is_row_beside(a, b)) {
         if rows.len() < MIN_TABLE_ROWS {
@@ -68,15 +68,15 @@ fn is_row_beside(a: &Entry<'_>, b: &Entry<'_>) -> bool {
     }
 }
 
-/// What an entry is aligned with.
+/// Class of an entry: which other entries it is aligned with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Alignment {
     Definition,
     Object,
     Field,
-    /// Not aligned, but its neighbours may be aligned with each other.
+    /// The entry is not aligned, but the entries around it may be aligned with each other.
     Unaligned,
-    /// Ends a group.
+    /// The entry ends a group.
     End,
 }
 
@@ -95,8 +95,8 @@ fn alignment_in_file(entry: &Entry<'_>) -> Alignment {
     }
 }
 
-/// Classifies an entry for the alignment of objects. Objects that a line of comments or an object
-/// of another layout separates are too far apart to be aligned.
+/// Classifies an entry for the alignment of objects. A line of comments or an object of another
+/// layout ends a group, since the objects before and after it are too far apart.
 fn alignment_of_objects(entry: &Entry<'_>) -> Alignment {
     match alignment_in_file(entry) {
         Alignment::Unaligned => Alignment::End,
@@ -115,16 +115,16 @@ fn is_setting(block: &BlockEntry<'_>) -> bool {
     schema::block(block.kind).is_some_and(|block| !block.is_object)
 }
 
-/// Returns whether a block has only its kind and name before its `{`.
+/// Returns whether only the kind and the name stand before a block's `{`, and no comments.
 fn is_plain(entry: &Entry<'_>, block: &BlockEntry<'_>) -> bool {
     let words = 1 + usize::from(block.name.is_some());
     entry.leading.is_empty() && block.head.len() == words
 }
 
-/// Returns groups of entries of one class, as indices.
+/// Returns the groups of entries of one class, as indices of the entries.
 fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
-    // The class of the run that can be extended.
+    // Class of the last group while the group can be extended.
     let mut open = Alignment::End;
     for (index, entry) in entries.iter().enumerate() {
         if entry.blank {
@@ -147,8 +147,9 @@ fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<us
     runs
 }
 
-/// Splits a list into the longest parts whose widths differ by at most [`MAX_WIDTH_DIFFERENCE`],
-/// each with its greatest width. Elements without a width fit any part.
+/// Splits a list into parts, each as long as possible, whose widths differ by at most
+/// [`MAX_WIDTH_DIFFERENCE`]. Returns each part with its greatest width. Elements without a width
+/// fit any part.
 pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
     let mut parts = Vec::new();
     let (mut from, mut least, mut most) = (0, usize::MAX, 0);
@@ -164,7 +165,7 @@ pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[
     parts
 }
 
-/// Aligns the second parts of entries.
+/// Aligns the second parts of entries: values, `=` or `{`.
 fn starts(entries: &mut [Entry<'_>], run: &[usize]) {
     let width = |entry: &Entry<'_>| match &entry.what {
         EntryKind::Definition(head, _) => width(head),
@@ -195,7 +196,7 @@ fn block<'e, 's>(entry: &'e Entry<'s>) -> Option<&'e BlockEntry<'s>> {
     }
 }
 
-/// Aligns the names and braces of objects, and the fields of similar ones.
+/// Aligns the names and braces of objects, and the fields of objects of one kind.
 fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     let filled = |index: usize| block(&entries[index]).filter(|block| !block.is_empty());
     let parts = shared(run, |index| Some(width(&filled(index)?.head)));
@@ -219,8 +220,9 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     }
 }
 
-/// Aligns the field after the one with index `field` in objects whose earlier fields are aligned,
-/// as far as the objects are of one kind and the fields have one name.
+/// Aligns the field after the one with index `field` in `rows`, objects whose earlier fields are
+/// aligned. Only consecutive objects of one kind in which the field `field` has the same name are
+/// aligned.
 fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     let alike = |&a: &usize, &b: &usize| {
         let (a, b) = (cell(&entries[a], field), cell(&entries[b], field));
@@ -243,8 +245,8 @@ fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     }
 }
 
-/// Returns the kind of an object, and the name and width of one of its fields; `None` if that is
-/// the last field.
+/// Returns the kind of an object, and the name and width of its field with index `field`. Returns
+/// `None` if the object has no later field.
 fn cell<'a>(entry: &'a Entry<'_>, field: usize) -> Option<(&'a str, &'a str, usize)> {
     let block = block(entry)?;
     block.entries.get(field + 1)?;

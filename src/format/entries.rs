@@ -1,6 +1,6 @@
-//! Entries, which start lines of their own: definitions, blocks, fields and comments.
+//! Entries: the definitions, blocks, fields and comments that start lines of their own.
 //!
-//! Here it is decided to which line a comment belongs, and which blocks stay on one line.
+//! This module decides to which line a comment belongs, and which blocks stay on one line.
 
 use std::borrow::Borrow;
 
@@ -10,22 +10,22 @@ use crate::{
     syntax::tree::{self, Item},
 };
 
-/// An entry of a file or a block: one line or several.
+/// An entry of a file or a block: one or more lines.
 #[derive(Debug)]
 pub struct Entry<'s> {
     /// Whether a blank line precedes the entry.
     pub blank: bool,
-    /// The comments at the start; all of an entry of comments.
+    /// The comments before the entry on its line; for an entry of comments, all of them.
     pub leading: Vec<&'s str>,
-    /// Its kind.
+    /// The kind of the entry, with its parts.
     pub what: EntryKind<'s>,
-    /// The comments at the end.
+    /// The comments after the entry on its line.
     pub trailing: Vec<&'s str>,
-    /// Column that the second part (`=`, `{` or value) is aligned to, counted from the entry's
-    /// start; 0 if it directly follows the first part.
+    /// Column to which the second part (`=`, `{` or value) is aligned, counted in characters from
+    /// the entry's start; 0 if it is not aligned.
     pub column: usize,
-    /// Column of the next field on the same line, counted from this field's start; 0 if it is not
-    /// aligned.
+    /// Column of the next field on the same line, counted in characters from this field's start; 0
+    /// if it is not aligned.
     pub next: usize,
 }
 
@@ -34,7 +34,7 @@ pub struct Entry<'s> {
 pub enum EntryKind<'s> {
     /// Only comments.
     Comments,
-    /// `let NAME`, and `= VALUE`.
+    /// The words of `let NAME`, and those of `= VALUE`.
     Definition(Vec<Word<'s>>, Vec<Word<'s>>),
     /// A field's name, and its value.
     Field(&'s str, Vec<Word<'s>>),
@@ -47,17 +47,17 @@ pub enum EntryKind<'s> {
 pub struct BlockEntry<'s> {
     /// The words before the `{`.
     pub head: Vec<Word<'s>>,
-    /// Its kind.
+    /// The kind.
     pub kind: &'s str,
-    /// Its name.
+    /// The name, if the block has one.
     pub name: Option<&'s str>,
-    /// Column that the name is aligned to.
+    /// Column to which the name is aligned; 0 if it is not aligned.
     pub name_column: usize,
-    /// Whether the `{` must stand on a new line, as a comment to the end of the line precedes it.
+    /// Whether the `{` must stand on a new line, because a `//` comment precedes it.
     pub open_on_new_line: bool,
-    /// The comments behind the `{`.
+    /// The comments after the `{`, on its line.
     pub after_open: Vec<&'s str>,
-    /// Its fields.
+    /// The fields, and comments between them.
     pub entries: Vec<Entry<'s>>,
     /// Whether the block is laid out on one line.
     pub on_one_line: bool,
@@ -66,14 +66,14 @@ pub struct BlockEntry<'s> {
 }
 
 impl BlockEntry<'_> {
-    /// Returns whether the block is `{}`.
+    /// Returns whether the block is `{}`, without fields and comments.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty() && self.after_open.is_empty()
     }
 }
 
 impl Entry<'_> {
-    /// Returns the width as a part of its block's line, in characters.
+    /// Returns the width, in characters, of an entry that is part of its block's single line.
     pub fn width_in_line(&self) -> usize {
         let comments = self.leading.iter().chain(&self.trailing);
         let comments: usize = comments.map(|comment| comment.chars().count() + 1).sum();
@@ -84,8 +84,8 @@ impl Entry<'_> {
     }
 }
 
-/// Returns the entries of a file. Each item is dropped as soon as its entry is made, because trees
-/// take much memory.
+/// Returns the entries of a file. If `items` gives ownership, each item is dropped as soon as its
+/// entry is made, because trees take much memory.
 pub fn of_file<'s, 't>(
     source: &'s Source,
     comments: &[Span],
@@ -97,7 +97,7 @@ pub fn of_file<'s, 't>(
     entries
 }
 
-/// What contains the entries.
+/// Container of entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Container {
     File,
@@ -105,7 +105,8 @@ enum Container {
 }
 
 impl<'s> TokenReader<'_, 's> {
-    /// Returns the entries up to an offset, and the comments behind the `{` before them.
+    /// Returns the entries of `nodes` up to the offset `end`, and the comments after the `{` before
+    /// the first of them.
     fn entries<N>(
         &mut self,
         nodes: impl IntoIterator<Item = impl Borrow<N>>,
@@ -194,7 +195,7 @@ impl<'s> TokenReader<'_, 's> {
             Self::field,
         );
         self.skip(close);
-        // Widths of ` { `, ` }`, and of the two blanks between fields.
+        // The width adds ` { `, ` }`, and two blanks between fields.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
         let is_empty = entries.is_empty() && after_open.is_empty();
         let width = width(&head) + 3 + fields;
@@ -231,12 +232,12 @@ fn entry(what: EntryKind<'_>) -> Entry<'_> {
     }
 }
 
-/// Comments of one line, and whether a blank line precedes them.
+/// Comments of one line, after whether a blank line precedes them.
 type CommentLine<'s> = (bool, Vec<&'s str>);
 
-/// Assigns the comments of a gap to lines: those on the line of the previous entry to its end, the
-/// others to lines of their own. Returns the last of these lines, as it may start with the next
-/// entry.
+/// Assigns the comments of a gap to lines. Comments on the line of the previous entry are added to
+/// the entry's end; the others get lines of their own. Returns the last of these lines without
+/// adding it, because the next entry may stand on it.
 fn comments<'s>(
     gap: Gap<'s>,
     container: Container,
@@ -250,7 +251,8 @@ fn comments<'s>(
             last.trailing.extend(texts.map(|comment| comment.text));
             joined
         }
-        // Between a `{` and an entry on its line, comments belong to the start of the entry.
+        // If an entry follows a `{` on the same line, the comments between them belong to the start
+        // of that entry.
         (None, Container::Block) if joined < gap.comments.len() || gap.breaks > 0 => {
             let texts = gap.comments.iter().take(joined);
             after_open.extend(texts.map(|comment| comment.text));

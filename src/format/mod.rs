@@ -1,14 +1,14 @@
 //! The canonical layout of a scene's text.
 //!
-//! In: a text without mistakes of syntax. Out: the same tokens and comments in the same order, with
-//! the white space between them that `grammar/language.md` describes under "Layout". The meaning of
-//! the names does not matter, so a scene with other mistakes can be formatted.
+//! In: a text without syntax errors. Out: the same tokens and comments in the same order, with the
+//! white space between them that `grammar/language.md` describes under "Layout". The meaning of
+//! names does not matter, so a scene with other mistakes can be formatted.
 //!
-//! Of the original white space, only line ends have a meaning: whether a block stands on one line,
-//! where blank lines separate groups, and to which line a comment belongs. Blanks have none, so two
-//! texts that differ only in them get the same layout. `token_stream` reads tokens and comments
-//! from tree and text, `entries` makes lines of them, `columns` aligns them, and `writer` writes
-//! them.
+//! Of the original white space, only line ends matter: they decide whether a block stands on one
+//! line, where blank lines separate groups, and to which line a comment belongs. Two texts that
+//! differ only in blanks get the same layout. `token_stream` reads tokens and comments from the
+//! tree and the text, `entries` makes entries of them, `columns` aligns the entries, and `writer`
+//! writes them.
 
 mod columns;
 mod entries;
@@ -27,7 +27,7 @@ use crate::{
     },
 };
 
-/// Returns the canonical layout of a scene's text, or its mistakes of syntax.
+/// Returns the canonical layout of a scene's text, or its syntax errors.
 pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     let parsed = syntax::parse(source, SourceId::File);
     if !is_right(source, &parsed) {
@@ -49,8 +49,8 @@ pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     Ok(formatted)
 }
 
-/// Returns the canonical layout of a text that is parsed already; `None` if it has mistakes of
-/// syntax.
+/// Returns the canonical layout of a text that is parsed already; `None` if the text has syntax
+/// errors.
 pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     if !is_right(source, parsed) {
         return None;
@@ -60,19 +60,19 @@ pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     (!parsed.is_doubtful || is_right_text(&formatted)).then_some(formatted)
 }
 
-/// Returns whether a formatted text can be formatted again: its new line ends may show that
-/// something else was meant.
+/// Returns whether a formatted text has no syntax errors either. The new line ends may change which
+/// explanation recovery finds for something doubtful.
 fn is_right_text(text: &str) -> bool {
     let source = Source::from_text("", text);
     is_right(&source, &syntax::parse(&source, SourceId::File))
 }
 
-/// Returns whether a text has no mistakes of syntax.
+/// Returns whether a text has no syntax errors.
 fn is_right(source: &Source, parsed: &Parsed<'_>) -> bool {
     parsed.problems.is_empty() && source.invalid_utf8().is_empty() && is_whole(&parsed.tree)
 }
 
-/// Returns the canonical layout of a file's entries.
+/// Returns the canonical layout of a text with these entries.
 fn layout(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
     columns::align(&mut entries);
     let written = writer::written(&entries);
@@ -86,8 +86,8 @@ fn layout(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
     formatted
 }
 
-/// Returns whether every item was understood and every field has a value: parsing does not report a
-/// missing value.
+/// Returns whether every item was understood and every field has a value. Parsing itself does not
+/// report a missing value.
 fn is_whole(tree: &Tree<'_>) -> bool {
     tree.items.iter().all(|item| match item {
         Item::Definition(_) => true,
@@ -99,9 +99,9 @@ fn is_whole(tree: &Tree<'_>) -> bool {
     })
 }
 
-/// Returns the mistakes that prevent a text from being formatted, as `check` reports them. Other
-/// problems of the scene are left out. The scene is analyzed because only its names decide how a
-/// missing value is reported.
+/// Returns the mistakes that prevent a text from being formatted, as `check` reports them, and no
+/// other problems of the scene. The scene is analyzed because the report of a missing value depends
+/// on which names are known.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let SemanticModel {
@@ -110,7 +110,7 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // `check` reports only the unknown field or kind, however its value is written.
+    // If a field or kind is unknown, `check` reports only that, and not its missing value.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);
@@ -120,8 +120,8 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
     lists.next().unwrap_or_default()
 }
 
-/// Returns a text with the byte order mark and the line ends of the original: CRLF if all of those
-/// are, or else LF. Blanks at the ends of lines are removed, in comments, too.
+/// Returns `written` with the byte order mark and the line ends of the original `text`: CRLF if all
+/// of its line ends are CRLF, otherwise LF. Removes blanks at the ends of lines, also in comments.
 fn with_line_ends(written: &str, text: &str, bom: usize) -> String {
     let mut ends = text.split('\n');
     let last = ends.next_back();

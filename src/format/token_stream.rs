@@ -1,6 +1,6 @@
-//! Tokens and comments in order, with the white space that may precede each.
+//! Reads tokens and comments in order, with the white space that may precede each of them.
 //!
-//! The tree has the kinds of the tokens, and the text has the line ends.
+//! The kinds of the tokens come from the tree, and the line ends from the text.
 
 use crate::{
     source::{Source, Span},
@@ -10,9 +10,9 @@ use crate::{
 /// A token or a comment.
 #[derive(Clone, Copy, Debug)]
 pub struct Word<'s> {
-    /// Its text.
+    /// The text of the token or comment.
     pub text: &'s str,
-    /// The white space before it.
+    /// The white space before the word.
     pub before: Before,
 }
 
@@ -21,26 +21,26 @@ pub struct Word<'s> {
 pub enum Before {
     /// Nothing.
     Nothing,
-    /// A blank.
+    /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long; a line is broken at the lowest number
-    /// first, which grows with the parentheses around the word and with the precedence of the
-    /// operator.
+    /// A blank, or a line end if the line would be too long. A line is broken first at the words
+    /// with the lowest number. The number grows with the depth of parentheses around the word and
+    /// with the precedence of the operator.
     Fold(usize),
     /// A line end within the entry.
     Line,
 }
 
-/// A comment before a token or at the end.
+/// A comment in a gap between two tokens.
 #[derive(Clone, Copy, Debug)]
 pub struct Comment<'s> {
-    /// Its text.
+    /// The text of the comment.
     pub text: &'s str,
-    /// Number of line ends before it, at most 2.
+    /// Number of line ends before the comment, at most 2.
     pub breaks: usize,
 }
 
-/// Returns whether a line must end behind a token or a comment.
+/// Returns whether a line must end after `text`, since it is a `//` comment.
 pub fn ends_line(text: &str) -> bool {
     text.starts_with("//")
 }
@@ -55,7 +55,7 @@ pub fn is_comment(text: &str) -> bool {
 pub struct Gap<'s> {
     /// The comments.
     pub comments: Vec<Comment<'s>>,
-    /// Number of line ends behind the last comment, at most 2.
+    /// Number of line ends after the last comment, at most 2.
     pub breaks: usize,
 }
 
@@ -67,7 +67,7 @@ pub struct TokenReader<'a, 's> {
 }
 
 impl<'a, 's> TokenReader<'a, 's> {
-    /// Starts at the beginning of a text with its comments.
+    /// Makes a reader at the beginning of a text, after its byte order mark.
     pub fn new(source: &'s Source, comments: &'a [Span]) -> Self {
         Self {
             text: source.text(),
@@ -76,7 +76,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         }
     }
 
-    /// Continues to an offset, and returns the comments and line ends before it.
+    /// Moves to the offset `to`, and returns the comments and line ends before it.
     pub fn gap(&mut self, to: usize) -> Gap<'s> {
         let mut comments = Vec::new();
         while let Some(comment) = self.comments.as_slice().first()
@@ -94,7 +94,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         Gap { comments, breaks }
     }
 
-    /// Skips a token.
+    /// Moves to the end of a token.
     pub fn skip(&mut self, token: Span) {
         self.at = token.end;
     }
@@ -117,8 +117,8 @@ impl<'a, 's> TokenReader<'a, 's> {
         self.text.get(span.range()).unwrap_or_default()
     }
 
-    /// Adds the comments before a token; one that started a line still does. Returns the white
-    /// space that must precede the token.
+    /// Adds the comments before the token at the offset `to`. A comment that started a line still
+    /// does. Returns the white space that must precede the token.
     pub fn comments(&mut self, to: usize, before: Before, words: &mut Vec<Word<'s>>) -> Before {
         let gap = self.gap(to);
         for comment in &gap.comments {
@@ -140,7 +140,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         }
     }
 
-    /// Adds a token, and the comments before it.
+    /// Adds the comments before a token, and the token.
     pub fn token(&mut self, span: Span, before: Before, words: &mut Vec<Word<'s>>) {
         let text = self.under(span);
         let mut behind = self.comments(span.start, before, words);
@@ -154,7 +154,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         self.skip(span);
     }
 
-    /// Adds a value inside `depth` parentheses.
+    /// Adds the words of a value that stands in `depth` parentheses.
     pub fn value(
         &mut self,
         value: &Value<'_>,
@@ -183,7 +183,7 @@ impl<'a, 's> TokenReader<'a, 's> {
             ValueKind::Chain { first, rest } => {
                 self.value(first, before, depth, words);
                 for step in rest {
-                    // Sums are broken before products.
+                    // Operators of products get a higher number, so lines are broken at sums first.
                     let tightness = 2 * depth + usize::from(step.operator.is_of_product());
                     self.token(step.sign, Before::Fold(tightness), words);
                     self.value(&step.operand, Before::Space, depth, words);
@@ -216,11 +216,11 @@ impl<'a, 's> TokenReader<'a, 's> {
 }
 
 /// Maximum width of a line, in characters, if there are places to break it. The width is measured
-/// before alignment, and comments at the end of a line do not count.
+/// before alignment and without the comments at the end of a line.
 pub const WIDTH: usize = 100;
 
-/// Returns the width of words on one line; of a comment with several lines, only the last one
-/// counts.
+/// Returns the width of words on one line, in characters. If a comment has several lines, only its
+/// last line counts.
 pub fn width(words: &[Word<'_>]) -> usize {
     words.iter().fold(0, |width, word| {
         let blank = usize::from(word.before != Before::Nothing);
@@ -228,7 +228,7 @@ pub fn width(words: &[Word<'_>]) -> usize {
     })
 }
 
-/// Returns the column after a text that starts in a column.
+/// Returns the column after a text that starts at `column`; columns count characters from 0.
 pub fn column_after(column: usize, text: &str) -> usize {
     match text.rsplit_once('\n') {
         Some((_, last)) => last.chars().count(),

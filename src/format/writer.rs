@@ -6,10 +6,10 @@ use super::{
     token_stream::{Before, WIDTH, Word, column_after, ends_line, is_comment, width},
 };
 
-/// Indentation, in blanks, of a block's fields, and of the further lines of a value.
+/// Indentation, in blanks, of a block's fields and of the further lines of a value.
 const INDENT: usize = 2;
 
-/// Returns the text of a file.
+/// Returns the text of a file's entries.
 pub fn written(entries: &[Entry<'_>]) -> String {
     let mut writer = LayoutWriter::default();
     for entry in entries {
@@ -22,7 +22,8 @@ pub fn written(entries: &[Entry<'_>]) -> String {
 #[derive(Default)]
 struct LayoutWriter {
     text: String,
-    /// Lines with comments at their ends, which are aligned when the group is complete.
+    /// Lines that wait for their alignment, each with its comments at the end. They are written
+    /// when their group is complete.
     waiting: Vec<(String, String)>,
 }
 
@@ -93,14 +94,14 @@ impl LayoutWriter {
         self.waiting.push((line, comments));
     }
 
-    /// Writes words, broken into lines where it is necessary or the line would be too long; the
-    /// last line remains open.
+    /// Writes words, broken into lines where a line end is required or a line would be too long.
+    /// The last line remains open in `line`.
     fn words(&mut self, line: &mut String, words: &[Word<'_>], margin: usize) {
         let last = self.lines(line, words, margin);
         push_flat(line, last);
     }
 
-    /// Writes all lines of the words except the last one, and returns the words of that one.
+    /// Writes all lines of the words except the last one, and returns the words of the last line.
     fn lines<'w, 's>(
         &mut self,
         line: &mut String,
@@ -118,14 +119,14 @@ impl LayoutWriter {
         rest
     }
 
-    /// Writes the last words of a line; comments at its end are aligned in a column.
+    /// Ends a line with `words`. Comments at its end are kept for alignment in a column.
     fn end_line(&mut self, mut line: String, words: &[Word<'_>]) {
         let is_behind = |word: &&Word<'_>| word.before == Before::Space && is_comment(word.text);
         let behind = words.iter().rev().take_while(is_behind).count();
         let (words, behind) = words.split_at(words.len() - behind);
         let behind: Vec<&str> = behind.iter().map(|word| word.text).collect();
         push_flat(&mut line, words);
-        // Further comments stay beside a comment that has a line of its own.
+        // Comments after a comment that has a line of its own stay beside it.
         if words.len() == 1 && words.iter().all(|word| is_comment(word.text)) {
             for comment in &behind {
                 line.push(' ');
@@ -137,7 +138,7 @@ impl LayoutWriter {
         }
     }
 
-    /// Writes the head of a block, and the blank or line end before its `{`.
+    /// Writes the head of a block, and the blanks or the line end before its `{`.
     fn head(&mut self, line: &mut String, block: &BlockEntry<'_>, column: usize) {
         match (block.name, block.name_column) {
             (Some(name), 1..) => {
@@ -158,7 +159,7 @@ impl LayoutWriter {
         }
     }
 
-    /// Writes the waiting lines, with their comments in columns.
+    /// Writes the waiting lines, with their comments aligned in columns.
     fn flush(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);
         let lines: Vec<usize> = (0..waiting.len()).collect();
@@ -191,7 +192,7 @@ fn pad(line: &mut String, column: usize) {
     line.extend(std::iter::repeat_n(' ', blanks));
 }
 
-/// Appends a block's fields on its line, between braces.
+/// Appends a block's fields to its line, between braces.
 fn push_fields(line: &mut String, entries: &[Entry<'_>]) {
     line.push_str("{ ");
     for (index, entry) in entries.iter().enumerate() {
@@ -215,7 +216,7 @@ fn push_fields(line: &mut String, entries: &[Entry<'_>]) {
     line.push_str(" }");
 }
 
-/// Appends the words of one line.
+/// Appends words to a line without breaking it.
 fn push_flat(line: &mut String, words: &[Word<'_>]) {
     let is_start = line.trim_start().is_empty();
     for (index, word) in words.iter().enumerate() {
@@ -228,7 +229,7 @@ fn push_flat(line: &mut String, words: &[Word<'_>]) {
 }
 
 /// Returns the indices of the words that start new lines. A line that is too long is broken where
-/// it is least nested, and there as late as possible.
+/// it is least nested, and of several such places at the last one that fits.
 fn line_starts(words: &[Word<'_>], start: usize, margin: usize) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut column = start;

@@ -12,8 +12,8 @@ use crate::{
 };
 
 impl Inspection {
-    /// Writes the JSON object and a line feed, object by object: as values in memory, a million
-    /// objects would take more than a gigabyte.
+    /// Writes the JSON object and a line feed. Objects are written one by one: a million of them
+    /// would take more than a gigabyte as values in memory.
     ///
     /// # Errors
     ///
@@ -43,7 +43,7 @@ impl Inspection {
         writeln!(out, "}}")
     }
 
-    /// Returns the members that are not about objects.
+    /// Returns the members of the JSON object that are not about the scene's objects.
     fn facts(&self) -> [(&'static str, Value); 4] {
         let camera = &self.camera;
         let point = |(axis, pixel)| json!({ "axis": axis, "pixel": pixel });

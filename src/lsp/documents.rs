@@ -1,4 +1,4 @@
-//! The texts that are open in the editor, and positions in them by line and column.
+//! Texts that are open in the editor, and positions in them by line and column.
 
 use line_index::{LineCol, LineIndex, WideEncoding, WideLineCol};
 
@@ -9,12 +9,12 @@ use crate::source::{Source, Sources};
 pub enum Encoding {
     /// Bytes.
     Utf8,
-    /// Units of UTF-16, or characters.
+    /// UTF-16 code units, or characters (UTF-32).
     Wide(WideEncoding),
 }
 
 impl Encoding {
-    /// Returns the number of columns of a text.
+    /// Returns the number of columns of `text` in this unit.
     pub fn columns(self, text: &str) -> usize {
         match self {
             Self::Utf8 => text.len(),
@@ -29,23 +29,24 @@ pub type LineColumn = (u32, u32);
 /// A text that is open in the editor.
 #[derive(Debug)]
 pub struct Document {
-    /// The version of the text, as the editor counts.
+    /// The version of the text, as the client numbers them.
     pub version: i32,
     /// The text.
     pub sources: Sources,
     encoding: Encoding,
 }
 
-/// A change that replaces a part of a text, or all of it if there is no range.
+/// A change that replaces a part of a text, or the whole text.
 pub struct TextChange {
-    /// Start and end of the part.
+    /// Start and end of the replaced part; `None` for the whole text.
     pub range: Option<[LineColumn; 2]>,
     /// The new text.
     pub text: String,
 }
 
 impl Document {
-    /// Makes the document of a text that is opened, with columns in the client's encoding.
+    /// Makes the document of a text that the client has opened, with columns in the client's
+    /// encoding.
     pub fn new(name: &str, version: i32, text: String, encoding: Encoding) -> Self {
         Self {
             version,
@@ -54,8 +55,8 @@ impl Document {
         }
     }
 
-    /// Applies changes in order; the positions of each refer to the text after the previous ones.
-    /// If one of them is invalid, the text stays as it is.
+    /// Applies changes in order. The positions of each change refer to the text after the previous
+    /// changes. If one of them is invalid, the text stays unchanged.
     ///
     /// # Errors
     ///
@@ -88,15 +89,15 @@ impl Document {
         self.sources.file.text()
     }
 
-    /// Returns the offset of a position. A position after the end of a line counts as its end, one
-    /// within a character as the character's start, and one after the last line as the end of the
-    /// text.
+    /// Returns the byte offset of a position. A position after the end of a line counts as the end
+    /// of that line, one within a character as the character's start, and one after the last line
+    /// as the end of the text.
     pub fn offset(&self, place: LineColumn) -> usize {
         let text = self.text();
         offset(text, self.sources.file.lines(), self.encoding, place).unwrap_or(text.len())
     }
 
-    /// Returns the position of an offset.
+    /// Returns the position of a byte offset.
     pub fn line_column(&self, offset: usize) -> LineColumn {
         let place = self.sources.file.line_col(offset);
         match self.encoding {
@@ -109,8 +110,8 @@ impl Document {
     }
 }
 
-/// Returns the offset of a position in a text with these lines. The line after the last one is the
-/// end of the text; returns `None` for later lines.
+/// Returns the byte offset of a position in a text with these lines. The line after the last one is
+/// the end of the text; returns `None` for later lines.
 fn offset(
     text: &str,
     lines: &LineIndex,
@@ -155,13 +156,13 @@ mod tests {
                 assert_eq!(document.line_column(offset), (0, column));
                 assert_eq!(document.offset((0, column)), offset);
             }
-            // After the end of the line, and of the text.
+            // These positions lie after the end of a line, or after the end of the text.
             for (place, offset) in [((0, 99), 10), ((1, 1), 13), ((2, 0), 14), ((99, 99), 14)] {
                 assert_eq!(document.offset(place), offset);
             }
             assert_eq!(document.line_column(99), (2, 0));
         }
-        // Within a character: its start.
+        // A position within a character counts as the character's start.
         let document = Document::new("a.scn", 1, "é🎱b".to_owned(), Encoding::Utf8);
         assert_eq!(document.offset((0, 4)), 2);
     }
@@ -180,7 +181,8 @@ mod tests {
         let changes = [
             change([(0, 0), (0, 3)], "🎱"),
             change([(0, 2), (1, 0)], " "),
-            // Backwards, and far after the end of the line; then the line after the last one.
+            // This range runs backwards, from beyond the line's end. The next one lies in the line
+            // after the last one.
             change([(0, 99), (0, 3)], "!"),
             change([(2, 0), (2, 0)], "end"),
         ];

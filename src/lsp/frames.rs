@@ -1,7 +1,7 @@
-//! Frames: pictures of an open text, rendered in slices, so that other messages are answered in
-//! between.
+//! Frames: pictures of an open text that are rendered in slices, so that other messages are
+//! answered between slices.
 //!
-//! A frame that is no longer wanted is dropped between two slices.
+//! A frame that is no longer needed is dropped between two slices.
 
 use std::{collections::HashMap, mem};
 
@@ -22,7 +22,7 @@ use crate::{
     scene::{Count, Method, Sampler},
 };
 
-/// Maximum number of pixels of a frame: a page cannot show more. Larger pictures are rendered to
+/// Maximum number of pixels of a frame. A page cannot show more; larger pictures are rendered to
 /// files.
 const MOST_PIXELS: u64 = 1 << 24;
 
@@ -34,9 +34,9 @@ pub struct Frames(Vec<Frame>);
 struct Frame {
     id: RequestId,
     uri: Uri,
-    /// The version of the text.
+    /// The version of the text that the frame shows.
     version: i32,
-    /// Divisor of width and height.
+    /// Factor by which the picture's width and height are divided.
     scale: u32,
     /// Samples per pixel; `None` for the scene's own sampler.
     samples: Option<u64>,
@@ -44,7 +44,8 @@ struct Frame {
 }
 
 impl Frames {
-    /// Adds a frame. Returns the requests that it supersedes.
+    /// Adds a frame. Returns the requests that it supersedes: the previous request for the same
+    /// frame, or all requests for other versions of the text. Fails if the parameters are invalid.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -55,7 +56,7 @@ impl Frames {
         let new = Frame::new(id, uri, params, version)?;
         let what = |frame: &Frame| (frame.version, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
-        // A frame that is requested again goes on under the new request.
+        // A frame that is requested again is continued under the new request.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }
@@ -64,17 +65,17 @@ impl Frames {
         Ok(superseded)
     }
 
-    /// Whether no frame is left to render.
+    /// Returns whether no frame is left to render.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Drops the frame of a request. Returns whether there was one.
+    /// Drops the frame of a request. Returns whether there was such a frame.
     pub fn cancel(&mut self, id: &RequestId) -> bool {
         !self.remove(|frame| frame.id == *id).is_empty()
     }
 
-    /// Drops the frames of a text, or of all texts for `None`. Returns their requests.
+    /// Drops the frames of the text `uri`, or of all texts for `None`. Returns their requests.
     pub fn drop_of(&mut self, uri: Option<&Uri>) -> Vec<RequestId> {
         self.remove(|frame| uri.is_none_or(|uri| frame.uri == *uri))
     }
@@ -84,12 +85,13 @@ impl Frames {
         removed.map(|frame| frame.id).collect()
     }
 
-    /// Returns the request of the oldest frame.
+    /// Returns the request for the oldest frame.
     pub fn oldest(&self) -> Option<RequestId> {
         self.0.first().map(|frame| frame.id.clone())
     }
 
-    /// Renders a slice of the oldest frame. Returns its answer once it is finished.
+    /// Renders a slice of the oldest frame. Returns the answer to its request if the frame is
+    /// finished.
     pub fn advance(
         &mut self,
         scenes: &mut HashMap<Uri, Option<SceneVersion>>,
@@ -133,7 +135,7 @@ impl Frame {
             most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
                 && longest.is_none_or(|longest| width.max(height) <= longest)
         };
-        // At the largest scale the frame has one pixel, which fits.
+        // At the largest scale, a frame has one pixel, so some scale fits.
         let scale = (scale..).find(fits).unwrap_or(u32::MAX);
         let (width, height) = version.size(scale);
         let whole = Area::whole(width, height);
@@ -167,7 +169,7 @@ impl Frame {
         })
     }
 
-    /// Renders the next slice. Returns the answer after the last one.
+    /// Renders the next slice. Returns the answer after the last slice.
     fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
         let (_, world) = version.world(self.scale);
         if !self.slices.advance(world).map_err(Refusal::failed)? {

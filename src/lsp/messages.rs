@@ -4,27 +4,27 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response,
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Maximum number of values in a message. An object takes some 400 bytes of memory, of which its
-/// text may have eight; this is 40 000 changes of a text at once.
+/// Maximum number of values in a message. An object takes about 400 bytes of memory, but possibly
+/// only eight bytes of text. The limit allows 40 000 changes of a text in one message.
 const MOST_VALUES: usize = 1 << 19;
 
-/// Error: a text is not a message.
+/// Error: a text is not a valid message.
 #[derive(Debug)]
 pub enum Malformed {
-    /// The sender gets this response.
+    /// The text is answered with this response.
     Answered(Value),
-    /// A malformed response, which is not answered; the text is for the log.
+    /// The text is a malformed response, which is not answered; this message goes to the log.
     Unanswered(String),
 }
 
-/// Parses a message.
+/// Parses a message from JSON.
 ///
 /// # Errors
 ///
 /// The text is not a message.
 pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     let malformed = |id, code: ErrorCode, message: String| {
-        // A response of lsp-server cannot have the id null.
+        // lsp-server's type of responses cannot have the id null, so the response is made here.
         let error = json!({ "code": code as i32, "message": message });
         let response = json!({ "jsonrpc": "2.0", "id": id, "error": error });
         Err(Malformed::Answered(response))
@@ -45,7 +45,7 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
         return malformed(Value::Null, ErrorCode::InvalidRequest, message);
     }
     let has = |name: &str| value.get(name).is_some();
-    // A response is never answered.
+    // Responses are never answered.
     let is_response = !has("method") && (has("result") || has("error"));
     let id = identifier(value.get("id").cloned());
     match message(value) {
@@ -58,14 +58,14 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     }
 }
 
-/// Converts a JSON value to a message, if it is one. Not done by lsp-server, which would copy each
-/// text in it, and take a request with an invalid identifier for a notification.
+/// Converts a JSON value to a message; `None` if it is none. lsp-server's own conversion would copy
+/// each text in the value, and would take a request with an invalid identifier for a notification.
 fn message(mut value: Value) -> Option<Message> {
     let mut take = |name: &str| value.get_mut(name).map(Value::take);
     let id = match take("id") {
         None => None,
         Some(Value::String(id)) => Some(RequestId::from(id)),
-        // The protocol's whole numbers have 32 bits.
+        // Integers in the protocol have 32 bits.
         Some(id) => Some(i32::try_from(id.as_i64()?).ok()?.into()),
     };
     let method = match take("method") {
@@ -93,7 +93,7 @@ fn message(mut value: Value) -> Option<Message> {
 }
 
 /// Returns an upper bound on the number of values in a JSON text: each value except the first
-/// follows `[`, `,` or `:`. Nothing is allocated, as the text may have any number of values.
+/// follows `[`, `,` or `:`. Allocates nothing, since the text may contain any number of values.
 fn value_bound(text: &[u8]) -> usize {
     let (mut values, mut is_in_text, mut is_escaped) = (1, false, false);
     for byte in text {
@@ -108,9 +108,9 @@ fn value_bound(text: &[u8]) -> usize {
     values
 }
 
-/// Returns the identifier of a request whose parameters cannot be parsed, so that the sender gets
-/// an answer. Browsers write half of a surrogate pair, which is not a character, as an escape that
-/// no Rust text can hold.
+/// Returns the identifier of a request that cannot be parsed as a whole, so that the sender gets an
+/// answer; null if there is none. Such a request occurs: browsers may send half of a surrogate pair
+/// as an escape, which no Rust string can hold.
 fn request_id(text: &[u8]) -> Value {
     #[derive(Deserialize)]
     struct Asked {
@@ -121,7 +121,7 @@ fn request_id(text: &[u8]) -> Value {
     identifier(asked.map(|asked: Asked| asked.id))
 }
 
-/// Returns the identifier if a response can have it, and otherwise null.
+/// Returns the identifier if a response can have it, and null otherwise.
 fn identifier(id: Option<Value>) -> Value {
     id.filter(|id| id.is_string() || id.is_number())
         .unwrap_or_default()
@@ -166,7 +166,7 @@ pub fn to_text(message: &Message) -> String {
             text.error = it.response_result.as_ref().err();
         }
     }
-    // Serialising a message cannot fail, as all keys are texts.
+    // Serialising cannot fail, since all keys are strings.
     serde_json::to_string(&text).unwrap_or_default()
 }
 
@@ -185,7 +185,7 @@ mod tests {
             assert_eq!(response["id"], 7);
             assert_eq!(response["error"]["code"], ErrorCode::InvalidRequest as i32);
         }
-        // A text is one value, whatever it holds.
+        // A text counts as one value, even if it contains `[`, `,` and `:`.
         let text = r#"\"[,:\\"#.repeat(MOST_VALUES);
         let place = r#"{ "line": 1, "character": 2 }"#;
         let change =

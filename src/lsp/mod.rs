@@ -1,4 +1,4 @@
-//! The language server: serves the answers of the editor module by the Language Server Protocol.
+//! Language server: provides the answers of the editor module by the Language Server Protocol.
 //!
 //! In: messages. Out: messages. [`Server`] is a value that holds the open texts (`documents`) and
 //! knows neither threads nor streams, so that any host can run it; [`stdio`] runs it on standard

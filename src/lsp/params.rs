@@ -1,45 +1,45 @@
-//! Parameters and results of requests as JSON, and errors.
+//! Reads parameters of requests from JSON, and makes answers and errors.
 
 use lsp_server::{ErrorCode, Message, RequestId, Response};
 use serde_json::Value;
 
-/// The error that answers a request.
+/// Error that answers a request: its code and its message.
 #[derive(Debug)]
 pub struct Refusal(pub ErrorCode, pub String);
 
 impl Refusal {
-    /// The parameters are invalid.
+    /// Makes the error of invalid parameters.
     pub fn invalid(why: impl ToString) -> Self {
         Self(ErrorCode::InvalidParams, why.to_string())
     }
 
-    /// The request is valid, but cannot be carried out. Editors show the reason.
+    /// Makes the error of a valid request that cannot be carried out. Editors show the reason.
     pub fn failed(why: impl ToString) -> Self {
         Self(ErrorCode::RequestFailed, why.to_string())
     }
 
-    /// The client has cancelled the request.
+    /// Makes the error of a request that the client has cancelled.
     pub fn cancelled() -> Self {
         Self(ErrorCode::RequestCanceled, "cancelled".to_owned())
     }
 
-    /// The method is unknown.
+    /// Makes the error of an unknown method.
     pub fn unknown(method: &str) -> Self {
         let why = format!("`{method}` is not known here");
         Self(ErrorCode::MethodNotFound, why)
     }
 }
 
-/// The answer to a request, as JSON.
+/// The answer to a request, as JSON, or the error.
 pub type Answer = Result<Value, Refusal>;
 
-/// Reads the value at a JSON pointer in the parameters.
+/// Reads the value at the JSON pointer `path` in the parameters.
 pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<T, Refusal> {
     let found = params.pointer(path).cloned().unwrap_or_default();
     serde_json::from_value(found).map_err(Refusal::invalid)
 }
 
-/// Reads a field of the parameters; `None` if it is missing or null.
+/// Reads a field of the parameters; returns `None` if it is missing or null.
 pub fn optional<T: serde::de::DeserializeOwned>(
     params: &Value,
     name: &str,
@@ -48,7 +48,7 @@ pub fn optional<T: serde::de::DeserializeOwned>(
     serde_json::from_value(field).map_err(|error| Refusal::invalid(format!("`{name}`: {error}")))
 }
 
-/// Returns the message that answers a request.
+/// Makes the message that answers the request `id`.
 pub fn response(id: RequestId, answer: Answer) -> Message {
     let response = match answer {
         Ok(result) => Response::new_ok(id, result),

@@ -1,4 +1,4 @@
-//! Answers requests about a document's picture. docs/protocol.md is the contract.
+//! Answers requests about a document's picture, as docs/protocol.md specifies.
 
 use std::{borrow::Cow, cell::LazyCell};
 
@@ -19,11 +19,11 @@ use crate::{
     scene::Object,
 };
 
-/// Prefix of the names of Pinhole's own requests.
+/// Prefix of the methods of Pinhole's own requests.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// Answers any request except for a frame; null if the text has errors. The analysis is computed
-/// only if it is needed.
+/// Answers the request `about`, except one for a frame. If the text has errors, most answers are
+/// null. The analysis is computed only if the request needs it.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,
@@ -50,7 +50,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     }
 }
 
-/// Answers the limits of the number at a position, also in texts with errors.
+/// Answers with the limits of the number at a position, also in texts with errors.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
     Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
@@ -66,7 +66,7 @@ fn written_limits(limits: editor::Limits) -> Value {
     })
 }
 
-/// Answers the numbers and angles that are defined by `let`, also in texts with errors.
+/// Answers with the numbers and angles that `let`s define, also in texts with errors.
 fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let sliders = editor::sliders(analysis).into_iter();
     let written = |slider: editor::Slider<'_>| {
@@ -80,8 +80,8 @@ fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     Ok(sliders.map(written).collect())
 }
 
-/// Answers the edits that add a new block or duplicate an object. In a text with errors, the
-/// position of a new block depends on what can be read of it.
+/// Answers with the edits that add a new block or duplicate an object. In a text with errors, the
+/// position of a new block depends on which parts can be read.
 fn add(
     params: &Value,
     converter: Converter<'_>,
@@ -132,7 +132,7 @@ fn pick(params: &Value, converter: Converter<'_>, version: &mut SceneVersion) ->
     }))
 }
 
-/// Returns an object of the scene, and its range in the text.
+/// Returns the facts about an object of the scene, and its range in the text, as JSON.
 fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Value {
     let object = &version.scene.objects[index];
     let mut facts = json!({
@@ -149,7 +149,8 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
     facts
 }
 
-/// Returns the object's name, or else its kind, with the indices of a member of a repetition.
+/// Returns the object's name or, if it has none, its kind, followed by its indices if it is
+/// repeated.
 fn label(object: &Object) -> Cow<'_, str> {
     let kind = object.shape.kind();
     match (&object.name, &*object.indices) {
@@ -159,11 +160,11 @@ fn label(object: &Object) -> Cow<'_, str> {
     }
 }
 
-/// Answers the objects without their outlines.
+/// Answers with the objects that the parameters select, without their outlines.
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
-    // The first board is listed in any case, as objects stand on it, wherever it is in the text.
+    // The first board is always listed, wherever it is in the text, since objects stand on it.
     let floor = match shown {
         ShownObjects::First(_) => objects.iter().position(is_board),
         ShownObjects::Only(_) => None,
@@ -173,7 +174,8 @@ fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> 
     let listed = listed.map(|index| {
         let mut object = object(index, converter, version);
         let outline = overlays.objects.iter().find(|it| it.object == index);
-        // A board that the view axis does not cross has no outline, but may be visible.
+        // A board may have no outline because the view axis does not hit it, but may still be
+        // visible.
         let outline = outline.filter(|it| !(it.lines.is_empty() && is_board(&objects[index])));
         object["place"] = json!(outline.map(|outline| place(outline, overlays.size)));
         object
@@ -236,7 +238,7 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
     }))
 }
 
-/// Returns, in words, the part of the picture in which an object's first handle is seen.
+/// Returns, in words, the part of the picture in which the first handle of an object is visible.
 fn place(outline: &ObjectOverlay, size: [u32; 2]) -> String {
     let at = outline.handles.first().and_then(|(_, at)| *at);
     let size = DVec2::from(size.map(f64::from));
@@ -309,7 +311,8 @@ fn point(params: &Value, name: &str) -> Result<DVec2, Refusal> {
     point.map(DVec2::from).ok_or_else(refusal)
 }
 
-/// Rounds a point to a hundredth of a pixel, which cannot be seen and takes a third of the bytes.
+/// Rounds a point to a hundredth of a pixel. The difference is invisible, and the JSON takes a
+/// third of the bytes.
 fn written_point(point: DVec2) -> Value {
     json!(((point * 100.0).round() / 100.0).to_array())
 }

@@ -1,11 +1,10 @@
-//! Types of the protocol that are read, or that several answers share. Other answers are JSON
-//! objects where they are made: a crate with all types of the protocol took nine seconds to
-//! compile.
+//! Types of the protocol that are read, or that several answers share. Other answers are made as
+//! JSON directly: a crate with all types of the protocol took nine seconds to compile.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// The address of a document.
+/// The URI of a document.
 #[derive(Clone, Debug, Deserialize, Eq, Hash, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Uri(pub String);
@@ -23,7 +22,7 @@ pub struct Range {
     pub end: Position,
 }
 
-/// A colour; each channel is from 0 to 1.
+/// A colour; each channel ranges from 0 to 1.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct Color {
     pub red: f32,
@@ -32,7 +31,7 @@ pub struct Color {
     pub alpha: f32,
 }
 
-/// Removes the null fields of an object: the protocol leaves out missing values.
+/// Removes the fields of an object that are null, since the protocol leaves out missing values.
 pub fn without_nulls(mut object: Value) -> Value {
     if let Value::Object(fields) = &mut object {
         fields.retain(|_, field| !field.is_null());

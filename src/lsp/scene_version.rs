@@ -1,7 +1,7 @@
-//! The scene of a version of a text, and the worlds by which its pictures and rays are traced.
+//! The scene of a version of a text, and the worlds in which its pictures and rays are traced.
 //!
-//! Everything is computed once for a version, so that a pick in a scene of 100 000 spheres reads
-//! none of them again.
+//! Everything is computed once for a version, so that a pick in a scene of 100 000 spheres does
+//! not read the spheres again.
 
 use std::collections::VecDeque;
 
@@ -15,26 +15,26 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of picture sizes whose worlds are kept: the picture's own size, and those of the
-/// coarse frames that are shown until it is finished.
+/// Maximum number of picture sizes for which worlds are cached: the picture's own size, and the
+/// sizes of the coarse frames that are shown until the picture is finished.
 const WORLDS: usize = 4;
 
-/// A version of a text without errors.
+/// A version of a text that has no errors.
 #[derive(Debug)]
 pub struct SceneVersion {
-    /// The version's number, as the client counts.
+    /// The version's number, as the client numbers them.
     pub number: i32,
     /// The scene.
     pub scene: Scene,
-    /// For each object, the span of its name or keyword.
+    /// The span of each object's name or, if it has none, of its keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
-    /// The text with only the object that was dragged last.
+    /// The text with only the object that was dragged last, after the index of that object.
     alone: Option<(Option<usize>, Sources)>,
 }
 
 impl SceneVersion {
-    /// Makes the version of a text; `None` if it has errors.
+    /// Makes the version of an analyzed text; returns `None` if the text has errors.
     pub fn new(analysis: &Analysis<'_>, number: i32) -> Option<Self> {
         let scene = analysis.scene()?;
         Some(Self {
@@ -46,8 +46,8 @@ impl SceneVersion {
         })
     }
 
-    /// Returns the scene, and its world for a picture whose width and height are divided by
-    /// `scale`.
+    /// Returns the scene, and the world for a picture whose width and height are divided by
+    /// `scale`. Worlds are cached.
     pub fn world(&mut self, scale: u32) -> (&Scene, &World) {
         let found = self.worlds.iter().position(|(known, _)| *known == scale);
         let index = found.unwrap_or_else(|| {
@@ -68,8 +68,8 @@ impl SceneVersion {
         (&self.scene, &self.worlds[index].1)
     }
 
-    /// Returns the scene, and the text with only one object or none, in which a drag is evaluated.
-    /// It is cached, as each step of a drag needs it.
+    /// Returns the scene, and the text with only the object `object`, or none for `None`, in which
+    /// a drag is evaluated. The text is cached, since each step of a drag needs it.
     pub fn alone(&mut self, sources: &Sources, object: Option<usize>) -> (&Scene, &Sources) {
         let known = self.alone.take_if(|(known, _)| *known == object);
         let made = || (object, viewport::alone(sources, &self.scene, object));
@@ -77,7 +77,7 @@ impl SceneVersion {
         (&self.scene, alone)
     }
 
-    /// Returns width and height divided by `scale`, rounded up.
+    /// Returns the picture's width and height divided by `scale`, rounded up.
     pub fn size(&self, scale: u32) -> (u32, u32) {
         let image = &self.scene.image;
         (image.width.div_ceil(scale), image.height.div_ceil(scale))

@@ -1,11 +1,11 @@
-//! The server as a value: messages in, messages out.
+//! The language server as a value: messages in, messages out.
 //!
 //! Notifications are handled at once. Requests are put into a queue, from which [`Server::advance`]
-//! answers a slice at a time, so that a host can take in other messages in between, such as a
+//! answers some at a time, so that a host can pass in other messages in between, such as a
 //! cancellation. Each answer is about the text as it was when the request came: before a text
 //! changes, the waiting requests about it are answered. Diagnostics are computed only for the last
-//! version of a text. A frame takes longer than everything else: it is rendered in slices when
-//! there is no other work, and given up if its text changes, unless it was requested with `last`.
+//! version of a text. A frame takes longer than everything else, so it is rendered in slices when
+//! there is no other work. It is dropped if its text changes, unless it was requested with `last`.
 
 use std::{
     cell::LazyCell,
@@ -28,16 +28,16 @@ use super::{
 };
 use crate::editor::Analysis;
 
-/// Phase of a conversation.
+/// Phase of the connection to a client.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
     /// The client has not sent `initialize`.
     Silent,
-    /// The client has sent `initialize`.
+    /// The client has sent `initialize`, with these capabilities.
     Talking(Client),
     /// The client has sent `shutdown`.
     ShutDown,
-    /// The client has sent `exit`; `properly` if after `shutdown`.
+    /// The client has sent `exit`; `properly` says whether `shutdown` preceded it.
     Ended { properly: bool },
 }
 
@@ -46,20 +46,21 @@ enum Phase {
 pub struct Server {
     phase: Phase,
     documents: HashMap<Uri, Document>,
-    /// Requests without an answer.
+    /// Requests that are not answered yet.
     waiting: VecDeque<Request>,
-    /// Documents whose diagnostics are to be sent.
+    /// Documents whose diagnostics have to be sent.
     changed: BTreeSet<String>,
-    /// Scenes of the documents whose picture was requested; `None` if the text has errors.
+    /// Scenes of the documents whose picture was requested; `None` for a text with errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// The last version without errors of each text that has changed since.
+    /// The last version without errors of each text that has changed since that version.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
 }
 
 impl Server {
-    /// Makes a server that waits for `initialize`. Malformed notifications are reported to `log`.
+    /// Makes a server that waits for `initialize`. Malformed notifications are reported by calling
+    /// `log`.
     pub fn new(log: fn(&str)) -> Self {
         Self {
             phase: Phase::Silent,
@@ -73,8 +74,8 @@ impl Server {
         }
     }
 
-    /// Returns whether the conversation has ended properly, by `exit` after `shutdown`; `None`
-    /// while it goes on.
+    /// Returns whether the connection has ended properly, by `exit` after `shutdown`. Returns
+    /// `None` while it has not ended.
     pub fn ended(&self) -> Option<bool> {
         match self.phase {
             Phase::Ended { properly } => Some(properly),
@@ -82,7 +83,7 @@ impl Server {
         }
     }
 
-    /// Handles a message, and returns the messages that must be sent before any others.
+    /// Handles a message. Returns the messages that must be sent before any others.
     pub fn handle(&mut self, message: Message) -> Vec<Message> {
         match (message, &self.phase) {
             (Message::Request(request), Phase::Talking(_)) if !is_lifecycle(&request) => {
@@ -101,13 +102,13 @@ impl Server {
         }
     }
 
-    /// Whether any work is left.
+    /// Returns whether any work is left.
     pub fn is_busy(&self) -> bool {
         !self.waiting.is_empty() || !self.changed.is_empty() || !self.frames.is_empty()
     }
 
-    /// Does a piece of the work, and returns the messages to send. A piece is all requests about
-    /// one text and its diagnostics or, if nothing else is left, a slice of a frame.
+    /// Does a part of the work, and returns the messages to send. A part is either all waiting
+    /// requests about one text and its diagnostics or, if nothing else is left, a slice of a frame.
     pub fn advance(&mut self) -> Vec<Message> {
         let asked = self.waiting.front().map(uri);
         let changed = || self.changed.first().map(|uri| Some(Uri(uri.clone())));
@@ -118,7 +119,7 @@ impl Server {
         self.work_on(next.as_ref(), is_changed)
     }
 
-    /// Answers all waiting requests about texts that `is_about` selects.
+    /// Answers all waiting requests about those texts for which `is_about` returns `true`.
     fn answer_all(&mut self, is_about: impl Fn(Option<&Uri>) -> bool) -> Vec<Message> {
         let mut outgoing = Vec::new();
         while let Some(request) = self.waiting.iter().find(|it| is_about(uri(it).as_ref())) {
@@ -128,8 +129,8 @@ impl Server {
         outgoing
     }
 
-    /// Answers the waiting requests about a text, or about none, and publishes its diagnostics if
-    /// it has changed.
+    /// Answers the waiting requests about the text `wanted`, or those about no text for `None`.
+    /// Also publishes the text's diagnostics if it has changed.
     fn work_on(&mut self, wanted: Option<&Uri>, is_changed: bool) -> Vec<Message> {
         let is_about = |request: &Request| uri(request).as_ref() == wanted;
         let (asked, others): (VecDeque<_>, _) = self.waiting.drain(..).partition(is_about);
@@ -163,7 +164,7 @@ impl Server {
             let version = self.scenes.entry(uri.clone());
             let version = version.or_insert_with(|| SceneVersion::new(analysis, number));
             if version.is_some() && about == "frame" {
-                // From now on this version is the last one without errors.
+                // This version is now the last one without errors, so an older one is not needed.
                 self.last.remove(&uri);
             }
             let params = &request.params;
@@ -197,7 +198,7 @@ impl Server {
         outgoing
     }
 
-    /// Renders a slice of a frame. Returns its answer if it is finished.
+    /// Renders a slice of the oldest frame. Returns the answer if the frame is finished.
     fn advance_frame(&mut self) -> Option<Message> {
         let id = self.frames.oldest()?;
         let (frames, scenes, last) = (&mut self.frames, &mut self.scenes, &mut self.last);
@@ -206,24 +207,26 @@ impl Server {
         Some(response(id, answer))
     }
 
-    /// Moves the scene of a text that has changed to `last`, if it had no errors.
+    /// Moves the scene of a text that has changed to `last`, if that text had no errors. Returns
+    /// the answers to the requests for frames that are dropped.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
-            // The frames in work are of an earlier version, and go on.
+            // The unfinished frames show an earlier version, and are continued.
             return Vec::new();
         };
         self.last.insert(uri.clone(), version);
         self.drop_frames(uri)
     }
 
-    /// Forgets the scenes of a text that was opened or closed.
+    /// Removes the scenes of a text that was opened or closed. Returns the answers to the requests
+    /// for its frames.
     fn forget(&mut self, uri: &Uri) -> Vec<Message> {
         self.scenes.remove(uri);
         self.last.remove(uri);
         self.drop_frames(uri)
     }
 
-    /// Drops the frames of a text that has changed, and returns the answers to their requests.
+    /// Drops the frames of a text that has changed. Returns the answers to their requests.
     fn drop_frames(&mut self, uri: &Uri) -> Vec<Message> {
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {
@@ -233,8 +236,8 @@ impl Server {
         dropped.map(changed).collect()
     }
 
-    /// Answers the requests that begin and end a conversation, and rejects all others before and
-    /// after it.
+    /// Answers `initialize` and `shutdown`, and rejects any other request before `initialize` or
+    /// after `shutdown`.
     fn answer_lifecycle(&mut self, request: Request) -> Message {
         let refuse = |code, message: &str| Err(Refusal(code, message.to_owned()));
         let answer = match (request.method.as_str(), self.phase) {
@@ -265,7 +268,7 @@ impl Server {
         })
     }
 
-    /// Handles a notification.
+    /// Handles a notification. Returns the messages to send.
     fn handle_notification(&mut self, notification: Notification) -> Vec<Message> {
         let Notification { method, params } = notification;
         if method == "exit" {
@@ -316,7 +319,7 @@ impl Server {
         let Some(document) = self.documents.get_mut(&uri) else {
             return refuse(format!("{} is not open", uri.0));
         };
-        // A stale version would overwrite a newer one.
+        // A stale version must not overwrite a newer one.
         if version < document.version {
             return refuse(format!("version {version} of {} is stale", uri.0));
         }
@@ -336,7 +339,8 @@ impl Server {
         Ok(outgoing)
     }
 
-    /// Cancels a waiting request or an unfinished frame, and returns its answer.
+    /// Cancels a waiting request or an unfinished frame. Returns the answer to the request; `None`
+    /// if there is no such request.
     fn cancel(&mut self, params: &Value) -> Option<Message> {
         let id = params.get("id").cloned().unwrap_or_default();
         let id: RequestId = serde_json::from_value(id).ok()?;
@@ -354,19 +358,19 @@ fn published(params: Value) -> Message {
     Notification::new("textDocument/publishDiagnostics".to_owned(), params).into()
 }
 
-/// Whether a request begins or ends the conversation.
+/// Returns whether a request is `initialize` or `shutdown`.
 fn is_lifecycle(request: &Request) -> bool {
     matches!(request.method.as_str(), "initialize" | "shutdown")
 }
 
-/// Returns the document that a request is about.
+/// Returns the URI of the document that a request is about; `None` if it is about no document.
 fn uri(request: &Request) -> Option<Uri> {
     let uri = request.params.pointer("/textDocument/uri")?.as_str()?;
     Some(Uri(uri.to_owned()))
 }
 
-/// Returns the answer, or a refusal if computing it panicked: the next request may succeed, and
-/// computing an answer changes no text.
+/// Returns the answer, or an internal error if computing it panicked. The server continues, since
+/// the next request may succeed, and computing an answer changes no text.
 pub(crate) fn catch_panics<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();

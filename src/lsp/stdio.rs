@@ -1,9 +1,9 @@
 //! Runs the server on standard input and output, as editors start it.
 //!
-//! A separate thread reads, so that all messages that have arrived are handled before the next
-//! piece of work: requests that were cancelled meanwhile are not computed, and diagnostics only for
-//! the last of several versions. Messages are not read by lsp-server, which allocates any length
-//! that is announced and stops at the first malformed message.
+//! A separate thread reads, so that all messages that have arrived are handled before the next part
+//! of the work: requests that were cancelled meanwhile are not computed, and diagnostics are
+//! computed only for the last of several versions. lsp-server is not used for reading, since it
+//! allocates memory of any announced length and stops at the first malformed message.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -19,11 +19,11 @@ use super::{
     server::Server,
 };
 
-/// A message, or the response to a malformed one.
+/// A message that was read, or the response to a malformed one.
 type Incoming = Result<Message, Value>;
 
-/// Runs a server until the conversation ends. Returns whether it ended properly, by `exit` after
-/// `shutdown`.
+/// Runs a server until the client sends `exit` or the input ends. Returns whether the connection
+/// ended properly, by `exit` after `shutdown`.
 ///
 /// # Errors
 ///
@@ -56,8 +56,8 @@ pub fn serve(
     Ok(false)
 }
 
-/// Returns the next message as soon as it arrives; the server works meanwhile. Returns `None` if
-/// the input has ended and no work is left.
+/// Returns the next message as soon as it arrives. The server works meanwhile, and its messages are
+/// sent. Returns `None` if the input has ended and no work is left.
 fn next_message(
     messages: &Receiver<Incoming>,
     server: &mut Server,
@@ -100,16 +100,16 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
     }
 }
 
-/// Maximum length of a message, in bytes. A longer announcement is garbage, after which the start
-/// of the next message is unknown.
+/// Maximum length of a message, in bytes. If a longer one is announced, the input is invalid, and
+/// the start of the next message is unknown.
 const LONGEST: u64 = 1 << 30;
 
-/// Maximum length of a header's line, in bytes. Known headers take some thirty.
+/// Maximum length of a line of a header, in bytes. Usual lines have about thirty.
 const LONGEST_HEADER: u64 = 4096;
 
 /// Error of reading a message.
 enum Failed {
-    /// The next message may be valid.
+    /// This message is invalid, but the next one may be valid.
     Once(String),
     /// No further message can be read.
     ForGood(String),
@@ -121,7 +121,7 @@ impl From<io::Error> for Failed {
     }
 }
 
-/// Reads the next message; `None` at the end of the input.
+/// Reads the next message. Returns `None` at the end of the input.
 fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
     let Some(length) = length(input)? else {
         return Ok(None);
@@ -140,7 +140,7 @@ fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
     }
 }
 
-/// Reads a header, and returns the length that it announces; `None` at the end of the input.
+/// Reads a header. Returns the announced length of the message, or `None` at the end of the input.
 fn length(input: &mut impl BufRead) -> Result<Option<u64>, Failed> {
     let mut length = None;
     loop {

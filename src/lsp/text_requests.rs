@@ -13,7 +13,8 @@ use crate::{
     editor::{self, Analysis},
 };
 
-/// Answers a request about a document.
+/// Answers a request about a document. `known` has the document and its analysis; `None` if the
+/// document is not open.
 pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -> Answer {
     let Request { method, params, .. } = request;
     let Some(about) = method.strip_prefix("textDocument/") else {
@@ -76,8 +77,8 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
             list(labels, |label| converter.presentation(span, label))
         }
         "codeAction" => code_actions(converter, analysis, &params),
-        // Null for a text with syntax errors: they are reported already, and an editor that formats
-        // on every save must not complain each time.
+        // The answer is null for a text with syntax errors. They are reported already, and an
+        // editor that formats on every save must not show an error each time.
         "formatting" => {
             let edits = editor::formatting(analysis);
             Ok(edits.map(|edits| converter.text_edits(edits)).into())
@@ -87,7 +88,7 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
     }
 }
 
-/// Returns the refusal of a request about a document that is not open.
+/// Returns the error for a request about a document that is not open.
 pub fn not_open() -> Refusal {
     Refusal::invalid("the document is not open")
 }
@@ -108,7 +109,8 @@ fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Valu
         let fixes = editor::fixes(analysis, converter.span(range));
         actions.extend(fixes.map(|(diagnostic, fix)| converter.action(fix, Some(diagnostic))));
     }
-    // Beside a single fix, "fix all" is offered if there are other fixes.
+    // Beside the fixes of one place, "fix all" is offered if other diagnostics have safe fixes,
+    // too.
     let all = analysis.diagnostics().iter();
     let has_safe = |it: &&Diagnostic| it.fixes.iter().any(Fix::is_safe);
     let is_more = !actions.is_empty() && all.filter(has_safe).count() > 1;
@@ -118,7 +120,7 @@ fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Valu
     Ok(Value::Array(actions))
 }
 
-/// Returns the diagnostics of a document.
+/// Returns the diagnostics of a document, converted to the protocol's type.
 pub fn diagnostics(converter: Converter<'_>, analysis: &Analysis<'_>) -> Vec<Value> {
     let diagnostics = analysis.diagnostics().iter();
     diagnostics

@@ -4,8 +4,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An angle: the sum of a part in degrees and a part in radians.
 ///
-/// The separate parts keep degrees exact: a multiple of 90° has a sine and a cosine of exactly 0 or
-/// ±1, however large it is.
+/// Because the parts are separate, degrees are exact: any multiple of 90°, however large, has a
+/// sine and a cosine of exactly 0 or ±1.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Angle {
     /// The part in degrees.
@@ -15,7 +15,7 @@ pub struct Angle {
 }
 
 impl Angle {
-    /// Returns an angle in degrees.
+    /// Returns the angle of `degrees` degrees.
     pub const fn from_degrees(degrees: f64) -> Self {
         Self {
             degrees,
@@ -23,7 +23,7 @@ impl Angle {
         }
     }
 
-    /// Returns an angle in radians.
+    /// Returns the angle of `radians` radians.
     pub const fn from_radians(radians: f64) -> Self {
         Self {
             degrees: 0.0,
@@ -31,12 +31,12 @@ impl Angle {
         }
     }
 
-    /// Returns the whole angle in degrees, rounded.
+    /// Returns the sum of both parts in degrees, rounded.
     pub const fn in_degrees(self) -> f64 {
         self.degrees + self.radians.to_degrees()
     }
 
-    /// Returns the whole angle in radians, rounded.
+    /// Returns the sum of both parts in radians, rounded.
     pub const fn in_radians(self) -> f64 {
         self.degrees.to_radians() + self.radians
     }

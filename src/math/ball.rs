@@ -4,33 +4,34 @@ use std::{borrow::Borrow, cmp::Ordering};
 
 use super::{Big, Radius, Real};
 
-/// The result of a decision that the current precision cannot make; the next precision has to.
+/// Error of a decision that the current precision cannot make; the next higher precision has to
+/// make it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Doubt;
 
 /// A real number known to lie within `rad` of `mid`.
 ///
-/// Every operation bounds the contributions of its operands' radii and of its own rounding. An
-/// infinite radius or NaN, as after an overflow, contains every number.
+/// The radius of each result covers the radii of the operands and the operation's own rounding. A
+/// ball whose radius is infinite or NaN, as after an overflow, contains every number.
 #[derive(Clone, Debug)]
 pub struct Ball<T: Real> {
-    /// The computed number.
+    /// The computed number, the ball's midpoint.
     pub mid: T,
-    /// Maximum distance of the true number, ≥ 0.
+    /// Maximum distance between the true number and `mid`; not negative.
     pub rad: T::Radius,
 }
 
-/// Factor that rounds a radius up. A radius is computed in `f64` with fewer than 2^12 roundings of
-/// 2^−53 each, which is less than 2^−40.
+/// Factor by which a computed radius is multiplied so that it is certainly not too small. Radii are
+/// computed in `f64` with fewer than 2^12 roundings of 2^−53 each, together less than 2^−40.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// Radius of a rounding, in [`UNIT`](Real::UNIT)s of the computed number. The error is at most one
-/// unit of the true number, which is less than two of the computed one; twice as much costs nothing
+/// unit of the true number, which is less than two of the computed one. Twice as much costs nothing
 /// except an occasional decision in the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
-    /// Returns a number that is known exactly.
+    /// Returns the ball of radius 0 at `x`.
     pub fn exact(x: f64) -> Self {
         Self {
             mid: T::from_f64(x),
@@ -38,7 +39,8 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Returns a computed number; its operands contribute `inherited` to the radius.
+    /// Returns the ball about a computed number. Its radius is `inherited` from the operands, plus
+    /// that of the number's rounding.
     fn rounded(mid: T, inherited: T::Radius) -> Self {
         let rounding = if mid.is_zero() {
             T::Radius::ZERO
@@ -51,12 +53,12 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Computes a − b.
+    /// Computes `a` − `b`.
     pub fn difference(a: f64, b: f64) -> Self {
         Self::rounded(T::difference(a, b), T::Radius::ZERO)
     }
 
-    /// Rounds a more precise number.
+    /// Rounds `x` to this precision; the radius covers the rounding.
     pub fn from_big(x: &Big) -> Self {
         Self::rounded(T::from_big(x), underflow_loss::<T>(x.is_zero()))
     }
@@ -66,22 +68,22 @@ impl<T: Real> Ball<T> {
         self.mid.magnitude()
     }
 
-    /// Returns whether the relative error is far below the precision of `f64`. Exact arithmetic
-    /// would then add nothing except the last decisions of [`Double`](super::Double), which allow
-    /// for this error.
+    /// Returns whether the relative error is at most 2^−80, far below the precision of `f64`. A
+    /// higher precision would then help only with decisions so close that [`Double`](super::Double)
+    /// leaves them in doubt, and these decisions allow for this error.
     pub fn is_precise(&self) -> bool {
-        /// Relative error 27 bits below the 53 of an `f64`.
+        /// Relative error 2^−80, 27 bits below the 53 of an `f64`.
         const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
         self.rad <= self.size() * PRECISE
     }
 
-    /// Returns whether the sign is certain; that of NaN is not.
+    /// Returns whether the sign is certainly positive or certainly negative; `false` for NaN.
     fn is_clear(&self) -> bool {
         self.size() > self.rad * UP
     }
 
-    /// Compares with zero. In the last precision, a number that cannot be distinguished from zero
-    /// is zero.
+    /// Compares with zero. Returns a [`Doubt`] if the sign is uncertain. In the highest precision
+    /// there is no doubt: a number that cannot be distinguished from zero is zero.
     #[inline]
     pub fn sign(&self) -> Result<Ordering, Doubt> {
         if self.is_clear() {
@@ -97,26 +99,26 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Compares with another number.
+    /// Compares with `other`. Returns a [`Doubt`] if the sign of the difference is uncertain.
     #[inline]
     pub fn compare(&self, other: &Self) -> Result<Ordering, Doubt> {
         (self - other).sign()
     }
 
-    /// Computes self · power for a power of two.
+    /// Computes `self` · `power`, where `power` is a power of two.
     #[inline]
     pub fn times_power(&self, power: f64) -> Self {
-        // Exact except for an underflow.
+        // The product is exact unless it underflows.
         Self {
             mid: self.mid.times(&T::from_f64(power)),
             rad: self.rad * power * UP + T::TINY,
         }
     }
 
-    /// Computes self · 2^exponent.
+    /// Computes `self` · 2^`exponent`.
     pub fn scaled(&self, exponent: i32) -> Self {
         let mid = self.mid.scaled(exponent);
-        // Exact except for an underflow.
+        // The product is exact unless it underflows.
         let lost = underflow_loss::<T>(self.mid.is_zero());
         Self {
             mid,
@@ -124,24 +126,26 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Computes the square root of a non-negative number.
+    /// Computes the square root of a number that is not negative, or negative only within its
+    /// radius.
     #[inline]
     pub fn sqrt(&self) -> Self {
         if !self.is_clear() {
-            // |√a − √b| ≤ √|a − b|
+            // The radius follows from |√a − √b| ≤ √|a − b|.
             return Self {
                 mid: T::from_f64(0.0),
                 rad: ((self.size() + self.rad) * UP).sqrt() * UP,
             };
         }
         let root = self.mid.sqrt();
-        // |√a − √b| = |a − b| / (√a + √b)
+        // The radius follows from |√a − √b| = |a − b|/(√a + √b).
         let inherited = self.rad / root.magnitude();
         Self::rounded(root, inherited)
     }
 
-    /// Returns the greatest integer that is not greater, and whether it is odd. In the last
-    /// precision, a number that cannot be distinguished from an integer is that integer.
+    /// Returns the floor, the greatest integer that is not greater, and whether it is odd. Returns
+    /// a [`Doubt`] if the number may lie on either side of an integer. In the highest precision
+    /// there is no doubt: a number that cannot be distinguished from an integer is that integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
         let ceiling = floor.plus(&T::from_f64(1.0));
@@ -191,8 +195,8 @@ impl<T: Real> Ball<T> {
             };
         }
         let mid = self.mid.over(&other.mid);
-        // |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|) / |b'|, and |b'| is at least |b| minus its
-        // radius.
+        // |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|. |b'| is at least |b| minus the radius
+        // of b.
         let least = other.size().without(other.rad * UP);
         let lost = underflow_loss::<T>(self.mid.is_zero());
         let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;
@@ -217,7 +221,7 @@ impl<T: Real> std::ops::Neg for Ball<T> {
     }
 }
 
-/// Implements an operator on values and references.
+/// Implements an operator for all combinations of values and references.
 macro_rules! operator {
     ($trait:ident, $method:ident) => {
         operator!($trait, $method, &Ball<T>, &Ball<T>);
@@ -242,7 +246,8 @@ operator!(Sub, sub);
 operator!(Mul, mul);
 operator!(Div, div);
 
-/// Returns the maximum loss by an underflow, unless the exact result is zero.
+/// Returns the maximum error by an underflow: 0 if the exact result `is_zero`, otherwise
+/// [`TINY`](Real::TINY).
 #[inline]
 fn underflow_loss<T: Real>(is_zero: bool) -> T::Radius {
     if is_zero { T::Radius::ZERO } else { T::TINY }
@@ -251,12 +256,12 @@ fn underflow_loss<T: Real>(is_zero: bool) -> T::Radius {
 /// A vector of balls.
 pub type Ball3<T> = [Ball<T>; 3];
 
-/// Computes the dot product.
+/// Computes the dot product of `a` and `b`.
 pub fn dot<T: Real>(a: &Ball3<T>, b: &Ball3<T>) -> Ball<T> {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// Computes the cross product.
+/// Computes the cross product `a` × `b`.
 pub fn cross<T: Real>(a: &Ball3<T>, b: &Ball3<T>) -> Ball3<T> {
     [
         &a[1] * &b[2] - &a[2] * &b[1],
@@ -272,7 +277,7 @@ mod tests {
     use super::*;
     use crate::math::Double;
 
-    /// A few operations that cancel, divide and take roots.
+    /// Computes a few expressions that cancel, divide and take roots.
     fn formula<T: Real>(x: f64, y: f64, z: f64) -> Vec<Ball<T>> {
         let [a, b, c] = [x, y, z].map(Ball::<T>::exact);
         let three = Ball::exact(3.0);

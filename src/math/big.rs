@@ -1,4 +1,4 @@
-//! Big numbers, which decide if double-double leaves a doubt.
+//! Big numbers, the highest precision, used for decisions that double-double leaves in doubt.
 
 use std::cmp::Ordering;
 
@@ -11,47 +11,49 @@ use super::Angle;
 #[derive(Clone, Debug)]
 pub struct Big(pub(super) Float);
 
-/// A float with the precision of its operands. A precision of 0 means unlimited, exact as long as
-/// nothing is divided.
+/// A binary float of any precision. A result has the precision of its operands. A precision of 0
+/// means unlimited: all operations except divisions are exact.
 pub(super) type Float = FBig<HalfEven, 2>;
 
-/// Number of bits of a [`Big`]. A decision that [`Double`](super::Double) cannot make is closer
-/// than about 2^−90, and a closer one than that counts as a tie anyway. The remaining bits are far
-/// more than the intermediate steps of any formula here lose.
+/// Number of bits of a [`Big`]. If [`Double`](super::Double) leaves a doubt, the difference to be
+/// decided is less than about 2^−90. The remaining bits are far more than any formula here loses in
+/// its intermediate steps. A difference that is still not resolved counts as a tie.
 pub(super) const PRECISION: usize = 320;
 
-/// Number of additional bits for the few steps that cancel. It equals the number of bits of a
-/// result, so that these are left even if as many cancel.
+/// Number of additional bits for the few steps that cancel. Even if as many bits cancel as a result
+/// has, the result is accurate.
 const GUARD: usize = 320;
 
 impl Big {
     /// Number of bits of a big number. An integer with more bits is rounded to the nearest number
-    /// with this many, which is even.
+    /// with this many bits, which is even.
     pub const BITS: i32 = PRECISION as i32;
 
-    /// Rounds to the nearest big number.
+    /// Rounds `x` to the nearest big number.
     pub(super) fn round(x: Float) -> Self {
         Self(x.with_precision(PRECISION).value())
     }
 
-    /// Returns sine and cosine of an angle; for a multiple of 90° they are exactly 0 and ±1.
+    /// Returns the sine and the cosine of an angle. For a multiple of 90° they are exactly 0 and
+    /// ±1.
     pub fn sin_cos(angle: Angle) -> (Self, Self) {
         let (sin, cos) = sin_cos(angle, 1.0);
         (Self::round(sin), Self::round(cos))
     }
 
-    /// Returns π/2.
+    /// Returns π/2, rounded to a big number.
     pub(super) fn quarter_turn() -> Self {
         Self::round(Float::pi(PRECISION + GUARD) / wide(2.0))
     }
 
-    /// Returns the tangent of half an angle, without loss of accuracy near 180°.
+    /// Returns the tangent of half of an angle, without loss of accuracy near 180°.
     pub fn tan_half(angle: Angle) -> Self {
         let (sin, cos) = sin_cos(angle, 0.5);
         Self::round(sin / cos)
     }
 
-    /// Rounds to the nearest finite `f64`, which is 0 only if the number is 0.
+    /// Rounds to the nearest finite `f64`. The result is 0 only if the number is exactly 0; smaller
+    /// numbers become the smallest subnormal one.
     pub fn to_finite(&self) -> f64 {
         let x = self.0.to_f64().value().clamp(f64::MIN, f64::MAX);
         if x != 0.0 || is_zero(&self.0) {
@@ -62,15 +64,15 @@ impl Big {
         if is_negative { -least } else { least }
     }
 
-    /// Returns the arctangent in degrees.
+    /// Returns the arctangent of the number, in degrees.
     pub fn atan_degrees(&self) -> Self {
         Self(self.0.atan_unit(360))
     }
 }
 
-/// Compares an angle with a number of half turns. If the angle has no radians, degrees are compared
-/// exactly. Otherwise π is involved, which is irrational: the difference is never zero, and has
-/// more digits than can cancel.
+/// Compares an angle with `half_turns` half turns (180° each). If the angle's part in radians is 0,
+/// degrees are compared exactly. Otherwise the irrational number π is involved: the difference is
+/// never zero, and it has more digits than can cancel.
 pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
     if angle.radians == 0.0 {
@@ -85,12 +87,12 @@ pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     left.cmp(&Float::ZERO)
 }
 
-/// Returns whether the number is zero, of either sign.
+/// Returns whether `x` is zero, of either sign.
 pub(super) fn is_zero(x: &Float) -> bool {
     x.repr().is_pos_zero() || x.repr().is_neg_zero()
 }
 
-/// Returns sine and cosine of `factor` (a power of two) times an angle.
+/// Returns the sine and the cosine of `factor`·`angle`, where `factor` is a power of two.
 fn sin_cos(angle: Angle, factor: f64) -> (Float, Float) {
     let part = |x: f64| wide(x) * wide(factor);
     let (sin_degrees, cos_degrees) = part(angle.degrees).sin_cos_unit(360);
@@ -104,15 +106,16 @@ fn sin_cos(angle: Angle, factor: f64) -> (Float, Float) {
     )
 }
 
-/// Converts a finite `f64` to the precision of steps that cancel.
+/// Converts a finite `f64` to the higher precision that is used for steps that cancel.
 fn wide(x: f64) -> Float {
     exact(x).with_precision(PRECISION + GUARD).value()
 }
 
-/// Converts a finite `f64` to a number whose sums and products are exact.
+/// Converts a finite `f64` to a float of unlimited precision, whose sums, differences and products
+/// are exact. Any other number becomes 0.
 pub(super) fn exact(x: f64) -> Float {
-    // Numbers of a scene and sample points are finite. Any other number would be a bug, which zero
-    // prevents from becoming a panic.
+    // The numbers of a scene and of sample points are finite. Anything else would be a bug; zero
+    // keeps the bug from becoming a panic in a release build.
     debug_assert!(x.is_finite());
     let x = if x.is_finite() { x } else { 0.0 };
     let float = Float::try_from(x).unwrap_or(Float::ZERO);

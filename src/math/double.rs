@@ -2,23 +2,25 @@
 
 use super::{Big, Real};
 
-/// The sum of two `f64`, the second at most half a unit in the last place of the first.
+/// A double-double number: the sum of two `f64`, of which the second is at most half a unit in the
+/// last place of the first.
 ///
 /// The algorithms are Dekker's and Knuth's error-free transformations. Sum and product are the
 /// accurate ones analysed by Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic
-/// building blocks of double-word arithmetic" (2017): relative errors of 3u² and 5u², u = 2^−53.
-/// The quotient is a long division, the root a step of Newton's method, each with a residual in
-/// double-double. Products are split as by Dekker rather than by a fused multiply-add, which is a
-/// slow function call on processors without it; both are exact.
+/// building blocks of double-word arithmetic" (2017). Their relative errors are at most 3u² and
+/// 5u², u = 2^−53. The quotient is a long division and the root is a step of Newton's method, each
+/// with its residual in double-double. Products are split as by Dekker instead of using a fused
+/// multiply-add, which is a slow function call on processors without that instruction; both ways
+/// are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Double {
     /// The number rounded to `f64`.
     pub hi: f64,
-    /// The remainder of the rounding.
+    /// The difference between the number and `hi`.
     pub lo: f64,
 }
 
-/// Returns a + b as a rounded sum and its exact error (Knuth).
+/// Returns `a` + `b` as the rounded sum and its exact error (Knuth).
 #[inline(always)]
 pub fn two_sum(a: f64, b: f64) -> Double {
     let hi = a + b;
@@ -27,7 +29,7 @@ pub fn two_sum(a: f64, b: f64) -> Double {
     Double { hi, lo }
 }
 
-/// Returns a + b as a rounded sum and its exact error, for |a| ≥ |b| (Dekker).
+/// Returns `a` + `b` as the rounded sum and its exact error (Dekker). Requires |`a`| ≥ |`b`|.
 #[inline(always)]
 fn quick_two_sum(a: f64, b: f64) -> Double {
     let hi = a + b;
@@ -37,11 +39,12 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
     }
 }
 
-/// Returns a · b as a rounded product and its exact error (Dekker, with Veltkamp's splitting).
+/// Returns `a` · `b` as the rounded product and its exact error (Dekker, with Veltkamp's
+/// splitting).
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> Double {
-    /// 2^27 + 1: the upper part of a number of 53 bits gets 26 bits, and the lower part 26 with its
-    /// sign.
+    /// Veltkamp's factor 2^27 + 1: the upper part of a number of 53 bits gets 26 bits, and the
+    /// lower part 26 bits and a sign.
     const SPLIT: f64 = ((1u64 << 27) + 1) as f64;
     fn split(x: f64) -> (f64, f64) {
         let scaled = x * SPLIT;
@@ -56,7 +59,7 @@ pub fn two_product(a: f64, b: f64) -> Double {
 }
 
 impl Double {
-    /// Returns −self if the condition holds, or else self.
+    /// Returns −`self` if `condition` holds, otherwise `self`.
     pub fn negated_if(self, condition: bool) -> Self {
         if condition { self.negated() } else { self }
     }
@@ -65,9 +68,9 @@ impl Double {
 impl Real for Double {
     type Radius = f64;
 
-    /// 2^−102 is above the 10u² of a quotient.
+    /// 2^−102, more than the error 10u² of a quotient, the largest of all operations.
     const UNIT: f64 = 1.0 / (1u128 << 102) as f64;
-    /// The splitting loses bits below the subnormal numbers, a few times 2^−1074.
+    /// 2^−1022. Splitting loses bits below the subnormal numbers, a few times 2^−1074.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -115,7 +118,7 @@ impl Real for Double {
         quick_two_sum(p.hi, p.lo + cross)
     }
     fn over(&self, other: &Self) -> Self {
-        // Long division by two digits and a correction.
+        // This is a long division with two digits and a correction.
         let first = self.hi / other.hi;
         let rest = self.minus(&other.times(&Self::from_f64(first)));
         let second = rest.hi / other.hi;

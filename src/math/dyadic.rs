@@ -1,8 +1,8 @@
-//! Dyadic numbers: integers times powers of two. Sums, differences and products of `f64` are dyadic
-//! numbers, without any rounding.
+//! Dyadic numbers: integers times powers of two. Every `f64` is a dyadic number, and so is every
+//! sum, difference and product of dyadic numbers, so that nothing is rounded.
 //!
-//! They answer the few questions that must not depend on rounding at all: whether the eye lies in a
-//! plane or on a sphere, and whether the up vector is parallel to the view direction. An answer
+//! They decide the few questions that must not depend on rounding at all: whether the eye lies in a
+//! plane or on a sphere, and whether the up vector is parallel to the view direction. Each decision
 //! takes some microseconds.
 
 use std::{cmp::Ordering, ops};
@@ -15,7 +15,7 @@ use super::{
     big::{Float, exact, is_zero},
 };
 
-/// An integer times a power of two, exact in sums, differences and products.
+/// An integer times a power of two. Sums, differences and products are exact.
 #[derive(Clone, Debug)]
 pub struct Dyadic(Float);
 
@@ -44,12 +44,12 @@ impl Dyadic {
         Big::round(self.0.clone())
     }
 
-    /// Converts a vector exactly.
+    /// Converts the components of a vector exactly.
     pub fn vector(v: DVec3) -> Dyadic3 {
         v.to_array().map(Self::new)
     }
 
-    /// Computes to − from.
+    /// Computes the vector `to` − `from`.
     pub fn between(from: DVec3, to: DVec3) -> Dyadic3 {
         [0, 1, 2].map(|i| Self(exact(to[i]) - exact(from[i])))
     }

@@ -1,9 +1,9 @@
-//! Arithmetic in three precisions that is the same on every machine, trigonometry, and exact
-//! predicates.
+//! Arithmetic in three precisions, trigonometry, and exact predicates. Results are the same on
+//! every machine.
 //!
 //! [`Real`] is the arithmetic of one precision: `f64`, [`Double`] (double-double) or [`Big`]. A
-//! [`Ball`] is a number with an error bound, so that a decision is either certain or a [`Doubt`],
-//! which the next precision resolves.
+//! [`Ball`] is a number with an error bound. A decision about a ball is either certain or a
+//! [`Doubt`], which the next higher precision resolves.
 
 mod angle;
 mod ball;

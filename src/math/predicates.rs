@@ -6,27 +6,27 @@ use glam::DVec3;
 
 use super::{Dyadic, Dyadic3, two_sum};
 
-/// A plane.
+/// A plane in space.
 #[derive(Clone, Debug)]
 pub enum Plane {
     /// A plane perpendicular to the x, y or z axis.
     Axial {
         /// The axis: 0, 1 or 2.
         axis: usize,
-        /// The coordinate of all its points along the axis.
+        /// The coordinate along the axis that all points of the plane share.
         at: f64,
     },
     /// A plane given by a point and a normal.
     Tilted {
-        /// The normal, of any length except 0.
+        /// A normal of the plane, of any length except 0.
         normal: Dyadic3,
-        /// The point.
+        /// A point of the plane.
         point: DVec3,
     },
 }
 
 impl Plane {
-    /// Returns the plane through a point, perpendicular to a normal.
+    /// Returns the plane through `point` that is perpendicular to `normal`.
     pub fn across(normal: DVec3, point: DVec3) -> Self {
         let normal = Dyadic::vector(normal);
         Self::Tilted { normal, point }
@@ -38,11 +38,11 @@ impl Plane {
         Self::Tilted { normal, point: a }
     }
 
-    /// Returns whether two planes are equal: their normals are parallel, and the difference of the
-    /// points is perpendicular to both.
+    /// Returns whether two planes are exactly equal: their normals are parallel, and the vector
+    /// between their points is perpendicular to both normals.
     pub fn equals(&self, other: &Self) -> bool {
-        // Many samples compare axial planes if a box stands on a floor, or boxes stand side by
-        // side.
+        // Axial planes are compared for many samples if a box stands on a floor, or boxes stand
+        // side by side.
         if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
             return a == b && p == q;
         }
@@ -62,7 +62,7 @@ impl Plane {
     }
 }
 
-/// Returns whether the cross product of `up` and `to − from` is zero.
+/// Returns whether the cross product of `up` and `to` − `from` is exactly zero.
 pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
     Dyadic::is_zero(&Dyadic::cross(
         &Dyadic::vector(up),
@@ -70,12 +70,12 @@ pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
     ))
 }
 
-/// Returns the sign of the dot product of `up` and `to − from`.
+/// Returns the exact sign of the dot product of `up` and `to` − `from`.
 pub fn dot_sign(up: DVec3, from: DVec3, to: DVec3) -> Ordering {
     Dyadic::dot(&Dyadic::vector(up), &Dyadic::between(from, to)).sign()
 }
 
-/// Returns whether three points lie on one line.
+/// Returns whether three points lie exactly on one line.
 pub fn are_on_one_line([a, b, c]: [DVec3; 3]) -> bool {
     Dyadic::is_zero(&Dyadic::cross(
         &Dyadic::between(a, b),
@@ -83,24 +83,26 @@ pub fn are_on_one_line([a, b, c]: [DVec3; 3]) -> bool {
     ))
 }
 
-/// Returns whether three lengths are the sides of a triangle: each is less than the sum of the two
-/// others.
+/// Returns whether three lengths are the sides of a triangle: each is less than the exact sum of
+/// the other two.
 pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
     exceeds(b, c, a) && exceeds(c, a, b) && exceeds(a, b, c)
 }
 
-/// Returns whether the exact sum of two positive numbers exceeds a third one.
+/// Returns whether the exact sum of `one` and `other` exceeds `bound`. All three are positive.
 fn exceeds(one: f64, other: f64, bound: f64) -> bool {
     let sum = one + other;
     if sum != bound {
-        // Rounding is monotonic: the exact sum lies on the same side.
+        // Rounding is monotonic, so that the exact sum lies on the same side of `bound` as the
+        // rounded one.
         return sum > bound;
     }
     let error = two_sum(one, other).lo;
     error > 0.0
 }
 
-/// Returns `center − size/2` and `center + size/2`, each rounded once.
+/// Returns the corners `center` − `size`/2 and `center` + `size`/2 of a box, each coordinate
+/// rounded once.
 pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     let corner = |sign: f64| {
         [0, 1, 2]
@@ -110,9 +112,9 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// Returns `a + b/2`, rounded once. Half of the smallest numbers is not an f64, so it is computed
-/// as (2a + b)/2. If the sum is rounded, it is not subnormal, and halving it is exact. If 2a
-/// overflows, b/2 is exact or too small to matter.
+/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may not be an `f64`, so that (2a +
+/// b)/2 is computed: if the sum is rounded, it is not subnormal, and halving it is exact. If the
+/// sum overflows, a + b/2 is computed; `b`/2 is then exact or too small to matter.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {
@@ -133,7 +135,7 @@ mod tests {
         assert!(cross_is_zero(DVec3::Y, eye, down));
         let beside = DVec3::new(0.1, -7.0, 0.3_f64.next_up());
         assert!(!cross_is_zero(DVec3::Y, eye, beside));
-        // 0.1 + 1e30 rounds to 1e30: the difference must not be rounded.
+        // 0.1 + 1e30 rounds to 1e30, but the difference of the points must not be rounded.
         let far = DVec3::new(1e30, 1e30, 1e30);
         let near = DVec3::new(0.1, 0.1, 0.2);
         assert!(!cross_is_zero(DVec3::ONE, near, far));
@@ -144,7 +146,7 @@ mod tests {
     #[test]
     fn planes_are_one_or_not_to_the_last_bit() {
         let plane = |normal: [f64; 3], point: [f64; 3]| Plane::across(normal.into(), point.into());
-        // x + 2y + 3z = 5.25, and small terms are not lost beside 10^16.
+        // The plane is x + 2y + 3z = 5.25. Small terms must not be lost beside 10^16.
         let normal = [1.0, 2.0, 3.0];
         let near = plane(normal, [0.0, 0.0, 1.75]);
         let far = [1e16, -5e15, 1.75];
@@ -159,14 +161,14 @@ mod tests {
         assert!(!near.equals(&plane(normal, beside)));
         let tilted = [1.0, 2.0_f64.next_up(), 3.0];
         assert!(!near.equals(&plane(tilted, [0.0, 0.0, 1.75])));
-        // One, two and three tenths are rounded differently.
+        // The numbers 0.1, 0.2 and 0.3 are not exact multiples of each other in `f64`.
         assert!(!near.equals(&plane([0.1, 0.2, 0.3], far)));
     }
 
     #[test]
     fn sides_of_triangles() {
-        // In one case the sum rounds to the third side but is slightly greater; in one it was
-        // rounded up.
+        // In the fourth case the sum rounds to the third side but is slightly greater; in the fifth
+        // it was rounded up.
         let little = f64::EPSILON / 4.0;
         for (sides, is_triangle) in [
             ([2.0, 2.0, 1.0], true),

@@ -1,5 +1,5 @@
-//! Error bounds: non-negative numbers, with a wider range than `f64` for big numbers. Their
-//! operations round to nearest; where it matters, a result is increased by [`UP`](super::UP).
+//! Error bounds: non-negative numbers, which for big numbers have a wider range than `f64`. Their
+//! operations round to nearest. Where it matters, callers multiply the result by [`UP`](super::UP).
 
 use std::ops::{Add, Div, Mul};
 
@@ -14,22 +14,22 @@ pub trait Radius:
     + Div<Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// No error at all.
+    /// Radius of an exact number.
     const ZERO: Self;
-    /// No bound at all.
+    /// Radius of a number that is not known at all.
     const INFINITE: Self;
     /// Computes the square root.
     fn sqrt(self) -> Self;
-    /// Computes self · 2^exponent.
+    /// Computes `self` · 2^`exponent`.
     fn scaled(self, exponent: i32) -> Self;
-    /// Returns the exponent of the least power of two that is greater; 0 for 0.
+    /// Returns the exponent of the least power of two that is greater than the number; 0 for 0.
     fn exponent(self) -> i32;
-    /// Subtracts `other`, which is smaller.
+    /// Computes `self` − `other`. Requires that `other` is smaller.
     fn without(self, other: Self) -> Self;
-    /// Converts to `f64`, or infinity.
+    /// Converts to `f64`; a number that is too large becomes infinite.
     fn to_f64(self) -> f64;
 
-    /// Returns the greater of two.
+    /// Returns the greater of `self` and `other`.
     fn max(self, other: Self) -> Self {
         if self > other { self } else { other }
     }
@@ -46,7 +46,8 @@ impl Radius for f64 {
     #[inline]
     fn scaled(self, exponent: i32) -> Self {
         match exponent {
-            // The power of two is a normal number; the product is rounded as `ldexp` rounds.
+            // The power of two is a normal number, and the product is rounded exactly as `ldexp`
+            // rounds it.
             -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
             _ => libm::ldexp(self, exponent),
         }
@@ -64,8 +65,8 @@ impl Radius for f64 {
     }
 }
 
-/// A non-negative number whose exponent does not overflow: mantissa · 2^exponent, where the
-/// mantissa is 0, infinite, or at least 1 and less than 2.
+/// A non-negative number with a range that does not overflow: mantissa · 2^exponent. The mantissa
+/// is 0, infinite, or at least 1 and less than 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wide {
     mantissa: f64,
@@ -73,11 +74,12 @@ pub struct Wide {
 }
 
 impl Wide {
-    /// Exponent difference beyond which a summand is treated as 2^1000 times smaller: far less than
-    /// [`UP`](super::UP) adds, and no underflow beside a mantissa from 1 to 2.
+    /// Exponent difference above which a summand is treated as 2^1000 times smaller than the other.
+    /// This is far less than [`UP`](super::UP) adds, and the summand's mantissa does not underflow.
     const FAR: i64 = 1000;
 
-    /// Returns mantissa · 2^exponent for any mantissa ≥ 0.
+    /// Returns `mantissa` · 2^`exponent`, where the mantissa may be any number that is not
+    /// negative.
     pub fn new(mantissa: f64, exponent: i64) -> Self {
         if mantissa == 0.0 || !mantissa.is_finite() {
             return Self {
@@ -173,8 +175,9 @@ impl Radius for Wide {
     }
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
-        /// Limit far beyond the exponents of `f64`, so that no number scaled by it is an `f64`, and
-        /// small enough to be added and negated.
+        /// Maximum absolute value of the result. It is far beyond the exponents of `f64`, so that
+        /// no number scaled by it is an `f64`. It is small enough to be added and negated without
+        /// overflow.
         const LIMIT: i64 = 1 << 20;
         (self.exponent + of_mantissa).clamp(-LIMIT, LIMIT) as i32
     }
@@ -184,7 +187,7 @@ impl Radius for Wide {
         Self::new(rest.max(0.0), self.exponent)
     }
     fn to_f64(self) -> f64 {
-        /// Limit beyond the exponents of `f64`, which are −1074 to 1023.
+        /// Maximum absolute value of the exponent, beyond those of `f64`, which are −1074 to 1023.
         const LIMIT: i64 = 1100;
         libm::ldexp(self.mantissa, self.exponent.clamp(-LIMIT, LIMIT) as i32)
     }

@@ -1,4 +1,4 @@
-//! The three precisions of decisions.
+//! Arithmetic in the three precisions in which decisions are made.
 
 use std::fmt::Debug;
 
@@ -9,27 +9,29 @@ use super::{
     big::{PRECISION, exact, is_zero},
 };
 
-/// A kind of real number: `f64`, [`Double`](super::Double) or [`Big`], from fast to precise.
+/// An approximation of the real numbers: `f64`, [`Double`](super::Double) or [`Big`], from fast to
+/// precise.
 ///
-/// Operations take references, because a big number is expensive to copy. The error of a result is
-/// at most [`UNIT`](Real::UNIT) times the result, as long as nothing overflows or underflows. An
-/// `f64` or `Double` that overflows becomes infinite or NaN, which every decision treats as doubt.
+/// Operations take references, because copying a big number is expensive. The error of a result is
+/// at most [`UNIT`](Real::UNIT) times the result unless something overflows or underflows. An `f64`
+/// or `Double` that overflows becomes infinite or NaN, and every decision about it is a
+/// [`Doubt`](super::Doubt).
 pub trait Real: Clone + Debug + Sized {
-    /// Type of error bounds, with at least the range of the kind itself.
+    /// Type of error bounds, with at least the range of the numbers themselves.
     type Radius: Radius;
-    /// Bound on the relative error of one operation.
+    /// Maximum relative error of one operation.
     const UNIT: f64;
-    /// Bound on the absolute error of one operation that underflows, including its radius.
+    /// Maximum absolute error of one operation that underflows, including that of its radius.
     const TINY: Self::Radius;
-    /// Whether this is the most precise kind, in which a value that cannot be distinguished from
+    /// Whether this is the highest precision, in which a value that cannot be distinguished from
     /// zero counts as zero.
     const LAST: bool;
 
-    /// Converts without rounding.
+    /// Converts an `f64` without rounding.
     fn from_f64(x: f64) -> Self;
-    /// Computes a − b, without rounding if the kind can hold the result.
+    /// Computes `a` − `b`, without rounding if the result is representable.
     fn difference(a: f64, b: f64) -> Self;
-    /// Rounds a more precise number.
+    /// Rounds `x` to this precision.
     fn from_big(x: &Big) -> Self;
     /// Returns the nearest `f64`, or one of the two nearest.
     fn to_f64(&self) -> f64;
@@ -37,34 +39,36 @@ pub trait Real: Clone + Debug + Sized {
     fn magnitude(&self) -> Self::Radius;
     /// Returns whether the number is less than zero.
     fn is_negative(&self) -> bool;
-    /// Returns whether the number is zero, not merely too small for an `f64`.
+    /// Returns whether the number is exactly zero, not merely too small for an `f64`.
     fn is_zero(&self) -> bool;
 
-    /// Computes self + other.
+    /// Computes `self` + `other`.
     fn plus(&self, other: &Self) -> Self;
-    /// Computes self − other.
+    /// Computes `self` − `other`.
     fn minus(&self, other: &Self) -> Self;
-    /// Computes self · other.
+    /// Computes `self` · `other`.
     fn times(&self, other: &Self) -> Self;
-    /// Computes self / other.
+    /// Computes `self`/`other`.
     fn over(&self, other: &Self) -> Self;
     /// Computes the square root.
     fn sqrt(&self) -> Self;
-    /// Computes −self.
+    /// Computes −`self`.
     fn negated(&self) -> Self;
-    /// Computes self · 2^exponent, exactly.
+    /// Computes `self` · 2^`exponent`, without rounding unless the result overflows or underflows.
     fn scaled(&self, exponent: i32) -> Self;
-    /// Returns the greatest integer that is not greater, and whether it is odd.
+    /// Returns the floor, the greatest integer that is not greater than the number, and whether
+    /// that integer is odd.
     fn floor(&self) -> (Self, bool);
 }
 
-/// Number that rounds another one below 2^51 to an integer if it is added and subtracted again. The
-/// last bit of the sum is that of the integer.
+/// Number whose addition and subsequent subtraction round an `f64` below 2^51 in absolute value to
+/// an integer. The last bit of the sum is the last bit of that integer.
 pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 
-/// Returns the greatest integer that is not greater, for |x| < 2^63.
+/// Returns the floor of `x`, the greatest integer that is not greater. Requires |x| < 2^63.
 ///
-/// `f64::floor` is a function call on targets whose baseline has no instruction for it.
+/// It replaces `f64::floor`, which is a function call on targets whose baseline has no instruction
+/// for it.
 #[inline]
 pub fn floor(x: f64) -> f64 {
     let towards_zero = x as i64 as f64;
@@ -77,9 +81,9 @@ pub fn floor(x: f64) -> f64 {
 
 impl Real for f64 {
     type Radius = f64;
-    /// Half a unit in the last of 53 places.
+    /// Unit roundoff, 2^−53.
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
-    /// 2^−1022. An underflow loses half a subnormal number's unit, 2^−1075.
+    /// 2^−1022. An underflow loses at most half of the smallest subnormal number, 2^−1075.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -138,7 +142,8 @@ impl Real for f64 {
     }
     #[inline]
     fn floor(&self) -> (Self, bool) {
-        /// Every `f64` from 2^53 on is even, because it has 53 bits.
+        /// Absolute value from which on every `f64` is an even integer: 2^53, because an `f64` has
+        /// 53 bits.
         const ALL_EVEN: f64 = (1u64 << 53) as f64;
         let floor = f64::floor(*self);
         (floor, floor.abs() < ALL_EVEN && floor as i64 & 1 == 1)
@@ -149,7 +154,7 @@ impl Real for Big {
     type Radius = Wide;
 
     const UNIT: f64 = f64::from_bits((1023 - PRECISION as u64) << 52);
-    /// A big number does not underflow.
+    /// 0, because a big number does not underflow.
     const TINY: Wide = Wide::ZERO;
     const LAST: bool = true;
 
@@ -168,7 +173,7 @@ impl Real for Big {
     fn magnitude(&self) -> Wide {
         let repr = self.0.repr();
         let bits = repr.significand().bit_len() as isize;
-        // Between 1/2 and 1, whatever the number's own exponent.
+        // The fraction is from 1/2 to 1, whatever the number's own exponent is.
         let fraction = self.0.clone() >> (repr.exponent() + bits);
         let exponent = (repr.exponent() + bits) as i64;
         Wide::new(fraction.to_f64().value().abs(), exponent)

@@ -1,33 +1,36 @@
 //! Sine and cosine with an error bound.
 //!
-//! Degrees are reduced mod 360 without rounding before they are converted to radians, so that
-//! multiples of 90° give exactly 0 and ±1 however large they are. The reduced angle is at most 45°.
+//! Degrees are reduced modulo 360 without rounding before they are converted to radians. Multiples
+//! of 90°, however large, therefore have sines and cosines of exactly 0 or ±1. The reduced angle is
+//! at most 45°.
 
 use std::{array, ops::Neg, sync::LazyLock};
 
 use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
-/// Largest angle, in radians, that is not left to [`Big`], whose π has enough digits for any. It is
-/// less than 2^20 quarter turns, for which the truncation of π/2 amounts to 2^20 · 2^−163 = 2^−143,
-/// negligible beside a unit of double-double, 2^−102.
+/// Maximum angle, in radians, for which double-double series are used; above it, [`Big`] computes
+/// the result, whose π has enough digits for any angle. The limit is less than 2^20 quarter turns.
+/// For these, the truncation of π/2 amounts to 2^20·2^−163 = 2^−143, which is negligible beside the
+/// unit of double-double, 2^−102.
 const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
-/// Number of terms of a series. With r ≤ 0.8, which is above π/4, the first omitted term of the
-/// cosine is r³⁰/30! < 2^−117, and that of the sine, relative to r, is r³⁰/31! < 2^−122.
+/// Number of terms of each series. The argument r is at most 0.8, more than π/4. The first omitted
+/// term of the cosine is then r³⁰/30! < 2^−117, and that of the sine, divided by r, is r³⁰/31! <
+/// 2^−122.
 const TERMS: usize = 15;
-/// Bound on the truncation error of a series. The terms alternate and decrease, so that the error
-/// is at most the first omitted term.
+/// Maximum truncation error of a series. The terms alternate and decrease, so that the error is at
+/// most the first omitted term.
 const TRUNCATION: f64 = 1.0 / (1u128 << 116) as f64;
 
-/// Constants of the series.
+/// Constants for the reduction of angles and for the series.
 struct Constants {
-    /// π/2 as the sum of three `f64`, with an error of at most half a unit of the last one,
-    /// 2^−163.
+    /// π/2 as the sum of three `f64`. The error is at most half a unit in the last place of the
+    /// third, 2^−163.
     quarter_turn: [f64; 3],
     radians_per_degree: Ball<Double>,
-    /// (−1)ⁿ/(2n)!.
+    /// Coefficients (−1)ⁿ/(2n)! of the cosine.
     cosine: [Ball<Double>; TERMS],
-    /// (−1)ⁿ/(2n + 1)!.
+    /// Coefficients (−1)ⁿ/(2n + 1)! of the sine, divided by r.
     sine: [Ball<Double>; TERMS],
 }
 
@@ -39,12 +42,12 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
         rest = rest.minus(&Big::from_f64(part));
         part
     });
-    // 0!, 1!, 2!, …, each from the one before.
+    // The factorials 0!, 1!, 2!, … are each computed from the previous one.
     let mut factorial = Big::from_f64(1.0);
     let reciprocals: [Ball<Double>; 2 * TERMS] = array::from_fn(|n| {
         factorial = factorial.times(&Big::from_f64(n.max(1) as f64));
         let reciprocal = Ball::from_big(&Big::from_f64(1.0).over(&factorial));
-        // The signs of i⁰, i¹, i², … without i.
+        // The signs are those of i⁰, i¹, i², … (without i itself).
         if n % 4 < 2 { reciprocal } else { -reciprocal }
     });
     Constants {
@@ -55,8 +58,9 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     }
 });
 
-/// Returns sine and cosine of an angle; for a multiple of 90° they are exactly 0 and ±1.
-/// Double-double uses series, the two other precisions round a [`Big`].
+/// Returns the sine and the cosine of an angle. For a multiple of 90° they are exactly 0 and ±1. In
+/// double-double, series compute them (up to `MAX_RADIANS`); otherwise, they are rounded from a
+/// [`Big`].
 pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     if T::UNIT == Double::UNIT && angle.radians.abs() <= MAX_RADIANS {
         let (sin, cos) = by_series(angle);
@@ -66,7 +70,8 @@ pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     (Ball::from_big(&sin), Ball::from_big(&cos))
 }
 
-/// Converts to `T`, which is [`Double`]: the sum of the two parts is rounded to the same parts.
+/// Converts to `T`, which must be [`Double`]. The conversion changes nothing, because the sum of
+/// the two parts is rounded to the same parts.
 fn from_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
     let [hi, lo, rad] = [x.mid.hi, x.mid.lo, x.rad].map(T::from_f64);
     Ball {
@@ -94,8 +99,8 @@ fn sin_cos_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
     add_quarter_turns(series(&rest), quarters)
 }
 
-/// Reduces radians mod π/2 in three steps (Cody and Waite), of which the first two subtract exact
-/// products.
+/// Returns the sine and the cosine of an angle in radians. The angle is reduced modulo π/2 in three
+/// steps (Cody and Waite), of which the first two subtract exact products.
 fn sin_cos_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     let [first, second, third] = CONSTANTS.quarter_turn;
     let quarters = (radians / first).round();
@@ -111,8 +116,9 @@ fn sin_cos_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     add_quarter_turns(series(&(rest - Ball::exact(quarters) * last)), quarters)
 }
 
-/// Splits an angle in degrees into quarter turns and a rest of at most 45. Every step is exact: so
-/// is a remainder, and so is the difference to 90 of a number between 45 and 90 (Sterbenz).
+/// Splits an angle in degrees into a rest, from −45 to 45 degrees, and a number of quarter turns.
+/// Every step is exact: remainders are, and so is the difference between 90 and a number from 45 to
+/// 90 (Sterbenz).
 fn reduce_degrees(degrees: f64) -> (f64, f64) {
     let within_turn = degrees % 360.0;
     let mut rest = within_turn % 90.0;
@@ -127,7 +133,8 @@ fn reduce_degrees(degrees: f64) -> (f64, f64) {
     (rest, quarters)
 }
 
-/// Adds quarter turns to an angle given by its sine and cosine.
+/// Returns the sine and the cosine of an angle increased by `quarters` quarter turns, from those of
+/// the angle itself.
 fn add_quarter_turns<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (T, T) {
     match quarters.rem_euclid(4.0) as u8 {
         0 => (sin, cos),
@@ -137,7 +144,8 @@ fn add_quarter_turns<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (
     }
 }
 
-/// Evaluates the series of sine and cosine at r, |r| ≤ 0.8, from the smallest term to the largest.
+/// Evaluates the series of the sine and the cosine at `r`, |r| ≤ 0.8, from the smallest term to the
+/// largest.
 fn series(r: &Ball<Double>) -> (Ball<Double>, Ball<Double>) {
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));
     if r.mid.is_zero() && r.rad == 0.0 {
@@ -162,15 +170,16 @@ mod tests {
 
     use super::*;
 
-    /// Maximum radius of a ball, in units of double-double, for an angle in degrees, in radians,
-    /// and in both, by the rules of [`Ball`]. A product with a rounded constant gives 8 units of r
-    /// for degrees, three differences at most 12 π/4 for radians. From there the series give 19.9
-    /// units of the sine and 19.6 of the cosine for degrees, 23.4 and 22.1 for radians, all at |r|
-    /// = π/4. A sum of two products of these, √½ each, gives 2 + 2 + 4 + √½ (19.9 + 19.6 + 23.4 +
-    /// 22.1) = 68.1.
+    /// Maximum radius of a ball, in units of double-double, for angles in degrees, in radians, and
+    /// in both. It follows from the rules of [`Ball`]. The reduced angle r has 8 units of r after
+    /// its product with a rounded constant (degrees), and at most 12·π/4 units after three
+    /// differences (radians). At |r| = π/4 the series then give 19.9 units of the sine and 19.6 of
+    /// the cosine for degrees, and 23.4 and 22.1 for radians. For both, two products of numbers
+    /// that are √½ are added: 2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];
 
-    /// Returns whether both balls contain the true numbers and are no wider than necessary.
+    /// Returns whether the balls of the sine and the cosine contain the true numbers and are no
+    /// wider than [`WIDEST`].
     fn is_right(degrees: f64, radians: f64) -> bool {
         let widest = match (degrees == 0.0, radians == 0.0) {
             (_, true) => WIDEST[0],
@@ -210,7 +219,8 @@ mod tests {
 
     #[test]
     fn angles_far_away_and_the_widest_balls_are_right() {
-        // If both parts are 45° off a quarter turn, the ball is as wide as possible.
+        // This ball is as wide as possible, because both parts of the angle are 45° off a quarter
+        // turn.
         assert!(is_right(-302176.406925716, -675013.4458038831 / 64.0));
         for radians in [1e7, -3e20, MAX_RADIANS, 1e300] {
             assert!(is_right(0.0, radians), "{radians}");

@@ -1,7 +1,7 @@
 //! Trigonometric functions of angles, the same on every machine.
 //!
-//! In: angles or numbers. Out: the double-double numbers of `sine`, rounded; and libm's inverse
-//! functions.
+//! In: angles or numbers. Out: for angles, their sines, cosines and tangents, rounded from the
+//! double-double numbers of `sine`; for numbers, libm's inverse functions.
 
 use super::{Angle, Ball, Double, Real, sine};
 
@@ -15,7 +15,7 @@ pub fn cos(angle: Angle) -> f64 {
     sin_cos(angle).1.to_f64()
 }
 
-/// Returns the tangent of an angle; infinite at an odd multiple of 90 degrees.
+/// Returns the tangent of an angle. It is infinite at an odd multiple of 90 degrees.
 pub fn tan(angle: Angle) -> f64 {
     let (sin, cos) = sin_cos(angle);
     if cos.is_zero() {
@@ -25,7 +25,8 @@ pub fn tan(angle: Angle) -> f64 {
     }
 }
 
-/// Returns sine and cosine in double-double; NaN if the angle is not finite.
+/// Returns the sine and the cosine of an angle in double-double; both are NaN if the angle is not
+/// finite.
 fn sin_cos(angle: Angle) -> (Double, Double) {
     if !angle.is_finite() {
         return (Double::from_f64(f64::NAN), Double::from_f64(f64::NAN));
@@ -34,22 +35,24 @@ fn sin_cos(angle: Angle) -> (Double, Double) {
     (sin, cos)
 }
 
-/// Returns the angle with this sine; NaN outside of −1 to 1.
+/// Returns the angle with this sine, from −90 to 90 degrees. Returns NaN if the sine is not within
+/// −1 to 1.
 pub fn asin(sine: f64) -> Angle {
     Angle::from_radians(libm::asin(sine))
 }
 
-/// Returns the angle with this cosine; NaN outside of −1 to 1.
+/// Returns the angle with this cosine, from 0 to 180 degrees. Returns NaN if the cosine is not
+/// within −1 to 1.
 pub fn acos(cosine: f64) -> Angle {
     Angle::from_radians(libm::acos(cosine))
 }
 
-/// Returns the angle with this tangent, between −90 and 90 degrees.
+/// Returns the angle with this tangent, from −90 to 90 degrees.
 pub fn atan(tangent: f64) -> Angle {
     Angle::from_radians(libm::atan(tangent))
 }
 
-/// Returns the angle from the x axis to the point (x, y).
+/// Returns the angle from the x axis to the point (`x`, `y`), from −180 to 180 degrees.
 pub fn atan2(y: f64, x: f64) -> Angle {
     Angle::from_radians(libm::atan2(y, x))
 }
@@ -64,7 +67,7 @@ mod tests {
         for turns in [0.0, 1.0, -1.0, 12.0, -7.0, 1e9] {
             for (quarter, (s, c)) in values.iter().enumerate() {
                 let angle = Angle::from_degrees(turns * 360.0 + quarter as f64 * 90.0);
-                // Compares bits, because no zero is negative.
+                // Bits are compared, because no zero may be negative.
                 let bits = [sin(angle), cos(angle)].map(f64::to_bits);
                 assert_eq!(bits, [*s, *c].map(f64::to_bits), "{angle:?}");
             }

@@ -1,4 +1,4 @@
-//! A slot for one value, of which only the newest counts.
+//! A slot for one value, in which a newer value replaces an older one.
 
 use std::{
     sync::{
@@ -10,12 +10,14 @@ use std::{
 
 use crate::lock::{lock, unpoisoned};
 
-/// A slot from one thread to another. A new value replaces one that was not taken.
+/// A slot that passes values from one thread to another. A new value replaces one that was not
+/// taken.
 #[derive(Debug)]
 pub struct Latest<T> {
     state: Mutex<SlotState<T>>,
     news: Condvar,
-    /// Written only while the state is locked, so that both agree.
+    /// Whether the value taken last is outdated. Written only while `state` is locked, so that
+    /// both agree.
     stale: AtomicBool,
 }
 
@@ -39,20 +41,20 @@ impl<T> Default for Latest<T> {
 }
 
 impl<T> Latest<T> {
-    /// Takes the next value, if there is one.
+    /// Takes the value in the slot. Returns `None` if there is none.
     pub fn try_take(&self) -> Option<T> {
         let mut state = lock(&self.state);
         self.stale.store(state.is_over, Ordering::SeqCst);
         state.next.take()
     }
 
-    /// Waits for the next value. Returns `None` after the end.
+    /// Waits for a value and takes it. Returns `None` after the end.
     pub fn take(&self) -> Option<T> {
         self.take_while(Duration::MAX, || {})
     }
 
-    /// Waits for the next value as [`take`](Self::take) does, and calls `idle` after every `pause`
-    /// of waiting.
+    /// Waits for a value as [`take`](Self::take) does, and calls `idle` whenever it has waited for
+    /// `pause`.
     pub fn take_while(&self, pause: Duration, mut idle: impl FnMut()) -> Option<T> {
         let mut state = lock(&self.state);
         loop {
@@ -66,7 +68,8 @@ impl<T> Latest<T> {
             let (waited, result) = unpoisoned(self.news.wait_timeout(state, pause));
             state = waited;
             if result.timed_out() && state.next.is_none() {
-                // `idle` may take its time: values can be put meanwhile.
+                // The lock is released, since `idle` may take long and values must be accepted
+                // meanwhile.
                 drop(state);
                 idle();
                 state = lock(&self.state);
@@ -74,23 +77,23 @@ impl<T> Latest<T> {
         }
     }
 
-    /// Flag that is set as soon as there is a newer value than the one taken, or the slot has
-    /// ended: it cancels work on the old value.
+    /// Returns a flag that cancels work on the value taken last: it is set as soon as a newer value
+    /// is put or the slot ends.
     pub fn stale(&self) -> &AtomicBool {
         &self.stale
     }
 
-    /// Puts a newer value.
+    /// Puts a value into the slot, and sets the flag [`stale`](Self::stale).
     pub fn put(&self, value: T) {
         self.change(|state| state.next = Some(value));
     }
 
-    /// Ends the slot: from now on no values can be taken.
+    /// Ends the slot, and sets the flag [`stale`](Self::stale). Waiting threads then get `None`.
     pub fn end(&self) {
         self.change(|state| state.is_over = true);
     }
 
-    /// Whether the slot has ended.
+    /// Returns whether the slot has ended.
     pub fn is_over(&self) -> bool {
         lock(&self.state).is_over
     }

@@ -1,18 +1,19 @@
 //! The content of a file, and its changes.
 //!
 //! The folder is watched, not the file: many editors save by writing another file and renaming it,
-//! which removes the old file together with a watch on it. For a symbolic link, the folder of its
-//! target is watched as well.
+//! which removes the old file together with its watch. For a symbolic link, the folder of the
+//! link's target is watched as well.
 //!
 //! Events come in bursts, so the file is read after a short time without events. (notify's own
-//! debouncers do that, too; but the small one drops the kind of an event, and would be woken by our
-//! own reading, and the large one tracks renamed files, which is not needed here.) Once a second
-//! the file's time and length are checked in any case: for folders without events, such as those on
-//! other machines, for systems that have no watches left, and for folders that come and go.
+//! debouncers do that, too. But the small one drops the kind of an event, so that our own reading
+//! would trigger it, and the large one tracks renamed files, which is not needed here.) In
+//! addition, the file's time and length are checked once a second. This covers folders without
+//! events, such as those on other machines, systems that have no watches left, and folders that are
+//! removed and created again.
 //!
-//! A save is recognised by the file's time, its length and its identity, and not by the text alone:
-//! people who save an unchanged text want to see something happen. Whatever else an editor does to
-//! a file after writing it changes none of these.
+//! A save is recognised by the file's time, length and identity, and not by its text alone: people
+//! who save an unchanged text expect a reaction. Other changes that an editor makes to a file after
+//! writing it change none of these three.
 
 use std::{
     collections::BTreeSet,
@@ -41,7 +42,7 @@ const QUIET_TIME: Duration = Duration::from_millis(10);
 /// Maximum time from the first event to reading the file, if events do not stop.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
-/// Time within which a file that is gone or empty, which is probably being saved, is expected back.
+/// Maximum time for which a missing or empty file counts as being saved, and is waited for.
 const ABSENCE: Duration = Duration::from_millis(300);
 
 /// Time between two checks of the file without an event.
@@ -50,19 +51,19 @@ const POLL_INTERVAL: Duration = Duration::from_secs(1);
 /// The content of a file.
 #[derive(Debug)]
 pub struct FileContent {
-    /// The bytes, or why they cannot be read.
+    /// The bytes, or the error of reading them.
     pub bytes: io::Result<Vec<u8>>,
-    /// When the change was noticed.
+    /// Time at which the change was noticed.
     pub since: Instant,
 }
 
-/// Watches a file until the returned slot ends or is dropped. `read` must not wait for other
-/// processes ([`files::open`]). The first content is available at once, and another one whenever
-/// the file was saved, even with unchanged text.
+/// Watches a file until the returned slot ends or is dropped. The slot contains the file's first
+/// content at once, and another content whenever the file was saved, even with unchanged text.
+/// `read` reads the file, and must not wait for other processes ([`files::open`]).
 ///
 /// # Errors
 ///
-/// The thread of the watcher cannot be started.
+/// The watcher's thread cannot be started.
 pub fn watch(
     path: &Path,
     read: impl Fn(&Path) -> io::Result<Vec<u8>> + Send + 'static,
@@ -70,7 +71,7 @@ pub fn watch(
     let (sender, events) = mpsc::channel();
     let own_sender = sender.clone();
     let notifier = notify::recommended_watcher(move |event| {
-        // If nobody listens any more, the event is dropped.
+        // If the receiver is gone, the event is dropped.
         let _ = sender.send(event);
     });
     let mut watcher = Watcher {
@@ -98,18 +99,18 @@ pub fn watch(
 struct Watcher<R> {
     path: PathBuf,
     read: R,
-    /// `None` if the system cannot watch.
+    /// Source of the events; `None` if the system cannot watch.
     notifier: Option<RecommendedWatcher>,
     events: Receiver<notify::Result<Event>>,
     /// Keeps the channel of events open if there is no notifier.
     _sender: Sender<notify::Result<Event>>,
-    /// The watched folders.
+    /// The folders that are watched.
     folders: BTreeSet<PathBuf>,
-    /// Names of the file in these folders.
+    /// Names of the file in the folders to watch.
     names: Vec<OsString>,
     /// Stamp of the file when it was last read.
     stamp: Option<Stamp>,
-    /// Content that was last read; for an error, its message.
+    /// Content that was last read, or the message of the error.
     last_read: Option<Result<Vec<u8>, String>>,
 }
 
@@ -125,17 +126,17 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             };
             match event {
                 Ok(event) if self.concerns(&event) => self.settle(),
-                // However many other events there are, the file is checked once a second.
+                // Even if other events keep coming, the file is checked once a second.
                 Ok(_) if since < next_look => continue,
                 _ => {
                     next_look = since + POLL_INTERVAL;
                     if stamp(&self.path) == self.stamp {
-                        // A folder may be back, or a link may have a new target.
+                        // A folder may exist again, or a link may have a new target.
                         self.follow();
                         continue;
                     }
-                    // The file has changed without an event: a watched folder is gone, or reports
-                    // nothing.
+                    // The file has changed without an event: a watched folder was removed, or does
+                    // not report events.
                     self.forget_folders();
                 }
             }
@@ -144,14 +145,14 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Whether an event may have changed the file's content.
+    /// Returns whether an event may have changed the file's content.
     fn concerns(&self, event: &notify::Result<Event>) -> bool {
         let Ok(event) = event else {
             return true;
         };
         let written = AccessKind::Close(AccessMode::Write);
         match event.kind {
-            // Reading, also by ourselves.
+            // Reading, which this watcher does, too, changes nothing.
             EventKind::Access(access) if access != written => false,
             _ if event.need_rescan() => true,
             _ => event.paths.iter().any(|path| {
@@ -161,7 +162,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Waits until there was no event for a short time.
+    /// Waits until there is no event for [`QUIET_TIME`], but at most for [`LONGEST_BURST`].
     fn settle(&self) {
         let start = Instant::now();
         let mut quiet = start + QUIET_TIME;
@@ -178,8 +179,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Watches the folders that matter now. A folder that cannot be watched is checked once a
-    /// second.
+    /// Watches the file's current folders, and no longer watches others. If a folder cannot be
+    /// watched, the check once a second notices changes.
     fn follow(&mut self) {
         let (folders, names) = places(&self.path);
         self.names = names;
@@ -206,14 +207,14 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file, and puts its content into the slot if it was saved since it was last read.
+    /// Reads the file. If it was saved since it was last read, puts its content into the slot.
     fn look(&mut self, since: Instant, latest: &Latest<FileContent>) {
         let (stamp, bytes) = self.read_when_still();
         let read = match &bytes {
             Ok(bytes) => Ok(bytes.clone()),
             Err(error) => Err(error.to_string()),
         };
-        // If a clock ticks slowly, or a file's time was set back, only the text tells.
+        // If the clock is coarse, or the file's time was set back, only the text reveals a save.
         if stamp != self.stamp || self.last_read.as_ref() != Some(&read) {
             self.stamp = stamp;
             self.last_read = Some(read);
@@ -221,8 +222,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file's content with its stamp. If the file was written meanwhile, it is read
-    /// again: with the old stamp, a save that was already read would be taken for another one.
+    /// Reads the file's content, with the stamp from before reading. If the file was written
+    /// meanwhile, it is read again. Otherwise, content read together with an old stamp would later
+    /// be mistaken for another save.
     fn read_when_still(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + LONGEST_BURST;
         loop {
@@ -235,7 +237,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file's content, with the stamp that it had before.
+    /// Reads the file's content, with the stamp from before reading. If the file is missing or
+    /// empty, waits for up to [`ABSENCE`] until it is there, except at the first reading.
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + ABSENCE;
         loop {
@@ -258,7 +261,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 }
 
-/// Returns the folders to watch for a file, and its names in them.
+/// Returns the folders to watch for a file, and the file's names in them, for the path and for the
+/// target of a link.
 fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     let mut folders = BTreeSet::new();
     let mut names = BTreeSet::new();
@@ -270,15 +274,15 @@ fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     (folders, names.into_iter().collect())
 }
 
-/// Returns the folder of a file by its canonical name: the system watches a folder once, so that
-/// removing the watch of one of two names would remove that of the other.
+/// Returns the canonical name of a file's folder. The system watches a folder only once, so for a
+/// folder with two names, removing the watch of one would also remove that of the other.
 fn folder(path: &Path) -> PathBuf {
     let folder = files::folder(path);
-    // A folder that is gone keeps the name by which it was given.
+    // A folder that does not exist keeps the name by which it was given.
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
-/// What changes when a file is saved: its time, its length, or its identity.
+/// Data of a file that change when it is saved: its time, length and identity.
 type Stamp = (SystemTime, u64, files::FileId);
 
 fn stamp(path: &Path) -> Option<Stamp> {

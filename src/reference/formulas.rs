@@ -1,10 +1,11 @@
 //! The usual textbook formulas in `f64`: a camera's axes, a triangle's vertices, and the
 //! intersection of a ray with a shape.
 //!
-//! The camera basis normalises first, the sphere is b² − 4ac, the box three slabs with reciprocals
-//! (Kay and Kajiya 1986), the triangle that of Möller and Trumbore (1997). All of them are right on
-//! paper, and the tracer uses none of them: `report` compares the tracer's decisions with theirs,
-//! and `grading` uses them to imitate students' programs.
+//! The camera's axes are normalised first. The sphere uses the discriminant b² − 4ac, the box three
+//! slabs with reciprocals (Kay and Kajiya 1986), and the triangle the method of Möller and Trumbore
+//! (1997). All of them are right in exact arithmetic, and the tracer uses none of them: `report`
+//! compares the tracer's decisions with theirs, and `grading` uses them to imitate students'
+//! programs.
 
 use glam::{BVec3, DVec2, DVec3};
 
@@ -16,8 +17,11 @@ use crate::{
     },
 };
 
-/// Returns u, v and w: w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u, then
-/// the roll. If the view is along up, u is the language's level direction.
+/// Returns the camera's axes u, v and w, turned by the roll:
+///
+/// w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u.
+///
+/// If the view is parallel to `up`, u follows from the language's level direction.
 pub fn axes(camera: &Camera) -> [DVec3; 3] {
     let backward = match camera.view {
         View::Lookat(at) => camera.eye - at,
@@ -35,12 +39,13 @@ pub fn axes(camera: &Camera) -> [DVec3; 3] {
     [cos * u - sin * v, sin * u + cos * v, w]
 }
 
-/// Converts an angle to radians: its degrees times π/180 plus its radians.
+/// Converts an angle to radians: its degrees times π/180, plus its radians.
 pub fn radians(angle: Angle) -> f64 {
     angle.degrees * std::f64::consts::PI / 180.0 + angle.radians
 }
 
-/// Returns the vertices of a triangle: as written, or left base end, right base end, apex.
+/// Returns the vertices of a triangle: those of the outline, or else left end of the base, right
+/// end of the base, and apex.
 pub fn vertices(outline: &TriangleOutline) -> [DVec3; 3] {
     match outline {
         TriangleOutline::Vertices(vertices) => *vertices,
@@ -48,7 +53,8 @@ pub fn vertices(outline: &TriangleOutline) -> [DVec3; 3] {
     }
 }
 
-/// Computes the vertices by the law of cosines and a rotation about the centroid.
+/// Computes the vertices of a triangle from its sides, by the law of cosines and a rotation about
+/// the centroid.
 fn centered(triangle: &CenteredTriangle) -> [DVec3; 3] {
     let n = triangle.normal.normalize();
     let reference = if n.x == 0.0 && n.z == 0.0 {
@@ -72,7 +78,7 @@ fn centered(triangle: &CenteredTriangle) -> [DVec3; 3] {
     })
 }
 
-/// Returns the corners of a box.
+/// Returns the corners of the box from `min` to `max`.
 pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     std::array::from_fn(|corner| {
         let is_max = |bit: u32| corner >> bit & 1 == 1;
@@ -80,7 +86,8 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// Replaces a triangle by its vertices, so that these are not computed for each ray.
+/// Returns the shape with a triangle's outline replaced by its vertices, so that these are not
+/// computed for each ray.
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {
@@ -91,9 +98,9 @@ pub fn by_vertices(shape: Shape) -> Shape {
     }
 }
 
-/// Intersects the line through the eye, eye + t d, with a shape. Returns the lesser t first, and
-/// twice the same t for a flat shape. For a triangle, a determinant less than `epsilon` counts as
-/// zero.
+/// Intersects the line eye + t·d with a shape. Returns the two values of t, the smaller first; for
+/// a flat shape both are the same. Returns `None` if the line misses the shape. For a triangle, a
+/// determinant whose absolute value is less than `epsilon` counts as zero.
 #[inline(always)]
 pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     match shape {
@@ -104,7 +111,8 @@ pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f
     }
 }
 
-/// Returns the roots of a t² + b t + c.
+/// Intersects the line with a sphere: returns the roots of a·t² + b·t + c, or `None` if there are
+/// none.
 fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let f = eye - sphere.center;
     let a = d.dot(d);
@@ -118,7 +126,8 @@ fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     Some([(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)])
 }
 
-/// Returns where the line enters the last of three slabs, and where it leaves the first.
+/// Intersects the line with a box: returns the t at which it enters the last of three slabs, and
+/// the t at which it leaves the first, or `None` if the line leaves before it has entered.
 fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let inverse = 1.0 / d;
     let a = (cuboid.min - eye) * inverse;
@@ -143,7 +152,8 @@ fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     Some([enter, leave])
 }
 
-/// Computes barycentric coordinates by Cramer's rule.
+/// Intersects the line with a triangle, by barycentric coordinates from Cramer's rule. Returns t
+/// twice, or `None` if the line misses the triangle or counts as parallel to it.
 fn triangle([a, b, c]: &[DVec3; 3], eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     let (one, other) = (b - a, c - a);
     let p = d.cross(other);

@@ -1,4 +1,5 @@
-//! What Pinhole is compared with: textbook formulas, an oracle of arbitrary precision, and scenes.
+//! References that Pinhole is compared with: textbook formulas, an oracle of arbitrary precision,
+//! and scenes.
 //!
 //! The report on the arithmetic, the tests, and the benchmarks compare the tracer with [`oracle`]
 //! and [`textbook`] on scenes made by [`scenes`]; `grading` imitates students' programs with

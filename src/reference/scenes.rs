@@ -15,10 +15,10 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Columns and rows of a picture, unless a test sets others.
+/// Number of columns and of rows of a picture, unless a test sets others.
 pub const SIZE: u32 = 64;
 
-/// Returns a camera with the language's defaults.
+/// Returns a camera at `eye` that looks at `lookat` and otherwise has the language's defaults.
 pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     Camera {
         eye,
@@ -32,7 +32,8 @@ pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     }
 }
 
-/// Returns a camera that looks along a vector.
+/// Returns a camera at `eye` that looks along `direction` and otherwise has the language's
+/// defaults.
 pub fn along(eye: DVec3, direction: DVec3) -> Camera {
     Camera {
         view: View::Direction(direction),
@@ -40,7 +41,7 @@ pub fn along(eye: DVec3, direction: DVec3) -> Camera {
     }
 }
 
-/// Returns a sphere.
+/// Returns a black sphere.
 pub fn sphere(center: DVec3, radius: f64) -> Shape {
     Shape::Sphere(Sphere {
         center,
@@ -49,7 +50,7 @@ pub fn sphere(center: DVec3, radius: f64) -> Shape {
     })
 }
 
-/// Returns a box.
+/// Returns the black box from `min` to `max`.
 pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
     Shape::Box(Cuboid {
         min,
@@ -59,12 +60,12 @@ pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
     })
 }
 
-/// Returns a triangle without spin.
+/// Returns a black triangle without spin.
 pub fn triangle(centroid: DVec3, normal: DVec3, sides: DVec3) -> Shape {
     spun(centroid, normal, sides, 0.0)
 }
 
-/// Returns a triangle with a spin in degrees.
+/// Returns a triangle with a spin of `spin` degrees.
 pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
     Shape::Triangle(Triangle {
         outline: TriangleOutline::Centered(CenteredTriangle {
@@ -77,7 +78,7 @@ pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
     })
 }
 
-/// Returns a checkerboard.
+/// Returns a checkerboard at height `y` with squares of side `square`.
 pub fn board(y: f64, square: f64) -> Shape {
     Shape::Checkerboard(Checkerboard {
         y,
@@ -86,13 +87,14 @@ pub fn board(y: f64, square: f64) -> Shape {
     })
 }
 
-/// Returns the colour that identifies an object of a scene, or the second colour of a checkerboard.
+/// Returns the colour that identifies the object with index `object`. With `is_odd`, returns the
+/// second colour of the object, which is a checkerboard.
 pub fn color(object: usize, is_odd: bool) -> Color {
     let [low, high] = (object as u16 + 1).to_le_bytes();
     Color::from_bytes([low, u8::from(is_odd), high])
 }
 
-/// Returns a scene whose colours identify its objects.
+/// Returns a scene of these shapes, whose colours identify them ([`color`]).
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     let objects = shapes.iter().enumerate().map(|(object, shape)| {
         let own = [false, true].map(|is_odd| color(object, is_odd));

@@ -1,7 +1,7 @@
-//! What is seen at a sample point according to the textbook formulas.
+//! A tracer that decides what is seen at a sample point by the textbook formulas.
 //!
-//! Rays have unit directions, triangles an epsilon, and squares the parity of two floors. This
-//! tracer exists for comparison only.
+//! Rays have unit directions, triangles are tested with an epsilon, and the colour of a square is
+//! the parity of two floors. This tracer exists only for comparison.
 
 use glam::{DVec2, DVec3};
 
@@ -12,11 +12,11 @@ use crate::scene::{Checkerboard, Lens, Scene, Shape};
 #[derive(Clone, Debug)]
 pub struct Textbook {
     eye: DVec3,
-    /// u, v, w.
+    /// The camera's axes u, v and w.
     axes: [DVec3; 3],
     d: f64,
     pixel: f64,
-    /// The picture's size in pixels.
+    /// Width and height of the picture in pixels.
     size: DVec2,
     near: f64,
     far: f64,
@@ -30,18 +30,19 @@ pub struct TextbookHit {
     pub object: usize,
     /// Whether a checkerboard shows its second colour.
     pub odd: bool,
-    /// The distance from the eye.
+    /// Distance of the intersection from the eye.
     pub t: f64,
-    /// The intersection.
+    /// Point of the intersection.
     pub point: DVec3,
 }
 
-/// Determinant below which a triangle counts as parallel to the ray. Möller and Trumbore's own
-/// program uses 10⁻⁶, and most programs since use this value.
+/// Absolute value of the determinant below which a triangle counts as parallel to the ray. Möller
+/// and Trumbore's own program uses 10⁻⁶; most programs since then use 10⁻⁸.
 const EPSILON: f64 = 1e-8;
 
 impl Textbook {
-    /// Prepares a scene.
+    /// Prepares a scene: derives the camera's axes, the size of a pixel, and the vertices of
+    /// triangles.
     pub fn new(scene: &Scene) -> Self {
         let camera = &scene.camera;
         let d = match camera.lens {
@@ -65,7 +66,8 @@ impl Textbook {
         }
     }
 
-    /// Returns what is seen at a point, in pixels from the picture's top left corner.
+    /// Returns the visible intersection of the ray through a point of the picture, or `None` if the
+    /// ray hits nothing. `pixels` counts from the picture's top left corner.
     pub fn seen(&self, pixels: DVec2) -> Option<TextbookHit> {
         let [u, v, w] = self.axes;
         let x = self.pixel * (pixels.x - self.size.x / 2.0);

@@ -15,30 +15,31 @@ use crate::{
     tracer::{GRID, World},
 };
 
-/// Side of the tiles, in pixels. It is so large that pixels of a checkerboard, which are computed
-/// in batches of eight similar ones, fill most of their batches (squares of the grid alone take a
-/// twentieth longer for figure 9.9), and so small that the threads end at about the same time.
+/// Side of the tiles, in pixels. Pixels of a checkerboard are computed in batches of eight similar
+/// ones, and tiles are large enough to fill most batches: with squares of the grid alone, figure
+/// 9.9 takes a twentieth longer. Tiles are small enough that the threads end at about the same
+/// time.
 const TILE: u32 = 2 * GRID;
 
-/// A computed picture, with its error bounds.
+/// An exactly computed picture, with its error bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exact<P = [f64; 3]> {
     /// The means, or another kind of pixel.
     pub film: Film<P>,
-    /// Error bound of each pixel's mean, row by row, for every channel.
+    /// Error bound of each pixel's mean, row by row. It holds for every channel.
     pub bounds: Vec<f32>,
-    /// Number of pixels that certainly equal those of the true means, rounded as in files.
+    /// Number of pixels that, rounded as in files, certainly equal the true means.
     pub certain: u64,
 }
 
 impl<P> Exact<P> {
-    /// Returns the greatest error bound.
+    /// Returns the greatest error bound of a pixel.
     pub fn bound(&self) -> f64 {
         f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
     }
 
-    /// Returns the root of the mean square of the error bounds, which is at least the root mean
-    /// square error over all pixels and channels.
+    /// Returns the root mean square of the error bounds. The root mean square error over all pixels
+    /// and channels is at most as large.
     pub fn root_mean_square_bound(&self) -> f64 {
         let squares = self
             .bounds
@@ -48,7 +49,8 @@ impl<P> Exact<P> {
     }
 }
 
-/// Computes a part of the picture, which must lie in it, without samples. Progress counts pixels.
+/// Computes a part of the picture without samples. The part must lie in the picture. Progress is
+/// reported in pixels.
 ///
 /// # Errors
 ///
@@ -65,8 +67,8 @@ pub(super) fn render_exact_as<P: film::Pixel>(
     render_numbers(&Integrator::new(world), part, control, &|_, _| ())
 }
 
-/// Computes a part of the picture with an integrator of several numbers, of which the first three
-/// are the channels. Calls `also` with all numbers of each tile.
+/// Computes a part of the picture with an integrator of `N` numbers, the first three of which are
+/// the channels. Calls `also` with each tile and all numbers of its pixels.
 ///
 /// # Errors
 ///
@@ -94,11 +96,11 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                 .iter()
                 .map(|pixel| match pixel.bound {
                     0.0 => 0.0,
-                    // Rounded up. Light is between 0 and 1.
+                    // The bound is rounded up. Light is between 0 and 1, so no bound exceeds 1.
                     bound => (bound as f32).next_up().min(1.0),
                 })
                 .collect();
-            // Most pixels equal the one before.
+            // Most pixels equal the pixel before, so the last conversion is kept.
             let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
             let means: Vec<P> = pixels
                 .iter()

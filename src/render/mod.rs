@@ -1,12 +1,12 @@
 //! Renders a world to a film, with samples or exactly.
 //!
-//! In: the prepared scene, where the samples lie, and which part of the picture is wanted. Out: the
-//! means of its pixels. The part is divided into tiles, which the threads take in turn; neither the
-//! number of threads nor the tiles nor the part changes a bit of a pixel.
+//! In: the prepared scene, the positions of the samples, and the wanted part of the picture. Out:
+//! the means of the part's pixels. The part is divided into tiles, which the threads take in turn.
+//! Neither the number of threads nor the tiles nor the part changes a bit of a pixel.
 //!
-//! `sampled` renders with samples, with a `renderer` of tiles; `exact` renders without; `slices`
-//! renders either kind step by step. This file selects what a scene asks for, and contains what
-//! both have in common.
+//! `sampled` renders with samples, with a `renderer` of tiles; `exact` renders without samples;
+//! `slices` renders either kind step by step. This file selects the kind by the scene's sampler,
+//! and contains the code that both kinds share.
 
 mod exact;
 mod renderer;
@@ -43,16 +43,17 @@ pub use self::{
 
 /// Control of a render: its threads, its progress, and its cancellation.
 pub struct Control<'a> {
-    /// Number of threads; `None` for one per processor.
+    /// Number of threads; `None` for the default number, which is one per processor or the
+    /// process's limit.
     pub threads: Option<NonZero<usize>>,
-    /// Called, from any thread, with the number of further samples, or exact pixels, that are
-    /// done.
+    /// Called, from any thread, with the number of samples, or exact pixels, finished since the
+    /// last call.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
 }
 
-/// One thread per processor, no progress, no cancellation.
+/// Default control: the default number of threads, no progress, no cancellation.
 impl Default for Control<'_> {
     fn default() -> Self {
         Self {
@@ -92,14 +93,14 @@ pub enum Rendered<P = [f64; 3]> {
 }
 
 impl<P> Rendered<P> {
-    /// The pixels.
+    /// Returns the film.
     pub fn film(&self) -> &Film<P> {
         match self {
             Self::Sampled(film) | Self::Exact(Exact { film, .. }) => film,
         }
     }
 
-    /// Returns the pixels without their error bounds.
+    /// Returns the film without its error bounds.
     pub fn into_film(self) -> Film<P> {
         match self {
             Self::Sampled(film) | Self::Exact(Exact { film, .. }) => film,
@@ -107,9 +108,9 @@ impl<P> Rendered<P> {
     }
 }
 
-/// Renders a part of the picture, which must lie in it, as its sampler asks for: with samples or
-/// exactly. The film stores light, or the bytes of sRGB that a PNG file needs: the file is the
-/// same, and less memory is touched.
+/// Renders a part of the picture as its sampler specifies: with samples or exactly. The part must
+/// lie in the picture. The film stores light, or the bytes of sRGB that a PNG file needs. With
+/// bytes, the file is the same, and less memory is used.
 ///
 /// # Errors
 ///
@@ -126,15 +127,16 @@ pub fn render_as_asked<P: Pixel>(
     sampled::render_as(world, sampling, part, control).map(Rendered::Sampled)
 }
 
-/// Returns the tiles of a part of the picture, squares of this side in a grid from the picture's
-/// corner, until the render is cancelled: otherwise, iterating over millions of them that nobody
-/// renders would take a second.
+/// Returns the tiles of a part of the picture: squares of side `side`, in pixels, in a grid from
+/// the picture's top left corner, clipped to the part. The iterator ends if the render is
+/// cancelled. Otherwise, iterating over millions of tiles that are not rendered would take a
+/// second.
 fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
 }
 
-/// Returns a result unless the render was cancelled.
+/// Returns the result, or an error if the render was cancelled.
 fn finished<T>(result: Mutex<T>, control: &Control) -> Result<T, RenderError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);

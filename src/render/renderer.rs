@@ -2,8 +2,8 @@
 //!
 //! A pixel's samples are counted by colour, and counts do not depend on an order. Where one colour
 //! is certain, samples are neither placed nor traced: the mean of equal colours is that colour. In
-//! other pixels, samples are traced many at a time, only against the objects that may be seen
-//! there; or one by one, where knowing these objects would cost more.
+//! other pixels, many samples are traced at a time, only against the objects that may be seen
+//! there. Where finding these objects would cost more, samples are traced one by one.
 
 use std::{
     ops::{ControlFlow, Range},
@@ -26,31 +26,31 @@ use crate::{
     },
 };
 
-/// Minimum number of samples for which the widest vectors are used: the number of lanes that they
-/// have.
+/// Minimum number of samples for which the widest vectors are used: their number of lanes.
 const WIDE_SAMPLES: u64 = 8;
 
-/// Maximum number of samples per candidate in a pixel that is not prepared for its samples.
-/// Measured: with 1 or 4 a picture takes up to a fiftieth longer.
+/// Maximum number of samples per candidate for which a pixel's samples are traced one by one,
+/// without preparing the pixel. Measured: with 1 or 4, a picture takes up to a fiftieth longer.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
-/// Maximum number of a pixel's samples that are traced at a time: 40 µs of work if they are
-/// batched, and 0.3 ms one by one.
+/// Maximum number of a pixel's samples that are traced between two checks for cancellation. They
+/// take 40 µs if batched, and 0.3 ms one by one.
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
-/// Side of the squares for which nearby objects are found in crowds, in pixels.
+/// Side of the squares for which nearby objects are searched in crowded parts, in pixels.
 const CROWD_SIDE: u32 = 4;
 
-/// Minimum number of samples for which the nearby objects are narrowed to those of a pixel.
+/// Minimum number of a pixel's samples for which the objects near its square are narrowed to those
+/// near the pixel.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
-/// What all tiles of a picture have in common.
+/// Data that all tiles of a picture share.
 pub(super) struct Renderer<'a, P> {
     pub(super) world: &'a World,
     pub(super) sampling: &'a Sampling,
     /// The palette in linear light.
     pub(super) colors: &'a [[f64; 3]],
-    /// The palette as pixels of the film.
+    /// The palette converted to the film's kind of pixel.
     pub(super) shown: &'a [P],
     pub(super) encoder: &'a Encoder,
     pub(super) control: &'a Control<'a>,
@@ -58,7 +58,7 @@ pub(super) struct Renderer<'a, P> {
 }
 
 impl<P: film::Pixel> Renderer<'_, P> {
-    /// Renders a tile, row by row. Returns `None` if the render was cancelled.
+    /// Renders a tile. Returns its pixels row by row, or `None` if the render was cancelled.
     pub(super) fn tile(
         &self,
         tile: Area,
@@ -99,7 +99,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
         flow.is_continue().then_some(film.pixels)
     }
 
-    /// Breaks if the render was cancelled.
+    /// Returns `Break` if the render was cancelled.
     fn go_on(&self) -> ControlFlow<()> {
         if self.control.cancel.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
@@ -107,7 +107,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
         ControlFlow::Continue(())
     }
 
-    /// Traces the samples of a pixel.
+    /// Traces the samples of a pixel and stores their mean in `film`. Returns `Break` if the render
+    /// was cancelled.
     fn pixel(
         &self,
         [x, y]: [u32; 2],
@@ -121,7 +122,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
             return self.go_on();
         }
         let trace = match trace {
-            // Preparing the pixel would take longer.
+            // Preparing the pixel would take longer than tracing its few samples.
             Trace::Batched(candidates, _)
                 if samples <= SAMPLES_A_CANDIDATE * candidates.len() as u64 =>
             {
@@ -160,7 +161,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
         self.go_on()
     }
 
-    /// Counts the colours of some of a pixel's samples.
+    /// Traces those of a pixel's samples whose indices are in `some`, and counts their colours in
+    /// `tally`. `samples` is the number of all samples of the pixel.
     fn chunk(
         &self,
         [x, y]: [u32; 2],
@@ -211,11 +213,12 @@ impl<P: film::Pixel> Renderer<'_, P> {
 /// How the samples of a pixel are traced.
 #[derive(Clone, Copy)]
 enum Trace<'a> {
-    /// Many at a time, against the objects that may be seen in the pixel; with the squares that it
-    /// shows of a board, if these are known.
+    /// Many at a time, against the objects that may be seen in the pixel. The second value is the
+    /// squares of a checkerboard that the pixel shows, if they are known.
     Batched(&'a [VisibilityCandidate], Option<&'a CheckerPixel>),
     /// One by one, against the objects that may be seen in the pixel.
     AmongCandidates(&'a [VisibilityCandidate]),
-    /// One by one, against the objects nearby, or those on their way down the quadtree.
+    /// One by one, against the nearby objects, or against those that the quadtree lists if these
+    /// are `None`.
     AmongNearby(Option<&'a [BoundedObject]>),
 }

@@ -1,7 +1,7 @@
 //! Renders a part of the picture with samples.
 //!
-//! In: the world, the sampling and the part. Out: its means, as light or as bytes. The part is
-//! divided into tiles for the threads; `renderer` renders each.
+//! In: the world, the sampling and the part. Out: the part's means, as light or as bytes. The part
+//! is divided into tiles for the threads; `renderer` renders each tile.
 
 use std::sync::Mutex;
 
@@ -15,11 +15,11 @@ use crate::{
     tracer::{GRID, Quartering, Scratch, World},
 };
 
-/// Approximate number of samples of a tile: a few milliseconds of work, so that no thread waits
-/// longer for the others at the end.
+/// Approximate number of samples of a tile: a few milliseconds of work, so that at the end no
+/// thread waits long for the others.
 const TILE_SAMPLES: u64 = 1 << 18;
 
-/// Renders a part of the picture, which must lie in it, with samples.
+/// Renders a part of the picture with samples. The part must lie in the picture.
 ///
 /// # Errors
 ///
@@ -72,11 +72,11 @@ pub(super) fn render_as<P: film::Pixel>(
     finished(film, control)
 }
 
-/// Returns the side of the tiles, in pixels: smaller if pixels have many samples.
+/// Returns the side of the tiles, in pixels: a power of two, smaller if pixels have many samples.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
-    // The root of at most 2^18 fits. The side is a power of two, so that no tile crosses a line of
-    // the grid.
+    // The quotient is at most 2^18, so its root fits into 32 bits. The side is a power of two, so
+    // that no tile crosses a line of the grid.
     let side = (pixels.isqrt() as u32).clamp(1, GRID);
     1 << side.ilog2()
 }

@@ -1,7 +1,8 @@
 //! A picture that is rendered in slices, so that its caller can do something else in between.
 //!
-//! A slice is a rectangle of the picture with a fixed number of samples. What a pixel shows does
-//! not depend on the rectangle, and no clock is needed, which Rust does not have in a web worker.
+//! A slice is a square of the picture, clipped at its edges, with about the same number of samples
+//! as the others. A pixel's mean does not depend on the slice. No clock is needed, which Rust does
+//! not have in a web worker.
 
 use super::{Control, RenderError, render_as_asked};
 use crate::{
@@ -11,11 +12,12 @@ use crate::{
     tracer::World,
 };
 
-/// Number of samples of a slice: about 10 ms of two processors for a few objects. A pixel with more
-/// samples is a slice of its own, since a pixel is not divided.
+/// Maximum number of samples of a slice: about 10 ms of work for two processors and a few objects.
+/// A pixel with more samples is a slice of its own, since pixels are not divided.
 pub const SLICE: u64 = 1 << 20;
 
-/// Work of a pixel without samples, in samples that take as long, for figure 9.9.
+/// Work of an exactly computed pixel, as a number of samples that take equally long, for figure
+/// 9.9.
 const EXACT_PIXEL_WORK: u64 = 64;
 
 /// A picture that is partly rendered.
@@ -31,14 +33,14 @@ pub struct Slices<P> {
 }
 
 impl<P: Pixel> Slices<P> {
-    /// Prepares a picture of this size, without rendering anything.
+    /// Prepares a picture of the given width and height, without rendering anything.
     ///
     /// # Errors
     ///
     /// There is not enough memory for it.
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
-        // A square whose side is a power of two: whole tiles of the tracer's grid, or a part of
-        // one.
+        // A slice is a square whose side is a power of two. It consists of whole tiles of the
+        // tracer's grid, or lies within one.
         let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
             film: Film::new(width, height)?,
@@ -48,12 +50,12 @@ impl<P: Pixel> Slices<P> {
         })
     }
 
-    /// The film, black where nothing is rendered yet.
+    /// Returns the film, which is black where nothing is rendered yet.
     pub fn film(&self) -> &Film<P> {
         &self.film
     }
 
-    /// Share of the slices that are rendered, 0 to 1.
+    /// Returns the share of slices that are rendered, 0 to 1.
     pub fn share(&self) -> f64 {
         let [columns, rows] =
             [self.film.width(), self.film.height()].map(|it| it.div_ceil(self.side));
@@ -73,7 +75,7 @@ impl<P: Pixel> Slices<P> {
         })
     }
 
-    /// Renders the next slice. Returns whether it was the last one.
+    /// Renders the next slice, if there is one. Returns whether the picture is now complete.
     ///
     /// # Errors
     ///
@@ -88,7 +90,7 @@ impl<P: Pixel> Slices<P> {
     }
 }
 
-/// Returns the work of one pixel, in samples.
+/// Returns the work of one pixel, in samples, at least 1.
 pub fn pixel_work(sampling: &Sampling) -> u64 {
     if sampling.is_exact() {
         return EXACT_PIXEL_WORK;

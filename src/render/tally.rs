@@ -10,11 +10,11 @@ use crate::{
 pub(super) struct PixelTally<P> {
     pub(super) counts: Counts,
     pub(super) means: Means<P>,
-    /// The current pixel, prepared.
+    /// Buffer for the prepared pixel.
     pub(super) pixel: PreparedPixel,
     /// Buffer for sample points.
     pub(super) points: Points,
-    /// Buffer for the objects nearby that may be seen in a pixel.
+    /// Buffer for the nearby objects that may be seen in a pixel.
     pub(super) narrowed: Vec<BoundedObject>,
 }
 
@@ -34,8 +34,8 @@ impl<P> PixelTally<P> {
 pub(super) struct Counts {
     /// Counts by slot of the palette.
     of: Vec<u64>,
-    /// Slots whose count is not 0, in any order: a palette may be long, and a pixel sees little of
-    /// it.
+    /// Slots whose count is not 0, in any order. Only these are reset, since a palette may be long
+    /// and a pixel sees few of its colours.
     seen: Vec<usize>,
 }
 
@@ -67,15 +67,15 @@ impl Counts {
     }
 }
 
-/// A cache of means of two colours, indexed by a hash of their counts: most pixels with more than
-/// one colour have two, and most of these have the same counts as an earlier pixel.
+/// A cache of means of two colours, indexed by a hash of the slots and counts. Most pixels with
+/// more than one colour have two, and most of these have the same counts as an earlier pixel.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
-/// Number of cached means: 28 KiB, which fit into a first-level cache.
+/// Number of cached means. They take 28 KiB and fit into a first-level cache.
 const CACHED_MEANS: usize = 512;
 
 impl<P: film::Pixel> Means<P> {
-    /// Returns the mean of the counts, and resets them.
+    /// Returns the mean of the counts as a pixel of the film, and resets the counts to 0.
     pub(super) fn take(
         &mut self,
         counts: &mut Counts,
@@ -103,7 +103,7 @@ impl<P: film::Pixel> Means<P> {
 
     fn of_two(&mut self, seen: [(usize, u64); 2], colors: &[[f64; 3]], encoder: &Encoder) -> P {
         if self.0.is_empty() {
-            // No colour is counted 0 times, so an empty entry matches nothing.
+            // No colour is counted 0 times, so an empty entry equals no counts.
             self.0.resize(CACHED_MEANS, ([(0, 0); 2], P::default()));
         }
         let [(a, count), (b, other)] = seen;

@@ -7,7 +7,7 @@ pub(super) struct Tile<P> {
     pub(super) area: Area,
     pub(super) samples: SampleCounts,
     pub(super) pixels: Vec<P>,
-    /// Number of finished samples that are not reported as progress yet.
+    /// Number of finished samples that are not yet reported as progress.
     pub(super) unreported: u64,
 }
 
@@ -29,7 +29,8 @@ impl SampleCounts {
 }
 
 impl<P: Pixel> Tile<P> {
-    /// Fills a part in which all samples see one colour.
+    /// Fills a part in which all samples see one colour, except its pixels without samples. Adds
+    /// the samples to `unreported`.
     pub(super) fn fill(&mut self, part: Area, color: P) {
         for y in part.y..part.y + part.height {
             let start = self.area.index(part.x, y);

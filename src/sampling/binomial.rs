@@ -2,29 +2,29 @@
 //! a fraction.
 //!
 //! A trial succeeds if a random number is below p, which the first differing binary digit of the
-//! two decides. At each digit, half of the undecided trials are decided, and the only draw is the
-//! number of heads of some coins. For few coins, random bits are counted; for many, the draw is
-//! transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random variates"),
-//! exact except for the rounding of f64.
+//! two numbers decides. At each digit, about half of the undecided trials are decided, and the only
+//! draw is the number of heads of as many coins. For few coins, random bits are counted. For many,
+//! the draw is transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random
+//! variates"), exact except for the rounding of `f64`.
 //!
 //! The binomial distribution of `rand_distr` uses the platform's `powf` and `ln`, whose last bits
 //! differ between systems.
 
 use rand::{Rng, RngExt};
 
-/// Maximum number of coins that are tossed one by one, 64 per random number.
+/// Maximum number of coins for which random bits are counted, 64 per random number.
 const MAX_COUNTED: u64 = 512;
 
 /// Draws the number of successes in `n` ≤ 2^53 trials with the success probability `part`/`whole`.
 pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     let (mut open, mut successes) = (n, 0);
-    // The digits of p that are not used yet, in units of 1/whole of the last used digit.
+    // The binary digits of p = part/whole that are not used yet, as a numerator over `whole`.
     let mut rest = part;
     while open > 0 && rest > 0 {
         let ones = heads(rng, open);
         rest *= 2;
         if rest < whole {
-            // The digit is 0, so trials with a random 1 are above p.
+            // The digit of p is 0, so trials whose random digit is 1 are above p and fail.
             open -= ones;
         } else {
             rest -= whole;
@@ -35,7 +35,7 @@ pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     successes
 }
 
-/// Draws the number of heads of `n` coins.
+/// Draws the number of heads of `n` fair coins.
 fn heads(rng: &mut impl Rng, n: u64) -> u64 {
     if n > MAX_COUNTED {
         return reject(rng, n as f64) as u64;
@@ -46,7 +46,7 @@ fn heads(rng: &mut impl Rng, n: u64) -> u64 {
         .sum()
 }
 
-/// Draws the number of heads of many coins by BTRS with p = 1/2.
+/// Draws the number of heads of `n` fair coins by BTRS with p = 1/2, for large `n`.
 fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     let deviation = n.sqrt() / 2.0;
     let b = 1.15 + 2.53 * deviation;
@@ -72,15 +72,15 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     }
 }
 
-/// Logarithm of the probability of k heads, up to a constant, by Stirling's formula for the
-/// factorials with its error (Loader 2000, "Fast and accurate computation of binomial
-/// probabilities"). No term is much larger than the result, so that nothing cancels even for n =
-/// 2^53. k must lie within n/4 of n/2.
+/// Returns the logarithm of the probability of `k` heads in `n` tosses, up to a constant, for `k`
+/// within n/4 of n/2. It uses Stirling's formula for the factorials with a term for its error
+/// (Loader 2000, "Fast and accurate computation of binomial probabilities"). No term is much larger
+/// than the result, so that nothing cancels even for n = 2^53.
 fn ln_weight(k: f64, n: f64) -> f64 {
     let stirling_error = |n: f64| (1.0 / 12.0 - 1.0 / 360.0 / (n * n)) / n;
     let ratio = (2.0 * k - n) / n;
     let square = ratio * ratio;
-    // (1 + r) ln(1 + r) + (1 − r) ln(1 − r), for |r| ≤ 1/2.
+    // This series is (1 + r) ln(1 + r) + (1 − r) ln(1 − r) for the ratio r, with |r| ≤ 1/2.
     let (mut sum, mut power) = (0.0, square);
     for double in (2..).step_by(2) {
         let next = sum + 2.0 * power / f64::from(double * (double - 1));
@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn draws_have_the_probabilities_of_the_distribution() {
-        // χ² over all outcomes whose expected number is at least 10.
+        // Tests χ² over all outcomes whose expected number is at least 10.
         for (n, part, whole) in [
             (6_u64, 1_u32, 3_u32),
             (30, 1, 2),

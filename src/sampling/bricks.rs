@@ -14,9 +14,9 @@ pub struct Bricks {
     n: u64,
     /// Number of rows, m.
     rows: u64,
-    /// ⌊n/m⌋.
+    /// Length of a short row: ⌊n/m⌋ cells.
     short: u64,
-    /// Number of rows above the middle that are longer by one.
+    /// Number of rows above the middle that have one cell more than a short row.
     longer: u64,
 }
 
@@ -34,10 +34,10 @@ impl Bricks {
     pub fn new(n: u64) -> Self {
         let root = n.isqrt();
         let rows = if n % 2 == 1 {
-            // Of ⌊√n⌋ and its successor the odd one, which is within 1 of √n.
+            // Of ⌊√n⌋ and ⌊√n⌋ + 1, takes the odd one, which is within 1 of √n.
             root | 1
         } else if n - root * root > root {
-            // √n > root + 1/2, since n > root² + root + 1/4.
+            // Here √n > root + 1/2, since n > root² + root + 1/4.
             root + 1
         } else {
             root
@@ -50,18 +50,18 @@ impl Bricks {
         }
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn cells(&self) -> u64 {
         self.n
     }
 
-    /// Lengths of the shortest and of the longest rows.
+    /// Returns the number of cells of a short row, and of a longer one.
     pub fn lengths(&self) -> [u64; 2] {
         [self.short, self.short + 1]
     }
 
-    /// Returns the rows that contain the cells with these indices, counted row by row, and the
-    /// range of columns in each.
+    /// Returns the rows that contain the cells with the indices in `cells`, counted row by row, and
+    /// for each row the range of its columns.
     pub fn parts(&self, cells: Range<u64>) -> impl Iterator<Item = (BrickRow, Range<u64>)> {
         let mut next = cells.start;
         let mut k = self.row_of_cell(next.min(self.n - 1));
@@ -99,7 +99,7 @@ impl Bricks {
         k
     }
 
-    /// Number of cells in the first `k` rows.
+    /// Returns the number of cells in the first `k` rows.
     fn cells_above(&self, k: u64) -> u64 {
         if 2 * k > self.rows {
             return self.n - self.cells_above(self.rows - k);

@@ -3,14 +3,14 @@
 //!
 //! φ_b is the radical inverse: the digits of i in base b, mirrored at the radix point. The sequence
 //! begins at i = 0. The shift wraps around at the pixel's edge. Fractions are 64-bit integers,
-//! rounded up, so that they fall into the elementary interval that contains the true value (or that
-//! begins with it).
+//! rounded up, so that each lies in the elementary interval that contains the true value, even if
+//! the true value is where the interval begins.
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Maximum number of stored radical inverses.
+/// Maximum number of stored radical inverses per base.
 const MAX_STORED: u64 = 1 << 16;
 
 /// The first radical inverses in base 2 and in base 3.
@@ -28,14 +28,14 @@ impl Halton {
         }
     }
 
-    /// Places the points with these indices.
+    /// Writes the offsets of the points whose indices are in `range` to `out`, shifted by `key`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let inverses: [fn(u64) -> u64; 2] = [u64::reverse_bits, radical_inverse_3];
         for (axis, (out, inverse)) in out.into_iter().zip(inverses).enumerate() {
             let shift = key.bits(axis as u64);
             let place = |inverse: u64| lattice::offset_of_bits(inverse.wrapping_add(shift));
-            // Up to `MAX_STORED`, both ends fit any type of index.
+            // Indices up to `MAX_STORED` fit into any `usize`.
             if range.end <= self.inverses[axis].len() as u64 {
                 let stored = &self.inverses[axis][range.start as usize..range.end as usize];
                 for (out, &inverse) in out.iter_mut().zip(stored) {
@@ -50,8 +50,8 @@ impl Halton {
     }
 }
 
-/// φ₃(i) in units of 2^−64, rounded up, for i < 3^40. The mirrored digits are collected as a whole
-/// number, which is divided once.
+/// Returns φ₃(i), the radical inverse in base 3, in units of 2^−64, rounded up, for i < 3^40. The
+/// mirrored digits are collected as a whole number, which is divided once.
 pub fn radical_inverse_3(i: u64) -> u64 {
     let (mut rest, mut mirrored, mut power) = (i, 0_u64, 1_u64);
     while rest > 0 {
@@ -59,7 +59,7 @@ pub fn radical_inverse_3(i: u64) -> u64 {
         power *= 3;
         rest /= 3;
     }
-    // The greatest value, 1 − 3^−40, is more than a unit below 1.
+    // The result fits, since the greatest value, 1 − 3^−40, is more than 2^−64 below 1.
     (u128::from(mirrored) << 64).div_ceil(u128::from(power)) as u64
 }
 

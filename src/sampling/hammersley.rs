@@ -12,15 +12,15 @@ use super::{
     rng::{Key, scale},
 };
 
-/// The columns, with stored points for small n.
+/// The n columns of a Hammersley point set, with stored points for small n.
 #[derive(Debug)]
 pub struct Hammersley {
     n: u64,
     columns: Strata,
-    /// The columns, repeated once, so that n successive columns can be read from any one on; empty
-    /// if n is large.
+    /// The columns twice in a row, so that n successive columns can be read from any column on;
+    /// empty if n is large.
     turned: Vec<Stratum>,
-    /// The points' y before the shift, in units of 2^−64; empty if n is large.
+    /// y of each point before the shift, in units of 2^−64; empty if n is large.
     heights: Vec<u64>,
 }
 
@@ -37,7 +37,8 @@ impl Hammersley {
         }
     }
 
-    /// Places the points with these indices.
+    /// Writes the offsets of the points whose indices are in `range` to `x` and `y`, shifted by
+    /// `key`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [columns, within, shift] = [0, 1, 2].map(|index| key.bits(index));
@@ -53,7 +54,7 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // In a longer column the place is the same or the next one.
+        // In a column with one more place, the chosen place is the same or the next one.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

@@ -7,7 +7,8 @@
 
 use crate::area::Area;
 
-/// Rank of pixel (x, y) along the Hilbert curve. The picture's sides are at most 2^20.
+/// Returns the rank of pixel (x, y) along the Hilbert curve. The picture's sides are at most 2^20
+/// pixels.
 pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
     let mut rank = 0;
     let mut side = picture.width.max(picture.height).next_power_of_two();

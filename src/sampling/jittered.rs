@@ -9,13 +9,14 @@ use super::{
     rng::{Key, scale},
 };
 
-/// The cells, and the strata that bound them.
+/// The cells, and the strata along their sides.
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,
-    /// Columns of the rows of either length.
+    /// Division of the pixel's width into the columns of a short row, and into those of a longer
+    /// one.
     columns: [Strata; 2],
-    /// The pixel's height in n parts; a row of n_k cells is n_k parts tall.
+    /// Division of the pixel's height into n parts; a row of n_k cells is n_k parts tall.
     rows: Strata,
 }
 
@@ -30,7 +31,8 @@ impl Jittered {
         }
     }
 
-    /// Places the points with these indices, row by row.
+    /// Writes the offsets of the points whose indices are in `range` to `x` and `y`. Points are
+    /// counted row by row.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [short, _] = self.bricks.lengths();

@@ -7,22 +7,22 @@
 
 use super::rng::{scale, scale_by_parts};
 
-/// Number of offsets.
+/// Number of possible offsets.
 const PLACES: u64 = 1 << 53;
 
 /// Maximum number of strata that are stored; more are computed one by one.
 pub const MAX_STORED: u64 = 1 << 16;
 
-/// Returns the offset at a place, 0 to 2^53 − 1.
+/// Returns the offset with the index `place`, 0 to 2^53 − 1.
 #[inline(always)]
 pub fn offset(place: u64) -> f64 {
     debug_assert!(place < PLACES);
     const ONE: u64 = 1.0f64.to_bits();
     const FIRST: u64 = (0.5 / PLACES as f64).to_bits();
     const SECOND: u64 = (1.5 / PLACES as f64).to_bits();
-    // (2k + 1)/2^54 − 1/2 for k = 2i + b: i/2^52 − 1/2 as a difference of numbers from 1 to 2, and
-    // 1 or 3 of 2^54, all of them exact. Few processors convert vectors of whole numbers to f64;
-    // all have these operations.
+    // For k = 2i + b, the offset (2k + 1)/2^54 − 1/2 is the sum of i/2^52 − 1/2 and 1 or 3 units of
+    // 2^−54. The first summand is a difference of numbers from 1 to 2; all operations are exact.
+    // Few processors convert vectors of whole numbers to `f64`; all have these operations.
     let even = f64::from_bits(ONE | place >> 1) - 1.5;
     let odd = (place & 1).wrapping_neg();
     even + f64::from_bits(FIRST ^ (odd & (FIRST ^ SECOND)))
@@ -34,36 +34,36 @@ pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// The places along a pixel's width or height, divided into n equal strata. Up to n = 2^53, each
-/// contains at least one place.
+/// The places along a pixel's width or height, divided into n equal strata, 1 ≤ n ≤ 2^53. Each
+/// stratum contains at least one place.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
     /// Minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
     least: u64,
-    /// All strata, and the one that would follow; empty if n is large.
+    /// All strata, and one more behind them; empty if n is large.
     stored: Vec<Stratum>,
 }
 
-/// One of n strata, packed into a word: twice its first place, plus one if it has one place more
-/// than ⌊2^53/n⌋.
+/// One of n strata, packed into a word: twice its first place, plus one if the stratum has one
+/// place more than ⌊2^53/n⌋.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
 
 impl Stratum {
-    /// First place.
+    /// Returns the first place of the stratum.
     #[inline(always)]
     pub fn start(self) -> u64 {
         self.0 >> 1
     }
 
-    /// Number of places beyond ⌊2^53/n⌋: one or none.
+    /// Returns the number of places beyond ⌊2^53/n⌋: one or none.
     #[inline(always)]
     pub fn more(self) -> u64 {
         self.0 & 1
     }
 
-    /// Chooses an offset in the stratum by random bits; `least` is ⌊2^53/n⌋.
+    /// Chooses an offset in the stratum by 64 random bits; `least` is ⌊2^53/n⌋.
     #[inline(always)]
     pub fn choose(self, least: u64, bits: u64) -> f64 {
         offset(self.start() + scale_by_parts(bits, least + self.more()))
@@ -81,7 +81,7 @@ impl Strata {
         }
     }
 
-    /// The stratum with this index.
+    /// Returns the stratum with index `i`.
     #[inline(always)]
     pub fn get(&self, i: u64) -> Stratum {
         match self.stored.get(i as usize) {
@@ -90,18 +90,18 @@ impl Strata {
         }
     }
 
-    /// Returns all strata. Returns `None` if they are not stored.
+    /// Returns the n strata. Returns `None` if they are not stored.
     #[inline(always)]
     pub fn stored(&self) -> Option<&[Stratum]> {
         (!self.stored.is_empty()).then(|| &self.stored[..self.n as usize])
     }
 
-    /// Minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
+    /// Returns the minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
     pub fn least(&self) -> u64 {
         self.least
     }
 
-    /// Chooses an offset in the stratum with index `i` by random bits.
+    /// Chooses an offset in the stratum with index `i` by 64 random bits.
     #[inline(always)]
     pub fn choose(&self, i: u64, bits: u64) -> f64 {
         let stratum = self.get(i);
@@ -109,13 +109,13 @@ impl Strata {
     }
 }
 
-/// Computes stratum i of n; i = n gives the one that would follow.
+/// Computes stratum `i` of `n`; for `i` = `n`, the one that would follow the last.
 fn stratum(i: u64, n: u64) -> Stratum {
     let more = start(i + 1, n) - start(i, n) - PLACES / n;
     Stratum(2 * start(i, n) + more)
 }
 
-/// Computes the first place in stratum i of n: the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
+/// Returns the first place in stratum `i` of `n`: the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
 fn start(i: u64, n: u64) -> u64 {
     let (i, n) = (u128::from(i), u128::from(n));
     (i << 54).saturating_sub(n).div_ceil(2 * n) as u64

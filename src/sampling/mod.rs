@@ -35,6 +35,7 @@ pub(crate) mod rng;
 mod scatter;
 mod shuffle;
 mod sobol;
+mod tilings;
 
 use std::ops::Range;
 
@@ -44,7 +45,11 @@ use self::{
     bricks::Bricks, halton::Halton, hammersley::Hammersley, jittered::Jittered,
     multi_jittered::MultiJittered, rng::Key, sobol::Sobol,
 };
-pub use self::{points::Points, rng::CounterRng};
+pub use self::{
+    points::Points,
+    rng::CounterRng,
+    tilings::{Tiling, tilings},
+};
 use crate::{
     area::Area,
     math::{HAS_WIDER, SimdWidth},
@@ -59,12 +64,12 @@ pub struct Sampling {
     key: Key,
     total: u64,
     picture: Area,
-    /// Minimum number of samples of a pixel. With `scatter`, pixels have as many samples as fall
-    /// there.
+    /// Minimum number of samples of a pixel. It is not used by `scatter`, where the number varies
+    /// from pixel to pixel.
     count: u64,
     /// Number of pixels that have one sample more than the minimum.
     extra: u64,
-    /// Patterns of `count` points and of one more; with `scatter`, of any number.
+    /// Patterns of `count` points and of `count` + 1 points; with `scatter`, of any number.
     patterns: Box<[PointPattern; 2]>,
 }
 
@@ -83,10 +88,11 @@ enum PointPattern {
 }
 
 impl Sampling {
-    /// Prepares the samples of a picture of this size; each side is at least 1 and at most 2^20.
-    /// The exact method has no samples.
+    /// Prepares the samples of a picture whose sides are at least 1 and at most 2^20 pixels. The
+    /// exact method has no samples.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
-        // The method's index in the language's table, which must not change: pictures depend on it.
+        // The key contains the method's index in its enum. The indices must not change, since
+        // pictures depend on them.
         let key = Key::new(sampler.seed, sampler.method as u64);
         let pixels = u64::from(width) * u64::from(height);
         let total = match sampler.count {
@@ -107,27 +113,27 @@ impl Sampling {
         }
     }
 
-    /// Whether the picture is computed without samples.
+    /// Returns whether the picture is computed without samples.
     pub fn is_exact(&self) -> bool {
         self.method == Method::Exact
     }
 
-    /// Number of samples of the whole picture.
+    /// Returns the number of samples of the whole picture.
     pub fn total(&self) -> u64 {
         self.total
     }
 
-    /// Mean number of samples of a pixel, rounded up.
+    /// Returns the mean number of samples per pixel, rounded up.
     pub fn samples_per_pixel(&self) -> u64 {
         self.total.div_ceil(self.picture.pixels())
     }
 
-    /// Mean number of samples of a pixel.
+    /// Returns the mean number of samples per pixel.
     pub fn mean_count(&self) -> f64 {
         self.total as f64 / self.picture.pixels() as f64
     }
 
-    /// Returns the number of samples of each pixel, if all pixels have the same.
+    /// Returns the number of samples of each pixel. Returns `None` if it may differ between pixels.
     pub fn same_count(&self) -> Option<u64> {
         (self.extra == 0 && self.method != Method::Scatter).then_some(self.count)
     }
@@ -137,8 +143,8 @@ impl Sampling {
         self.counts(Area::pixel(x, y))[0]
     }
 
-    /// Returns the number of samples of each pixel of a part of the picture, row by row: much
-    /// faster than pixel by pixel.
+    /// Returns the number of samples of each pixel of a part of the picture, row by row. This is
+    /// much faster than one call of [`count`](Self::count) per pixel.
     pub fn counts(&self, part: Area) -> Vec<u64> {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
@@ -151,20 +157,21 @@ impl Sampling {
         }
     }
 
-    /// Returns a pixel's share of N samples for P pixels, by its rank i along the Hilbert curve:
-    /// ⌊(i + 1)N/P⌋ − ⌊iN/P⌋.
+    /// Returns the number of samples of a pixel, if N samples are distributed evenly over P pixels.
+    /// By the pixel's rank i along the Hilbert curve, it is ⌊(i + 1)·N/P⌋ − ⌊i·N/P⌋.
     fn even_count(&self, x: u32, y: u32) -> u64 {
-        // Of N = count·P + extra, only the extra samples vary: ⌊(i + 1)·extra/P⌋ exceeds
-        // ⌊i·extra/P⌋ by one where the remainder of i·extra/P is within extra of P.
+        // Of N = count·P + extra, only the extra samples vary. ⌊(i + 1)·extra/P⌋ exceeds
+        // ⌊i·extra/P⌋ by one if the remainder of i·extra modulo P is at least P − extra.
         let (extra, pixels) = (u128::from(self.extra), u128::from(self.picture.pixels()));
         let remainder = u128::from(hilbert::rank(self.picture, x, y)) * extra % pixels;
         self.count + u64::from(remainder + extra >= pixels)
     }
 
-    /// Places the points of a pixel with the indices in `range`, which ends at `count` or before;
-    /// `count` is the pixel's [`count`](Self::count). They replace the points in `out`.
+    /// Writes the offsets of a pixel's points whose indices are in `range` to `out`, and removes
+    /// the points that were there. `count` is the pixel's [`count`](Self::count), and `range` ends
+    /// at `count` or before.
     ///
-    /// Data shared by a pixel's points are prepared anew in each call, so calls should ask for a
+    /// Data that a pixel's points share are prepared anew in each call, so a call should request a
     /// few thousand points at once.
     pub fn place(
         &self,
@@ -209,7 +216,7 @@ impl PointPattern {
         }
     }
 
-    /// Writes the coordinates of the points with these indices to two lists.
+    /// Writes the offsets of the points whose indices are in `range` to `out`.
     #[inline(always)]
     fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         match self {

@@ -17,27 +17,27 @@ use super::{
     shuffle::{EMPTY_BUFFER, Shuffle},
 };
 
-/// Number of points that are placed at a time. Most pixels have no more, and the buffer is cleared
-/// for every pixel.
+/// Number of points that are placed at a time. Most pixels have no more points. The number is
+/// small, since the buffer is cleared for every pixel.
 const BATCH: usize = 16;
 
-/// A grid of cells, with the fine strata that they consist of.
+/// A grid of cells, and the fine strata within them.
 #[derive(Debug)]
 pub struct MultiJittered {
     columns: u64,
     rows: u64,
-    /// Division of the pixel's width, and of its height, into n strata.
+    /// Division of the pixel's width into n fine strata; that of its height is the same.
     strata: Strata,
 }
 
 impl MultiJittered {
-    /// Prepares the grid for `n` points that is most nearly square.
+    /// Prepares the grid for `n` points whose numbers of columns and rows differ least.
     pub fn new(n: u64) -> Self {
         let rows = (1..=n.isqrt()).rev().find(|&b| n.is_multiple_of(b));
         Self::with_rows(n, rows.unwrap_or(1))
     }
 
-    /// Prepares the grid of one row: n-rooks.
+    /// Prepares the grid of one row for `n` points: n-rooks.
     pub fn n_rooks(n: u64) -> Self {
         Self::with_rows(n, 1)
     }
@@ -50,7 +50,13 @@ impl MultiJittered {
         }
     }
 
-    /// Places the points with these indices, row by row.
+    /// Returns the numbers of its columns and rows.
+    pub fn grid(&self) -> [u64; 2] {
+        [self.columns, self.rows]
+    }
+
+    /// Writes the offsets of the points whose indices are in `range` to `out`. Points are counted
+    /// row by row.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let mut buffers = [EMPTY_BUFFER; 2];
@@ -87,7 +93,7 @@ impl MultiJittered {
         let mut index = 2 * start;
         let mut chosen = [[Stratum::default(); BATCH]; 2];
         for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
-            // The strata first, which are looked up one by one.
+            // First, the strata of each point are looked up one by one.
             let [columns, rows] = &mut chosen;
             let mut points = columns.iter_mut().zip(rows).take(x.len());
             while points.len() > 0 {
@@ -103,7 +109,7 @@ impl MultiJittered {
                     (i, j) = (0, j + 1);
                 }
             }
-            // Then a place in each, in vectors.
+            // Then a place is chosen in each stratum, in loops that can be vectorized.
             for (axis, (out, chosen)) in [(0, (x, &chosen[0])), (1, (y, &chosen[1]))] {
                 for (point, (out, stratum)) in (0..).zip(out.iter_mut().zip(chosen)) {
                     *out = stratum.choose(least, key.bits(index + axis + 2 * point));

@@ -1,12 +1,12 @@
-//! Sample points, by coordinate.
+//! Sample points, stored as one list per coordinate.
 
 use glam::DVec2;
 
-/// Number of lanes of the widest vectors, to a multiple of which lists of coordinates are padded.
+/// Number of lanes of the widest vectors. Lists of coordinates are padded to a multiple of it.
 const LANES: usize = 8;
 
-/// Points of a pixel, as one list per coordinate, so that loops over them are vectorized. It is
-/// reused from pixel to pixel, to keep its allocations.
+/// Points of a pixel, as one list per coordinate, so that loops over the points are vectorized. The
+/// value is reused from pixel to pixel, to keep its allocations.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
     len: usize,
@@ -15,29 +15,31 @@ pub struct Points {
 }
 
 impl Points {
-    /// Number of points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are no points.
+    /// Returns whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// All points in their order.
+    /// Returns all points in their order.
     pub fn iter(&self) -> impl Iterator<Item = DVec2> {
         let [x, y] = [&self.x, &self.y].map(|lane| lane[..self.len].iter());
         x.zip(y).map(|(&x, &y)| DVec2::new(x, y))
     }
 
-    /// The coordinates, padded to a multiple of eight by coordinates anywhere in the pixel.
+    /// Returns the lists of coordinates. They are padded to a multiple of eight by arbitrary
+    /// coordinates within the pixel.
     pub fn lanes(&self) -> [&[f64]; 2] {
         let end = self.len.next_multiple_of(LANES);
         [&self.x[..end], &self.y[..end]]
     }
 
-    /// Returns the lists of coordinates for `count` new points, which replace the old ones.
+    /// Sets the number of points to `count`, and returns the lists of coordinates, to be
+    /// overwritten.
     pub(super) fn resized(&mut self, count: usize) -> [&mut [f64]; 2] {
         self.len = count;
         let needed = count.next_multiple_of(LANES);

@@ -1,10 +1,11 @@
-//! `random`: independent, uniform points. `scatter` also places its points within a pixel so.
+//! `random`: independent, uniform points. `scatter` also places the points within a pixel in this
+//! way.
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Places the points with these indices.
+/// Writes the offsets of the points whose indices are in `range` to `x` and `y`.
 #[inline(always)]
 pub fn place(key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     for (i, (x, y)) in (range.start..).zip(x.iter_mut().zip(y)) {

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::bricks::Bricks;
 
-/// Places the points with these indices: the centres of the cells of [`Bricks`], row by row, in
-/// every pixel the same.
+/// Writes the offsets of the points whose indices are in `range` to `x` and `y`: the centres of the
+/// cells of [`Bricks`], row by row, the same in every pixel.
 ///
-/// Point i of a row of n lies at (2i + 1 − n)/(2n), rounded once, and its mirror image at exactly
-/// the negative of that.
+/// Point i of a row of n points lies at (2i + 1 − n)/(2n), rounded once, and its mirror image at
+/// exactly the negative of that.
 #[inline(always)]
 pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     let mut points = x.iter_mut().zip(y);
@@ -20,8 +20,8 @@ pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     }
 }
 
-/// Returns the middle of the parts from `first` up to `first` + `parts` (exclusive) of `n` parts,
-/// relative to the middle of all.
+/// Of `n` equal parts of a pixel's side, returns the middle of the `parts` parts from index `first`
+/// on, as an offset from the pixel's centre.
 fn middle(first: u64, parts: u64, n: u64) -> f64 {
     // The magnitude of the numerator is at most 2^53, so only the division rounds.
     (2 * first as i64 + parts as i64 - n as i64) as f64 / (2 * n) as f64

@@ -9,18 +9,19 @@ use std::{convert::Infallible, ops::Range};
 
 use rand::{SeedableRng, TryRng};
 
-/// The odd number nearest to 2^64 divided by the golden ratio: the step of SplitMix64.
+/// Step of SplitMix64: the odd number nearest to 2^64/φ, where φ is the golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Number of pairs that are generated at a time.
+/// Number of pairs of random numbers that [`Key::pairs`] generates at a time.
 const BATCH: usize = 64;
 
-/// The purpose of a random number.
+/// The purpose of a random number: a hash of a seed, a method, and parts such as a pixel or an
+/// axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Key(u64);
 
 impl Key {
-    /// Returns the key of a seed and a method's own number.
+    /// Returns the key for a seed and the number of a sampling method.
     pub fn new(seed: u64, method: u64) -> Self {
         Self(mix(mix(seed.wrapping_add(GOLDEN)) ^ method))
     }
@@ -39,8 +40,9 @@ impl Key {
             .wrapping_add(index.wrapping_add(1).wrapping_mul(GOLDEN)))
     }
 
-    /// Calls `each` with pairs of numbers for some points, in batches: the index of the first
-    /// point, and for each point i the numbers with the indices 2i and 2i + 1.
+    /// Calls `each` with pairs of random numbers for the points in `points`, batch by batch. `each`
+    /// gets the index of the batch's first point and the batch's pairs. The pair of point i
+    /// consists of the numbers with the indices 2i and 2i + 1.
     #[inline(always)]
     pub fn pairs(self, points: Range<u64>, mut each: impl FnMut(u64, &[[u64; 2]])) {
         let mut batch = [[0; 2]; BATCH];
@@ -53,13 +55,13 @@ impl Key {
         }
     }
 
-    /// Returns a generator of these numbers, from the first one on.
+    /// Returns a generator that yields `bits(0)`, `bits(1)` and so on.
     pub fn rng(self) -> CounterRng {
         CounterRng { key: self, next: 0 }
     }
 }
 
-/// A generator whose state is a key and a count.
+/// A random number generator whose state is a key and the index of the next number.
 #[derive(Clone, Debug)]
 pub struct CounterRng {
     key: Key,
@@ -73,7 +75,7 @@ impl SeedableRng for CounterRng {
         Key(u64::from_le_bytes(seed)).rng()
     }
 
-    /// Returns SplitMix64 that starts at this number.
+    /// Returns the SplitMix64 generator whose initial state is `seed`.
     fn seed_from_u64(seed: u64) -> Self {
         Key(seed).rng()
     }
@@ -98,24 +100,25 @@ impl TryRng for CounterRng {
     }
 }
 
-/// Scales random bits, read as a fraction of 1, to a number from 0 to `n` − 1. The bias is below
-/// n/2^64 (Lemire 2019, without the rejection).
+/// Maps 64 random bits to a whole number from 0 to `n` − 1, as ⌊bits · n/2^64⌋. The relative bias
+/// of a number's probability is below n/2^64 (Lemire 2019, without the rejection).
 #[inline(always)]
 pub fn scale(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
 }
 
-/// Computes [`scale`] for an `n` of at most 2^53, in steps that can be vectorized.
+/// Computes [`scale`] for `n` ≤ 2^53, in operations that compilers can vectorize.
 ///
-/// The usual steps, by halves of 32 bits, are recognised by compilers as a product of 128 bits,
-/// which vectors do not have.
+/// With the usual split into halves of 32 bits, compilers recognise a 128-bit product, which vector
+/// instructions do not have. `n` is therefore split at bit 26.
 #[inline(always)]
 pub fn scale_by_parts(bits: u64, n: u64) -> u64 {
     const LOW: u64 = u32::MAX as u64;
     let (high, low) = (bits >> 32, bits & LOW);
     let (n_high, n_low) = (n >> 26 & LOW, n & ((1 << 26) - 1));
-    // The product is high·n_high 2^58 + high·n_low 2^32 + low·n_high 2^26 + low·n_low, none of the
-    // four above 2^59. The bits that are dropped on the way are below the unit of the next term.
+    // The product is high·n_high·2^58 + high·n_low·2^32 + low·n_high·2^26 + low·n_low, and none of
+    // the four products of parts exceeds 2^59. Each shift drops only bits below the unit of the
+    // next term.
     let rest = low * n_high + ((low * n_low) >> 26);
     let rest = high * n_low + (rest >> 6);
     (high * n_high + (rest >> 26)) >> 6

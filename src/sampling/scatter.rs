@@ -2,15 +2,15 @@
 //!
 //! The numbers of N uniform points that fall into each pixel are multinomial, and a multinomial
 //! distribution splits: of n points in a rectangle, the number in one half is binomial, and given
-//! that, the halves are independent. N is therefore split down a fixed binary tree of rectangles of
-//! pixels, with a draw per node. A rectangle's longer side (its width, if they are equal) is cut at
-//! the greatest power of two below it, so that nearly all cuts are into halves, whose draws count
-//! random bits. Within its pixel, a point is uniform.
+//! that number, the two halves are independent. N is therefore split down a fixed binary tree of
+//! rectangles of pixels, with one draw per node. A rectangle's longer side (its width, if both are
+//! equal) is cut at the greatest power of two below it. Nearly all cuts are therefore into equal
+//! halves, for which a draw only counts random bits. Within its pixel, a point is uniform.
 
 use super::{binomial, rng::Key};
 use crate::area::Area;
 
-/// A rectangle of the tree, and the points that fell into it.
+/// A node of the tree: a rectangle of pixels, and the number of points in it.
 #[derive(Clone, Copy)]
 struct Node {
     /// Path from the root: one bit per cut, after a leading 1.
@@ -19,7 +19,8 @@ struct Node {
     points: u64,
 }
 
-/// Draws how many of `total` points fall into each pixel of a part of the picture, row by row.
+/// Draws how many of `total` points, uniform over `picture`, fall into each pixel of `part`.
+/// Returns the counts row by row.
 pub fn counts(key: Key, total: u64, picture: Area, part: Area) -> Vec<u64> {
     let mut counts = vec![0; part.pixels() as usize];
     let root = Node {

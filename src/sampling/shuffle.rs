@@ -2,28 +2,28 @@
 
 use super::rng::Key;
 
-/// Maximum length of a stored permutation, which is uniform among all permutations. Entries of a
-/// longer one are computed one by one.
+/// Maximum length of a permutation whose entries are stored. A stored permutation is uniform among
+/// all permutations. Entries of a longer one are computed one by one.
 const MAX_STORED: u64 = 1 << 12;
 
-/// Maximum length of a permutation that needs no allocation.
+/// Maximum length of a permutation whose entries fit into a [`Buffer`], without an allocation.
 const SHORT: usize = 64;
 
-/// Buffer for a short permutation. It is borrowed and not moved, since moving entries right after
-/// they are written stalls processors.
+/// Buffer for the entries of a short permutation. A [`Shuffle`] borrows its buffer, since moving
+/// entries right after they are written stalls processors.
 pub type Buffer = [u16; SHORT];
 
-/// An empty buffer.
+/// A buffer without entries.
 pub const EMPTY_BUFFER: Buffer = [0; SHORT];
 
 /// A permutation of 0 … n − 1, decided by a key.
 #[derive(Debug)]
 pub enum Shuffle<'a> {
-    /// A short one: its entries, followed by unused ones.
+    /// The entries of a permutation with n ≤ 64, followed by unused entries.
     Short(&'a Buffer),
-    /// One of medium length: its entries.
+    /// The entries of a permutation with 64 < n ≤ 4096.
     Stored(Vec<u16>),
-    /// A long one, whose entries are computed.
+    /// A permutation with n > 4096, whose entries are computed one by one.
     Hashed {
         /// Number of entries.
         n: u64,
@@ -33,7 +33,8 @@ pub enum Shuffle<'a> {
 }
 
 impl<'a> Shuffle<'a> {
-    /// Returns the permutation of 0 … n − 1 that `key` decides.
+    /// Returns the permutation of 0 … n − 1 that `key` decides. If n ≤ 64, its entries are stored
+    /// in `buffer`.
     #[inline(always)]
     pub fn new(n: u64, key: Key, buffer: &'a mut Buffer) -> Self {
         if n <= SHORT as u64 {
@@ -48,7 +49,8 @@ impl<'a> Shuffle<'a> {
         }
     }
 
-    /// Returns the entries, perhaps followed by unused ones. Returns `None` if they are not stored.
+    /// Returns the stored entries; unused entries may follow the n entries of the permutation.
+    /// Returns `None` if the entries are computed one by one.
     #[inline(always)]
     pub fn stored(&self) -> Option<&[u16]> {
         match self {
@@ -73,17 +75,17 @@ impl<'a> Shuffle<'a> {
 #[inline(always)]
 fn fisher_yates(entries: &mut [u16], key: Key) {
     for i in 0..entries.len() {
-        // With 32 random bits, no place is favoured by more than one in 2^20.
+        // With 32 random bits, the relative bias of each choice is at most 2^12/2^32 = 2^−20.
         let j = (((key.bits(i as u64) >> 32) * (i as u64 + 1)) >> 32) as usize;
         entries[i] = entries[j];
         entries[j] = i as u16;
     }
 }
 
-/// Computes a single entry of a permutation of 0 … n − 1: a keyed bijection of the numbers with as
-/// many bits as n − 1, applied until the result is below n ("cycle walking", Black and Rogaway
-/// 2002, which turns it into a bijection of the numbers below n). At least half of these numbers
-/// are below n, so that two steps are enough on average.
+/// Computes a single entry of a permutation of 0 … n − 1. A keyed bijection of the numbers with as
+/// many bits as n − 1 is applied until the result is below n. This "cycle walking" (Black and
+/// Rogaway 2002) gives a bijection of the numbers below n. At least half of the numbers with these
+/// bits are below n, so at most two steps are needed on average.
 fn permute(index: u64, n: u64, key: Key) -> u64 {
     let bits = u64::BITS - (n - 1).leading_zeros();
     let mask = (1 << bits) - 1;

@@ -1,41 +1,42 @@
 //! `sobol`: Sobol' points with Owen's scrambling, per pixel (Sobol' 1967; Owen 1995, "Randomly
 //! permuted (t, m, s)-nets").
 //!
-//! The first coordinate of point i is its bits, mirrored; for the second, the bits are first
-//! multiplied by Pascal's triangle modulo 2. The sequence begins at i = 0, which must not be left
-//! out (Owen 2020). The first n = 2^m points have exactly one in every box of 2^−a by 2^(a−m), and
-//! so has every further block of 2^m.
+//! The first coordinate of point i is i with its bits mirrored at the binary point. For the second
+//! coordinate, the bits of i are first multiplied by Pascal's triangle modulo 2. The sequence
+//! begins at i = 0, which must not be left out (Owen 2020). Of the first 2^m points, exactly one
+//! lies in every box of 2^−a by 2^(a−m). The same holds for every further block of 2^m points.
 //!
-//! Owen's nested uniform scrambling flips each bit of a coordinate by a random bit that belongs to
-//! all the bits above it. The n points differ in their first m = ⌈log₂ n⌉ bits on either axis.
-//! Below these, every point is alone in its part of the tree, so its bits are independent random
-//! bits. This is therefore the true scrambling, with m decisions per coordinate instead of 53; a
-//! 64-bit hash decides a subtree of six levels at a time. (The one-multiplication scrambles of
-//! Laine and Karras were not tried: they are known to have weak bits, and are no cheaper for the
-//! counts that pictures use.)
+//! Owen's nested uniform scrambling flips a bit of a coordinate, or not, by a random bit that
+//! belongs to the combination of all bits above it. These combinations are the nodes of a binary
+//! tree. The n points differ in their first m = ⌈log₂ n⌉ bits on either axis. Below these bits,
+//! every point is alone in its subtree, so its further bits are independent random bits. This is
+//! therefore the true scrambling, with m decisions per coordinate instead of 53; one 64-bit hash
+//! decides a subtree of six levels. (The one-multiplication scrambles of Laine and Karras were not
+//! tried: they are known to have weak bits, and are no cheaper for the counts that pictures use.)
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Number of levels that one hash decides: its 64 bits serve 2^6 − 1 nodes.
+/// Number of levels of the tree that one hash decides: they have 2^6 − 1 nodes, and a hash has 64
+/// bits.
 const LEVELS: u32 = 6;
 
-/// Maximum number of points that are stored, unscrambled: two hashes decide the bits in which they
-/// differ.
+/// Maximum number of points whose unscrambled bits are stored. Such points differ in at most 12
+/// bits, so that two hashes decide a point's scrambling.
 const MAX_STORED: u64 = 1 << (2 * LEVELS);
 
-/// A scrambled prefix of the sequence.
+/// A prefix of the Sobol' sequence, prepared for scrambling.
 #[derive(Clone, Debug)]
 pub struct Sobol {
-    /// The least m with n ≤ 2^m.
+    /// The least m for which the number of points is at most 2^m.
     depth: u32,
-    /// The m topmost bits of both coordinates of the points; empty if there are too many points.
+    /// The m topmost bits of both coordinates of each point; empty for more than 4096 points.
     tops: Vec<[u16; 2]>,
 }
 
 impl Sobol {
-    /// Prepares the first `n` points.
+    /// Prepares the first `n` points of the sequence.
     pub fn new(n: u64) -> Self {
         let depth = u64::BITS - (n - 1).leading_zeros();
         let top = |fraction: u64| high_bits(fraction, depth) as u16;
@@ -48,7 +49,8 @@ impl Sobol {
         }
     }
 
-    /// Places the points with these indices.
+    /// Writes the offsets of the points whose indices are in `range` to `x` and `y`, scrambled by
+    /// `key`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let axes = [
@@ -57,7 +59,7 @@ impl Sobol {
         ];
         if !self.tops.is_empty() {
             let tops = &self.tops[range.start as usize..range.end as usize];
-            // Lists of several lengths, since a whole list is cleared before it is filled.
+            // `at_leaves` first clears a list of the given length, so a shorter list saves time.
             return match self.depth {
                 0..=6 => at_leaves::<{ 1 << 6 }>(&axes, tops, [x, y]),
                 7..=9 => at_leaves::<{ 1 << 9 }>(&axes, tops, [x, y]),
@@ -71,7 +73,9 @@ impl Sobol {
     }
 }
 
-/// Places points by their topmost bits, which have at most `MOST` values.
+/// Writes the offsets of points to `x` and `y`. `tops` contains the topmost bits of the points'
+/// coordinates, which have at most `MOST` values. The offset of each value is computed once and
+/// then looked up.
 #[inline(always)]
 fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&mut [f64]; 2]) {
     let leaves = [axes[0].leaves::<MOST>(), axes[1].leaves::<MOST>()];
@@ -81,9 +85,9 @@ fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&m
     }
 }
 
-/// Multiplies the bits of i by Pascal's triangle: bit j of the result is the sum modulo 2 of
-/// binomial(k, j) times bit k. That binomial is odd if the ones of j are among those of k, so one
-/// step for each bit of the *position* is enough.
+/// Multiplies the bits of i by Pascal's triangle modulo 2: bit j of the result is the sum modulo 2
+/// of binomial(k, j) times bit k. The binomial is odd if the ones of j are among the ones of k, so
+/// that one step is enough for each of the six bits of a bit's position.
 fn pascal(mut bits: u64) -> u64 {
     bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
     bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
@@ -93,13 +97,13 @@ fn pascal(mut bits: u64) -> u64 {
     bits ^ (bits >> 32)
 }
 
-/// The scrambling of one axis of one pixel.
+/// The scrambling of one axis in one pixel.
 struct Owen {
     key: Key,
     depth: u32,
-    /// Number of levels that the first hash decides.
+    /// Number of levels of the tree that the first hash decides.
     levels: u32,
-    /// Scrambled bits of every node on these levels.
+    /// The scrambled value of each combination of the first `levels` bits.
     top: [u8; 1 << LEVELS],
 }
 
@@ -114,8 +118,8 @@ impl Owen {
         }
     }
 
-    /// Returns the scrambled offsets of all combinations of the topmost bits, if at most two hashes
-    /// decide them.
+    /// Returns the scrambled offset of each combination of the topmost `depth` bits. `depth` is at
+    /// most 12, so that two hashes decide each combination.
     #[inline(always)]
     fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
         let mut prefixes = [0; MOST];
@@ -139,16 +143,16 @@ impl Owen {
         let count = 1 << self.depth;
         let hashes = (count..2 * count).map(|index| self.key.bits(index));
         for ((leaf, &prefix), hash) in leaves.iter_mut().zip(&prefixes).zip(hashes) {
-            // Two shifts, since the depth may be 0.
+            // Two shifts, since a single shift by 64 bits, for depth 0, would overflow.
             let bits = u64::from(prefix) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
             *leaf = lattice::offset_of_bits(bits);
         }
         leaves
     }
 
-    /// Scrambles a fraction in units of 2^−64.
+    /// Scrambles a coordinate. `fraction` and the result are in units of 2^−64.
     fn scramble(&self, fraction: u64) -> u64 {
-        // A node is identified by the bits that lead to it, after a leading 1.
+        // A node is identified by the bits on the path from the root to it, after a leading 1.
         let mut above = self.levels;
         let part = high_bits(fraction, above);
         let mut scrambled = u64::from(self.top[part as usize]);
@@ -162,18 +166,19 @@ impl Owen {
             flips = self.key.bits(node);
             above = below;
         }
-        // The remaining bits of a point are its own, so all of them come from the last hash.
+        // No other point shares the bits above, so the last hash gives all remaining bits.
         scrambled << (u64::BITS - self.depth) | flips >> self.depth
     }
 }
 
-/// Scrambles the bits on the first levels of a subtree whose nodes, in order of depth, have the
-/// bits 1, 2 … 63 of `flips`.
+/// Scrambles each combination of the first `levels` bits of a subtree. Bits 1, 2 … 63 of `flips`
+/// are the random bits of the subtree's nodes, in order of depth.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     let mut bits = [0; 1 << LEVELS];
     for level in 0..levels {
-        // Each node is replaced by its two children, from the last node on.
+        // Replaces each node with its two children, the last node first, so that no node is
+        // overwritten before it is read.
         for node in (0..1 << level).rev() {
             let scrambled = bits[node] << 1;
             let flip = (flips >> (1 << level | node) & 1) as u8;
@@ -183,8 +188,8 @@ fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     bits
 }
 
-/// Returns the random bits on the way down a subtree whose nodes, in order of depth, have the bits
-/// 1, 2 … 63 of `flips`.
+/// Returns the random bits on the path down a subtree that the `levels` bits of `part` describe.
+/// Bits 1, 2 … 63 of `flips` are the random bits of the subtree's nodes, in order of depth.
 fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     (0..levels).fold(0, |found, level| {
         let node = 1 << level | part >> (levels - level);

@@ -1,11 +1,11 @@
 //! Access control of the host.
 //!
-//! The page's files hold no secret, and are served to any request for this host. A conversation,
-//! and with it the scene's file, is only for pages that show a token. Other pages in the same
-//! browser can connect as well, but cannot forge the headers that are checked: `Host` (a foreign
-//! name may resolve to this machine) and `Origin`. A browser never sends a token by itself: there
-//! are no cookies, which go to all servers of a machine, and the token is in the fragment of the
-//! address, which stays in the browser.
+//! The page's files hold no secret and are served to any request for this host. A WebSocket
+//! connection, and with it the scene's file, is only for pages that show a token. Other pages in
+//! the same browser can connect as well, but cannot forge the headers that are checked: `Host` (the
+//! name of a foreign host may resolve to this machine) and `Origin`. A browser never sends a token
+//! by itself: there are no cookies, which would be sent to all servers of a machine, and the token
+//! is in the fragment of the address, which the browser does not send.
 
 use std::{
     io,
@@ -24,15 +24,15 @@ use subtle::ConstantTimeEq as _;
 
 use crate::lock::lock;
 
-/// Path of the web socket.
+/// Path of the WebSocket.
 pub const SOCKET: &str = "/socket";
 
-/// Lifetime of the token that a browser is started with: even a slow machine starts one in this
-/// time.
+/// Lifetime of the token in the address that a browser is started with. Even on a slow machine, a
+/// browser starts within this time.
 const LIFETIME: Duration = Duration::from_secs(60);
 
-/// Returns why a request to the host at this port is refused, with or without a token; `None` if it
-/// is not.
+/// Returns the status and the reason if a request to the host at `port` is refused, with or without
+/// a token. Returns `None` if it is not refused.
 pub fn refusal(
     port: u16,
     method: &Method,
@@ -64,8 +64,8 @@ pub fn refusal(
     }
 }
 
-/// Returns the value of a header; an empty one, which is never valid, if there are several or it is
-/// not a text.
+/// Returns the value of a header; `None` if there is none. If there are several values, or the
+/// value is not a text, returns an empty text, which is never valid.
 fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().unwrap_or_default();
@@ -75,20 +75,20 @@ fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
 /// The tokens of a host.
 #[derive(Debug)]
 pub struct Access {
-    /// Token in the printed address. It admits any number of pages.
+    /// Token in the printed address. It admits any number of pages, at any time.
     printed: String,
     started: Mutex<Started>,
 }
 
-/// The browser that the host starts. Its first token is in a command line, which all users can
-/// read.
+/// The browser that the host starts. The token that it starts with is in a command line, which all
+/// users of the machine can read.
 #[derive(Debug)]
 struct Started {
     /// Token in the command line. It is valid once.
     once: String,
     /// Time until which the token in the command line is valid.
     until: Instant,
-    /// Session of the page that has shown the token.
+    /// Session of the page that has shown the token; `None` before that.
     session: Option<BrowserSession>,
 }
 
@@ -98,7 +98,7 @@ struct BrowserSession {
     is_over: Arc<AtomicBool>,
 }
 
-/// Permission for a conversation.
+/// Permission for a WebSocket connection.
 #[derive(Debug)]
 pub struct Pass {
     /// Token that the page shows when it connects again.
@@ -107,16 +107,17 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// Whether the conversation has to end, because the address that it began with was used twice.
+    /// Returns whether the connection must end, because the address that it began with was used
+    /// twice.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::SeqCst)
     }
 }
 
-/// Reason why a page is not admitted, with the code that the web socket is closed with.
+/// Reason why a page is not admitted, and the code with which its WebSocket is closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotAdmitted {
-    /// The token is not one of this host; it may be of an earlier run.
+    /// The token is not one of this host; it may be from an earlier run.
     Unknown = 4001,
     /// The address that a browser was started with was used too late.
     Late = 4002,
@@ -141,18 +142,19 @@ impl Access {
         })
     }
 
-    /// Returns the token of the printed address, and that of the address that a browser is started
-    /// with.
+    /// Returns the token of the printed address, and the token of the address that a browser is
+    /// started with.
     pub fn tokens(&self) -> [String; 2] {
         let started = lock(&self.started);
         [self.printed.clone(), started.once.clone()]
     }
 
-    /// Admits a page that shows a valid token at this time.
+    /// Admits a page that shows a token at the time `now`. If the token in the command line is
+    /// shown twice, also ends the session of the first page.
     ///
     /// # Errors
     ///
-    /// The token is not, or no longer, valid.
+    /// The token is not valid, or is no longer valid.
     pub fn admit(&self, token: &str, now: Instant) -> Result<Pass, NotAdmitted> {
         let mut started = lock(&self.started);
         if is_equal(token, &self.printed) {
@@ -163,7 +165,8 @@ impl Access {
         }
         if is_equal(token, &started.once) {
             return match &started.session {
-                // The first page may belong to somebody who has read the command line.
+                // The first page may belong to somebody who has read the command line, so its
+                // session ends, too.
                 Some(session) => {
                     session.is_over.store(true, Ordering::SeqCst);
                     Err(NotAdmitted::Twice)
@@ -200,7 +203,7 @@ impl BrowserSession {
     }
 }
 
-/// Returns 128 random bits, as hexadecimal digits.
+/// Returns 128 random bits as hexadecimal digits.
 ///
 /// # Errors
 ///
@@ -211,7 +214,7 @@ pub fn secret() -> io::Result<String> {
     Ok(format!("{:032x}", u128::from_ne_bytes(bytes)))
 }
 
-/// Compares two texts in constant time, which does not reveal where they differ.
+/// Compares two texts in constant time, so that the time does not reveal where they differ.
 fn is_equal(a: &str, b: &str) -> bool {
     a.as_bytes().ct_eq(b.as_bytes()).into()
 }
@@ -227,8 +230,8 @@ mod tests {
         let late = Access::new().unwrap();
         let [printed, once] = late.tokens();
         assert_eq!(late.admit(&once, later(70)).err(), Some(NotAdmitted::Late));
-        // A token that came in time is used up, whenever it is shown again: the first page may not
-        // be the user's.
+        // A token that was shown in time is used up. Whenever it is shown again, both pages are
+        // refused: the first page may not be the user's.
         let used = Access::new().unwrap();
         let [_, once] = used.tokens();
         let first = used.admit(&once, later(50)).unwrap();
@@ -243,7 +246,7 @@ mod tests {
         for token in [&once, &first.token] {
             assert_eq!(used.admit(token, begin).err(), Some(NotAdmitted::Twice));
         }
-        // The printed token is always valid, but only for its host.
+        // The printed token is valid at any time, but only for its own host.
         assert!(late.admit(&printed, later(100_000)).is_ok());
         assert_eq!(
             used.admit(&printed, begin).err(),

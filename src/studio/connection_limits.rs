@@ -1,7 +1,8 @@
-//! Limits on connections that have not shown a token: time, bytes, and number.
+//! Limits on connections that have not shown a token: time, bytes, and their number.
 //!
-//! Any program on this machine can connect, and keep a connection open without sending anything.
-//! Since the oldest such connection is closed when there are too many, idle ones keep nobody out.
+//! Any program on this machine can connect, and can keep a connection open without sending
+//! anything. If there are too many such connections, the oldest is closed, so idle connections do
+//! not keep others out.
 
 use std::{
     collections::VecDeque,
@@ -31,15 +32,16 @@ use tokio::{
 /// until it has shown its token.
 const MOST: usize = 64;
 
-/// Lifetime of a connection without a token: enough for the head of a request and its response, or
-/// for the handshake of a web socket and the token. On one machine that takes milliseconds.
+/// Lifetime of a connection without a token. It suffices for a request and the start of the
+/// response, or for the handshake of a WebSocket and the token. On one machine these take
+/// milliseconds.
 const LIFETIME: Duration = Duration::from_secs(5);
 
 /// Maximum number of bytes that a connection may send before the token. A browser's request has
 /// about one KiB, unless other programs on this machine have set many cookies.
 const LONGEST: usize = 32 << 10;
 
-/// A visitor, shared by the connection and its request handlers.
+/// State of a connection, shared by the connection and its request handlers.
 #[derive(Clone, Debug, Default)]
 pub struct Visitor(Arc<VisitorState>);
 
@@ -50,7 +52,7 @@ struct VisitorState {
 }
 
 impl Visitor {
-    /// Lifts the limits: the visitor has shown a token.
+    /// Lifts the limits, because the token was shown.
     pub fn admit(&self) {
         self.0.is_admitted.store(true, Ordering::SeqCst);
     }
@@ -66,16 +68,16 @@ impl Connected<IncomingStream<'_, Door>> for Visitor {
     }
 }
 
-/// A listener that limits its connections until they have shown a token.
+/// A listener that limits each connection until it has shown a token.
 #[derive(Debug)]
 pub struct Door {
     listener: TcpListener,
-    /// Visitors without a token, the oldest first.
+    /// Connections without a token, the oldest first.
     strangers: VecDeque<Weak<VisitorState>>,
 }
 
 impl Door {
-    /// Makes a door of a listener.
+    /// Makes a listener with limits from a plain one.
     pub fn new(listener: TcpListener) -> Self {
         Self {
             listener,
@@ -103,7 +105,7 @@ impl Listener for Door {
 
     async fn accept(&mut self) -> (Connection, SocketAddr) {
         let (stream, address) = Listener::accept(&mut self.listener).await;
-        // If this fails, small messages are only slower.
+        // If the option cannot be set, small messages are only slower.
         let _ = stream.set_nodelay(true);
         self.make_place();
         let visitor = Visitor::default();
@@ -116,13 +118,14 @@ impl Listener for Door {
     }
 }
 
-/// A connection that fails as soon as a visitor without a token exceeds a limit.
+/// A connection that fails as soon as it exceeds a limit before the token was shown.
 pub struct Connection {
     stream: TcpStream,
     visitor: Visitor,
     /// Number of bytes that may still be sent before the token.
     left: usize,
-    /// Ready when the time is over or the place is needed; `None` after that.
+    /// Becomes ready when the time is over or a newer connection needs the place; `None` after
+    /// that.
     stay: Option<Pin<Box<dyn Future<Output = ()> + Send>>>,
 }
 
@@ -140,7 +143,7 @@ impl Connection {
         }
     }
 
-    /// Fails if the visitor has not shown a token and has to leave.
+    /// Fails if no token was shown and the time is over or the place is needed.
     fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
         if self.visitor.is_admitted() {
             return Ok(());

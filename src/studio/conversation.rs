@@ -1,8 +1,8 @@
-//! The conversation with one page, over a web socket.
+//! Serves one page over a WebSocket connection.
 //!
 //! Requests of a page supersede its earlier ones, so all messages that have arrived are handled
-//! before the next slice of work. Without work, the thread waits for the socket, and regularly
-//! checks the scene's file and the picture that another thread renders.
+//! before the next slice of work. If there is no work, the thread waits for the socket, and
+//! regularly checks the scene's file and the picture that another thread renders.
 
 use std::{
     convert::Infallible,
@@ -34,27 +34,27 @@ use crate::{
     threads,
 };
 
-/// Maximum length of a message from a page, in bytes: far more than any text that an editor in a
-/// browser can hold, and little enough for memory.
+/// Maximum length of a message from a page, in bytes. It is more than any text that an editor in a
+/// browser can hold, and small compared with the memory of a machine.
 pub const LONGEST: usize = 64 << 20;
 
-/// Time to wait for the socket before the file and the picture are checked: too short to be
+/// Time to wait for the socket before the file and the picture are checked; too short to be
 /// noticed.
 const WAIT: Duration = Duration::from_millis(50);
 
-/// Time after which a page that does not receive a message counts as gone: a browser on this
+/// Time after which a page that does not receive a message is considered gone. A browser on this
 /// machine receives it at once, unless it is stopped.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Interval between two messages about the progress of a picture's file.
+/// Interval between two progress messages of a download.
 const PROGRESS: Duration = Duration::from_millis(200);
 
-/// Time for the page to answer a close frame: less than the host waits for its conversations when
-/// it ends.
+/// Time for the page to answer a close frame. It is shorter than the time that the host, when it
+/// ends, waits for its connections.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// Holds the conversation until the page leaves, its pass is over, or the host ends. The runtime
-/// transports the messages.
+/// Serves the page until it disconnects, its pass is over, or the host ends. The runtime transports
+/// the messages.
 pub fn converse(
     runtime: Handle,
     socket: WebSocket,
@@ -72,8 +72,8 @@ pub fn converse(
         known: 0,
         download: None,
     };
-    // The conversation has a thread pool for all of its pictures. If no threads can be started, the
-    // page connects again.
+    // The connection has one thread pool for all of its pictures. If no threads can be started, the
+    // connection ends, and the page connects again.
     let _ = threads::install(None, || {
         let Err(end) = conversation.run();
         conversation.cancel(None);
@@ -81,8 +81,8 @@ pub fn converse(
     });
 }
 
-/// The end of a conversation, with the code that the socket is closed with; `None` if it is closed
-/// or broken already.
+/// End of a connection, with the code with which the socket is closed; `None` if the socket is
+/// closed or broken already.
 struct Closing(Option<CloseCode>);
 
 struct Conversation<'a> {
@@ -91,14 +91,14 @@ struct Conversation<'a> {
     pass: &'a Pass,
     ending: &'a watch::Receiver<bool>,
     server: Server,
-    /// The file that all pages share.
+    /// The scene's file, which all pages share.
     file: &'a Mutex<SceneFile>,
-    /// The version of the file that the page knows.
+    /// The version of the file that the page knows; 0 before it knows any.
     known: u64,
     download: Option<Download>,
 }
 
-/// A picture's file that is being rendered.
+/// A picture's file that another thread renders.
 struct Download {
     request: Value,
     watch: Arc<Watch>,
@@ -140,8 +140,8 @@ impl Conversation<'_> {
         Err(Closing(Some(close_code::NORMAL)))
     }
 
-    /// Reads a message of the page; `None` if there is none yet. With work left, does not wait at
-    /// all: the shortest timeout, a millisecond, would be too long.
+    /// Reads a message of the page; returns `None` if there is none yet. If there is work to do,
+    /// does not wait at all, since even the shortest timeout, a millisecond, would be too long.
     fn read(&mut self) -> Result<Option<SocketMessage>, Closing> {
         let socket = &mut self.socket;
         let read = if self.server.is_busy() {
@@ -173,16 +173,16 @@ impl Conversation<'_> {
                 Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(Closing(None)),
                 Err(_) => {}
             }
-            // A page that reads nothing must keep neither the host nor its session from ending.
+            // A page that does not receive must not prevent the host or its session from ending.
             if let Some(code) = over(self.pass, self.ending) {
                 return Err(Closing(Some(code)));
             }
         }
     }
 
-    /// Closes the socket. Messages that the page has still sent are read for a moment: unread, they
-    /// would reset the connection before the code has arrived. The socket answers the page's own
-    /// close frame meanwhile.
+    /// Closes the socket with a code, if there is one. Messages that the page has sent are still
+    /// read for a moment: unread messages would reset the connection before the code arrives. If
+    /// the page itself sent a close frame, the socket answers it meanwhile.
     fn close(&mut self, Closing(code): Closing) {
         if let Some(code) = code {
             let reason = "".into();
@@ -201,8 +201,8 @@ impl Conversation<'_> {
         texts.try_for_each(|text| self.send(SocketMessage::text(text)))
     }
 
-    /// Sends the file to the page, if it differs from what the page knows. If another page holds
-    /// the lock, this is done a little later.
+    /// Sends the file to the page if the file differs from what the page knows. If another page
+    /// holds the lock, does nothing; the next call will send the file.
     fn send_file(&mut self) -> Result<(), Closing> {
         let mut file = match self.file.try_lock() {
             Ok(file) => file,
@@ -213,7 +213,7 @@ impl Conversation<'_> {
         if version == self.known {
             return Ok(());
         }
-        // Only a new page has no text that a draft would replace.
+        // Drafts are sent only to a new page: any other page has a text that a draft would replace.
         let is_first = self.known == 0;
         let drafts = if is_first { file.drafts() } else { Vec::new() };
         self.known = version;
@@ -233,7 +233,7 @@ impl Conversation<'_> {
         ])
     }
 
-    /// Sends the progress of the picture's file, a few times a second.
+    /// Sends the progress of the download, at most once per [`PROGRESS`] interval.
     fn send_progress(&mut self) -> Result<(), Closing> {
         let now = Instant::now();
         match &mut self.download {
@@ -267,7 +267,7 @@ impl Conversation<'_> {
         }
     }
 
-    /// Answers a request to the host.
+    /// Answers a request to the host, or starts the download that it asks for.
     fn answer(&mut self, request: Request) -> Result<(), Closing> {
         if download::is_asked_for(&request) {
             return self.render(request);
@@ -280,7 +280,7 @@ impl Conversation<'_> {
                 let is_new = file.path().is_none();
                 match file.save(text, field("base"), field("name")) {
                     Ok(version) => {
-                        // The page knows the file's content, but not the path of a new scene.
+                        // The page knows the file's content now, but not the path of a new scene.
                         if !is_new {
                             self.known = version;
                         }
@@ -306,7 +306,7 @@ impl Conversation<'_> {
         self.send_all(vec![response(id, answer)])
     }
 
-    /// Renders a picture's file on another thread while the conversation goes on.
+    /// Renders a picture's file on another thread while this connection is served.
     fn render(&mut self, request: Request) -> Result<(), Closing> {
         let id = request.id.clone();
         let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];
@@ -330,7 +330,7 @@ impl Conversation<'_> {
         }
     }
 
-    /// Cancels the picture's file of a request, or any for `None`.
+    /// Cancels the download of a request, or any download for `None`.
     fn cancel(&self, wanted: Option<&Value>) {
         if let Some(download) = &self.download
             && wanted.is_none_or(|wanted| *wanted == download.request)
@@ -340,7 +340,8 @@ impl Conversation<'_> {
     }
 }
 
-/// Returns the code to close the socket with if the host ends or the page's pass is over.
+/// Returns the code with which the socket must be closed, because the host ends or the page's pass
+/// is over; otherwise `None`.
 fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
     if *ending.borrow() {
         return Some(close_code::AWAY);

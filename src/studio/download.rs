@@ -1,7 +1,7 @@
-//! The downloads of a page: a text's picture as a file, rendered as the scene asks for.
+//! Downloads of a page: the picture of a text as a file, rendered with the scene's own sampler.
 //!
-//! The engine in the browser has one thread, and renders a file in slices ([`Sliced`]); the host on
-//! this machine uses threads (`threaded_download`).
+//! The engine in the browser has one thread and renders a file in slices ([`Sliced`]). The host on
+//! this machine uses several threads (`threaded_download`).
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use lsp_server::{Message, Notification, Request, RequestId};
@@ -17,23 +17,23 @@ use crate::{
     tracer::World,
 };
 
-/// Request for a picture as a PNG.
+/// Method of a request for a picture as a PNG.
 const PNG: &str = "studio/png";
-/// Request for a picture as an EXR.
+/// Method of a request for a picture as an EXR.
 pub(super) const EXR: &str = "studio/exr";
 
-/// Whether a request asks for a picture's file.
+/// Returns whether a request asks for a picture's file.
 pub fn is_asked_for(request: &Request) -> bool {
     [PNG, EXR].contains(&&*request.method)
 }
 
-/// Returns the message that a share of a picture, from 0 to 1, is done.
+/// Makes the message that a share of a picture, from 0 to 1, is done.
 pub fn progress(share: f64) -> Message {
     let params = json!({ "share": share });
     Notification::new("studio/progress".to_owned(), params).into()
 }
 
-/// Reads the scene that a request is about, and its text.
+/// Reads the scene of the text in a request's parameters. Returns the scene and the text.
 pub(super) fn scene(params: &Value) -> Result<(Scene, String), Refusal> {
     let text = params.get("text").and_then(Value::as_str);
     let text = text.ok_or_else(|| Refusal::invalid("there is no `text`"))?;
@@ -66,8 +66,8 @@ pub struct Sliced {
 }
 
 impl Sliced {
-    /// Begins the file that a request asks for. EXR is refused: the tables of its compressions
-    /// would be a quarter of what a browser has to load.
+    /// Begins the file that a request asks for. EXR is refused, since the tables of its compression
+    /// methods would be a quarter of what a browser has to load.
     ///
     /// # Errors
     ///
@@ -88,7 +88,7 @@ impl Sliced {
         })
     }
 
-    /// Renders a slice. Returns the message to send, and whether it is the final answer.
+    /// Renders a slice. Returns the message to send, and whether the message is the final answer.
     pub fn advance(&mut self) -> (Message, bool) {
         match catch_panics(|| self.slice()) {
             Ok(None) => (progress(self.slices.share()), false),

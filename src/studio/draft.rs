@@ -1,9 +1,9 @@
-//! Drafts of a scene: texts that its pages have not saved, readable by the user only.
+//! Drafts of a scene: texts that a page has not saved. Only the user can read them.
 //!
 //! The drafts of a scene are in a file in the user's state folder, named after the scene's
-//! canonical path: a browser's own storage belongs to a port, and the host has another port each
-//! time. Each page keeps one draft under its own key, so that no page overwrites another's. A draft
-//! is removed when its text is saved, or when it is too old.
+//! canonical path. A browser's own storage would not do: it belongs to a port, and the host has
+//! another port in each run. Each page stores one draft under its own key, so that no page
+//! overwrites another's. A draft is removed when its text is saved or when it is too old.
 
 use std::{
     io,
@@ -15,24 +15,24 @@ use serde::{Deserialize, Serialize};
 
 use crate::files;
 
-/// A function that reads a file, up to the maximum length of scenes.
+/// A function that reads a file up to the maximum length of a scene.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
-/// Time for which a draft is kept.
+/// Time for which a draft is stored.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
-/// Maximum number of drafts of a scene. With one more, the oldest is removed.
+/// Maximum number of drafts of a scene. If there are more, the oldest are removed.
 const MOST: usize = 10;
 
 /// A text that is not saved.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Unsaved {
-    /// The key that the page has given the draft.
+    /// The key under which the page stores the draft.
     pub id: String,
     /// The name of the scene.
     pub name: Option<String>,
     pub text: String,
-    /// The content of the file from which the text was made.
+    /// The content of the file when the page began to change it.
     base: Option<String>,
     /// Time of the draft, in seconds since 1970.
     time: u64,
@@ -52,13 +52,13 @@ impl Unsaved {
     }
 }
 
-/// Path of a scene's drafts; `None` if the system has no state folder.
+/// Path of the file with a scene's drafts; `None` if the system has no state folder.
 #[derive(Debug, Default)]
 pub struct Drafts(Option<PathBuf>);
 
 impl Drafts {
-    /// Returns the drafts of the scene at a path; for a new scene, the path is the folder that it
-    /// would be saved in.
+    /// Returns the drafts of the scene at a path. For a new scene, the path is the folder in which
+    /// the scene would be saved. Also removes drafts of any scene that are too old.
     pub fn of(path: &Path) -> Self {
         let place = || {
             let folder = files::kept_folder("drafts")?;
@@ -71,17 +71,18 @@ impl Drafts {
         Self(place())
     }
 
-    /// Reads the drafts, the newest first.
+    /// Reads the drafts, the newest first. Returns none if the file cannot be read.
     pub fn kept(&self, read: Read) -> Vec<Unsaved> {
         let read = || serde_json::from_slice(&read(self.0.as_deref()?).ok()?).ok();
         read().unwrap_or_default()
     }
 
-    /// Replaces the drafts by the first of these, which are the newest ones.
+    /// Replaces the stored drafts by the first [`MOST`] of `drafts`, which must be sorted with the
+    /// newest first.
     ///
     /// # Errors
     ///
-    /// The drafts are not kept; the message says why.
+    /// The drafts cannot be stored; the message says why.
     pub fn keep(&self, drafts: &[Unsaved]) -> Result<(), String> {
         if drafts.is_empty() {
             if let Some(path) = &self.0 {

@@ -1,4 +1,4 @@
-//! The host that serves the page: its files to everybody, and a conversation to pages that
+//! The host that serves the page: its files to everybody, and a WebSocket connection to pages that
 //! [`Access`] admits.
 
 use std::{
@@ -33,8 +33,8 @@ use super::{
     scene_file::SceneFile,
 };
 
-/// Time for conversations to finish a save and to close, when the host ends. Longer ones, such as a
-/// save on a disk that does not respond, are not waited for.
+/// Time for connections to finish a save and to close when the host ends. The host does not wait
+/// any longer, such as for a save on a disk that does not respond.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// The page's HTML.
@@ -57,12 +57,13 @@ pub struct Host {
 struct Shared {
     access: Access,
     file: Mutex<SceneFile>,
-    /// Whether the host ends. Each conversation holds a receiver until it has ended.
+    /// Whether the host ends. Each connection holds a receiver until the connection has ended.
     ending: watch::Sender<bool>,
 }
 
 impl Host {
-    /// Listens at a port, or at any free one if it is 0. It can be reached only from this machine.
+    /// Listens at a port of this machine, which cannot be reached from others. If `port` is 0,
+    /// listens at any free port.
     ///
     /// # Errors
     ///
@@ -81,22 +82,22 @@ impl Host {
         })
     }
 
-    /// Returns the address for the user, and one that is valid once, for a command line, which
-    /// other users of the machine can read.
+    /// Returns two addresses of the page. The first is for the user. The second is valid once, and
+    /// is for a command line, which other users of the machine can read.
     pub fn addresses(&self) -> [String; 2] {
         let port = self.port;
         let tokens = self.shared.access.tokens();
         tokens.map(|token| format!("http://127.0.0.1:{port}/#token={token}"))
     }
 
-    /// Serves until `end` is ready. A save in progress is completed, unless it takes long.
+    /// Serves until `end` is ready. A save in progress is completed, unless it takes too long.
     ///
     /// # Errors
     ///
     /// The system's event queue cannot be set up.
     pub fn serve(self, end: impl Future<Output = ()>) -> io::Result<()> {
-        // The runtime's only thread transports messages; the conversations do their work on other
-        // threads.
+        // The runtime's only thread transports messages; each connection does its work on a thread
+        // of its own.
         let runtime = Builder::new_current_thread()
             .enable_io()
             .enable_time()
@@ -114,7 +115,8 @@ impl Host {
             let _ = timeout(FAREWELL, self.shared.ending.closed()).await;
             Ok::<_, io::Error>(())
         })?;
-        // A conversation that has not ended may still wait for the runtime, so it is not dropped.
+        // A connection that has not ended may still wait for the runtime, so the runtime is not
+        // dropped.
         std::mem::forget(runtime);
         Ok(())
     }
@@ -136,8 +138,8 @@ fn routes(port: u16, shared: Arc<Shared>) -> MakeService {
         .into_make_service_with_connect_info::<Visitor>()
 }
 
-/// Refuses requests that are not for this host, and forbids caching, guessing of types, and
-/// referrers.
+/// Refuses requests that are not for this host. Adds headers to each response that forbid caching,
+/// guessing of types, and referrers.
 async fn guard(State(port): State<u16>, request: Request, next: Next) -> Response {
     let refusal = access::refusal(port, request.method(), request.uri(), request.headers());
     let mut response = match refusal {
@@ -162,7 +164,8 @@ async fn guard(State(port): State<u16>, request: Request, next: Next) -> Respons
     response
 }
 
-/// Returns the page. Styles have a nonce, since the editor creates some of them while it runs.
+/// Serves the page. Its policy allows styles with a nonce, since the editor creates some of them
+/// while it runs.
 async fn index() -> Response {
     let Ok(nonce) = access::secret() else {
         let why = "There is no randomness.\n";
@@ -190,8 +193,8 @@ async fn socket(
         .on_upgrade(async move |socket| admit(&shared, &visitor, socket).await)
 }
 
-/// Begins a conversation with a page whose first message is a token. The connection itself limits
-/// how long that may take.
+/// Waits for the first message, which is a token, and begins to serve the page if the token is
+/// valid. The connection itself limits how long that may take.
 async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
     let Some(Ok(Message::Text(token))) = socket.recv().await else {
         return;
@@ -206,13 +209,13 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
             let reason = "".into();
             let goodbye = Message::Close(Some(CloseFrame { code, reason }));
             let _ = socket.send(goodbye).await;
-            // Unread messages would reset the connection before the code has arrived.
+            // Unread messages would reset the connection before the code arrives.
             while let Some(Ok(_)) = socket.recv().await {}
         }
     }
 }
 
-/// Holds the conversation on a thread. If none can be started, the connection is closed.
+/// Serves a page on a new thread. If no thread can be started, the connection is closed.
 fn begin(shared: Arc<Shared>, pass: Pass, socket: WebSocket) {
     let runtime = Handle::current();
     let ending = shared.ending.subscribe();

@@ -1,5 +1,5 @@
-//! The scene's file. Studio reads and writes no other files, except drafts and new scenes beside
-//! it.
+//! The file of a scene. Apart from it, Studio reads and writes only drafts and new scenes in the
+//! same folder.
 
 use std::{
     io,
@@ -14,30 +14,30 @@ use crate::{
     source::Source,
 };
 
-/// Content at a path: a text, `None` if there is no file, or the reason why it cannot be read as a
-/// text, in which case it must not be overwritten.
+/// Content at a path: a text; `None` if there is no file; or the reason why the file cannot be read
+/// as a text, in which case it must not be overwritten.
 pub type FileText = Result<Option<String>, String>;
 
-/// A scene's file, or a new scene that has none yet.
+/// The file of a scene, or a new scene that has no file yet.
 #[derive(Debug)]
 pub struct SceneFile {
     read: Read,
     /// The folder in which a new scene is saved.
     folder: PathBuf,
     path: Option<PathBuf>,
-    /// The content when the file was last read.
+    /// The content when the file was last read or saved.
     content: FileText,
     /// Number of different contents so far.
     version: u64,
-    /// Notifies of changes of the file. Without it, a change is found only on saving.
+    /// Watches the file for changes. If it is `None`, a change is found only on saving.
     watch: Option<Arc<Latest<FileContent>>>,
     drafts: Drafts,
-    /// New scenes beside the file that pages have saved, and may save again.
+    /// New scenes in the same folder that pages have saved, and may save again.
     beside: Vec<PathBuf>,
 }
 
-/// Locks the file that pages share. A lock that a panic has poisoned is used, too: no change is
-/// left half done.
+/// Locks the file that pages share. A lock that a panic has poisoned can still be used, since no
+/// change is left half done.
 pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
     crate::lock::lock(file)
 }
@@ -45,13 +45,13 @@ pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
 /// Error: a text was not saved.
 #[derive(Debug, PartialEq, Eq)]
 pub enum NotSaved {
-    /// The file's content is no longer what the text was made from.
+    /// The file's content is no longer what the text was made from. Contains the current content.
     Changed(Option<String>),
-    /// Saving is not possible, for this reason in words.
+    /// The text cannot be saved, for this reason in words.
     Refused(String),
 }
 
-/// Returns why a file could not be written, with advice.
+/// Makes the error that the file `name` could not be written, with advice for the user.
 fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
     let is_gone = !files::folder(path).exists();
     let advice = match error.kind() {
@@ -94,7 +94,7 @@ impl SceneFile {
         })
     }
 
-    /// Makes a new scene without a file. It will be saved in this folder.
+    /// Makes a new scene without a file, to be saved in `folder`.
     pub fn new(folder: PathBuf, read: Read) -> Self {
         Self {
             read,
@@ -108,19 +108,19 @@ impl SceneFile {
         }
     }
 
-    /// Returns the path; `None` for a new scene.
+    /// Returns the path of the file; `None` for a new scene.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
 
-    /// Returns the file's name, or a suggestion for a new scene.
+    /// Returns the file's name, or a suggestion for the name of a new scene.
     pub fn name(&self) -> String {
         let name = self.path().and_then(Path::file_name);
         name.map_or("scene.scn".into(), |name| name.to_string_lossy())
             .into_owned()
     }
 
-    /// Returns the content when the file was last read.
+    /// Returns the content when the file was last read or saved.
     pub fn content(&self) -> &FileText {
         &self.content
     }
@@ -133,11 +133,11 @@ impl SceneFile {
         drafts
     }
 
-    /// Replaces the draft under a page's key; removes it for `None`.
+    /// Replaces the draft under a page's key, or removes it if `unsaved` is `None`.
     ///
     /// # Errors
     ///
-    /// The draft is not kept; the message says why.
+    /// The draft cannot be stored; the message says why.
     pub fn keep_draft(&self, id: &str, unsaved: Option<Unsaved>) -> Result<(), String> {
         let mut drafts = self.drafts.kept(self.read);
         drafts.retain(|it| it.id != id);
@@ -145,8 +145,8 @@ impl SceneFile {
         self.drafts.keep(&drafts)
     }
 
-    /// Reads the file again if it has changed, as the watcher's content may be older than what a
-    /// page has saved since. Returns the version.
+    /// Reads the file again if the watcher reports a change. The content that the watcher read is
+    /// not used, since a page may have saved a newer one. Returns the version.
     pub fn refresh(&mut self) -> u64 {
         if let (Some(path), Some(watch)) = (&self.path, &self.watch)
             && watch.try_take().is_some()
@@ -170,8 +170,9 @@ impl SceneFile {
         }
     }
 
-    /// Saves a text, if the file still holds `base`, from which it was made. A new scene, also one
-    /// beside the file, needs a name that no file has. Returns the version.
+    /// Saves the text `new` if the file still contains `base`, from which the text was made. A new
+    /// scene, even one beside the open file, needs a name that no file has. Removes drafts with
+    /// this text. Returns the version.
     ///
     /// # Errors
     ///
@@ -246,7 +247,7 @@ impl SceneFile {
     }
 }
 
-/// Creates the file of a new scene.
+/// Creates the file of a new scene; fails if the file exists.
 fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
     check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
     write(path, text, Purpose::New).map_err(|error| refused(name, path, &error))
@@ -255,14 +256,15 @@ fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
     let bytes = bytes?;
     let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
-    // In UTF-16, half of the bytes are zero.
+    // In UTF-16, about half of the bytes are zero.
     if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
         return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
     }
     String::from_utf8(bytes).map_err(|_| no_text("it is not a text in UTF-8"))
 }
 
-/// Rejects names that could escape the folder on any operating system.
+/// Rejects names that could lead out of the folder on any operating system, or do not end in
+/// `.scn`.
 fn check_name(name: &str) -> Result<(), &'static str> {
     let is_odd = |letter: char| ":*?\"<>|".contains(letter) || letter.is_control();
     let stem = name.strip_suffix(".scn");
@@ -271,12 +273,11 @@ fn check_name(name: &str) -> Result<(), &'static str> {
         Some(_) if name.contains(['/', '\\']) || name.starts_with('.') => {
             Err("the name is that of a file in the current folder, and no path")
         }
-        // Windows does not allow these characters in names, and a colon there leads to another
-        // drive.
+        // Windows does not allow these characters in names; a colon leads to another drive there.
         Some(_) if name.contains(is_odd) => {
             Err("the name of a file has none of `: * ? \" < > |`, and no control character")
         }
-        // Windows has devices of these names, whatever follows after a dot.
+        // On Windows, these names are devices, even with a dot and more text after them.
         Some(stem) if is_device(stem.split('.').next().unwrap_or_default()) => {
             Err("the name is that of a device")
         }
@@ -311,7 +312,7 @@ mod tests {
 
     #[test]
     fn what_is_saved_between_reading_and_writing_is_kept() {
-        /// Reads a file that another program saves right after that, if it holds `mine`.
+        /// Reads a file. If it contains `mine`, another program saves the file right after that.
         fn read_and_saved(path: &Path) -> io::Result<Vec<u8>> {
             let bytes = files::read(path, 99)?;
             if bytes == b"mine" {

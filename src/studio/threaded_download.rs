@@ -1,4 +1,5 @@
-//! Renders a picture's file on threads, while the conversation goes on and sends the progress.
+//! Renders a picture's file on several threads, while the connection continues and sends the
+//! progress.
 
 use std::{
     error::Error,
@@ -21,7 +22,7 @@ use crate::{
     tracer::World,
 };
 
-/// Progress and cancellation of a render, shared with another thread.
+/// Progress and cancellation of a render, shared between threads.
 #[derive(Debug, Default)]
 pub struct Watch {
     pub cancel: AtomicBool,
@@ -31,14 +32,14 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Returns the share that is done, from 0 to 1.
+    /// Returns the share of the work that is done, from 0 to 1.
     pub fn share(&self) -> f64 {
         let [done, expected] = [&self.done, &self.expected].map(|it| it.load(Ordering::Relaxed));
         (done as f64 / expected.max(1) as f64).min(1.0)
     }
 }
 
-/// Answers a request for a picture's file, with the same bytes as `pinhole render`.
+/// Answers a request for a picture's file. The file has the same bytes as that of `pinhole render`.
 pub fn answer(request: Request, watch: &Watch) -> Message {
     let Request { id, method, params } = request;
     response(id, catch_panics(|| file(&method, &params, watch)))

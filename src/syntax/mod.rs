@@ -1,9 +1,9 @@
-//! Text → tree.
+//! Parses a text into a syntax tree.
 //!
 //! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest
-//! reads the items that follow the grammar (`parser`); any other item is read token by token
-//! (`tokens`, `recovery`), which reports one problem for each slip and makes nodes of what can be
-//! understood. Names are looked up only to choose between explanations of a mistake.
+//! reads the items that follow the grammar (`parser`). Any other item is read token by token
+//! (`tokens`, `recovery`): recovery reports one problem for each mistake and makes nodes of what
+//! can be understood. Names are looked up only to choose between explanations of a mistake.
 
 #![cfg_attr(
     not(test),
@@ -45,11 +45,11 @@ pub struct Parsed<'s> {
     pub tree: Tree<'s>,
     /// The comments, in the order of the text.
     pub comments: Vec<Span>,
-    /// Problems of syntax.
+    /// The syntax problems.
     pub problems: Vec<Diagnostic>,
-    /// Whether a mistake took the rest of the text, so that nothing may be reported as missing.
+    /// Whether a mistake hides the rest of the text, so that nothing may be reported as missing.
     pub is_cut: bool,
-    /// Whether something follows the grammar but was hardly meant so, such as fields that their
-    /// block does not have. With other line ends the text may be a mistake of syntax.
+    /// Whether something follows the grammar but was probably not meant so, such as fields that
+    /// their block does not have. With other line ends, the same text may be a syntax error.
     pub is_doubtful: bool,
 }

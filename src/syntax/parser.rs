@@ -1,12 +1,12 @@
 //! The parser: from a text to the tree.
 //!
 //! In: a source. Out: its tree, comments and problems. pest reads every item that follows the
-//! grammar, a few kilobytes at a time, and the functions here make nodes of its pairs; they carry
-//! the names of the grammar's rules. Where pest stops, or where words show that something else was
-//! meant (a field that its block does not have), `recovery` reads that one item.
+//! grammar, a few kilobytes at a time. The functions here make nodes of pest's pairs and are named
+//! after the grammar's rules. Where pest stops, or where words show that something else was meant
+//! (a field that its block does not have), `recovery` reads that one item.
 //!
-//! A block ends at its `}` and a definition starts with `let`, and a text without mistakes has both
-//! nowhere else: at these places it can be split.
+//! A text can be split after a `}` and before a `let`: if it has no mistakes, every `}` ends a
+//! block and every `let` starts a definition.
 
 use std::{
     ops::Range,
@@ -42,7 +42,7 @@ use crate::{
 #[grammar = "grammar/scn.pest"]
 struct Grammar;
 
-/// Precedence of the operators, the loosest first.
+/// Precedence of the operators, the lowest first.
 static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
     PrattParser::new()
         .op(Op::infix(Rule::sum, Assoc::Left))
@@ -50,16 +50,17 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::sign))
 });
 
-/// Stack size of the threads that parse, in bytes. Without optimization, pest and recovery take
-/// tens of kilobytes for each of the 256 levels of nesting.
+/// Stack size of the threads that parse, in bytes. Without optimization, pest and recovery use tens
+/// of kilobytes for each of the 256 levels of nesting.
 pub const STACK_BYTES: usize = 64 << 20;
 
-/// Length, in bytes, below which a value is read on the caller's stack. Each level of nesting takes
-/// at least a byte. Most values are short, and every default of a field is such a value.
+/// Minimum length, in bytes, of a value that is parsed on a thread of its own. Shorter values, such
+/// as most defaults of fields, cannot nest deep, since each level takes at least a byte; they are
+/// parsed on the caller's stack.
 const SHORT_VALUE_BYTES: usize = 32;
 
-/// Minimum number of bytes that pest reads at a time, up to the next place where the text can be
-/// split. The pairs of a whole file would take much memory.
+/// Minimum number of bytes that pest reads at a time, up to the next split point of the text.
+/// Reading a whole file at once would take much memory for its pairs.
 pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.
@@ -67,7 +68,7 @@ pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
     parse_unless(source, id, &cancel::NEVER)
 }
 
-/// Parses a file; if cancelled, returns what was read until then.
+/// Parses a file. If cancelled, returns what was read until then.
 pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -> Parsed<'s> {
     with_stack(|| {
         let text = source.text();
@@ -95,8 +96,9 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
     })
 }
 
-/// Reads an item that does not follow the grammar, and returns its end. Text that cannot start an
-/// item belongs to the definition before it, which is read again.
+/// Reads an item that does not follow the grammar, and returns its end. If the text at `at` can
+/// only continue the definition before it, removes that definition from the items and reads it
+/// again.
 fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> usize {
     if let Some(Item::Definition(last)) = recovery.items.last()
         && last.span.start >= recovery.read_to
@@ -108,13 +110,15 @@ fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> u
     recovery.item(at)
 }
 
-/// Returns the first of some ascending places that is not before an offset.
+/// Returns the first element of `places`, which must ascend, that is at least `offset`. Returns
+/// `None` if all are less.
 pub fn first_from(places: &[usize], offset: usize) -> Option<usize> {
     let first = places.partition_point(|&place| place < offset);
     places.get(first).copied()
 }
 
-/// Returns whether the text at an offset may belong to a definition that ends before it.
+/// Returns whether the text at `at` may continue a definition that ends at `end`: it is on the same
+/// line or starts with an operator or `)`.
 fn goes_on(text: &str, end: usize, at: usize) -> bool {
     let line = text.get(end..at).unwrap_or_default();
     let rest = text.get(at..).unwrap_or_default();
@@ -138,8 +142,8 @@ pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, V
     }
 }
 
-/// Runs on a thread whose stack has a known size, so that the nesting limit holds in every build
-/// and on every thread.
+/// Runs `work` on a thread whose stack has a known size, so that the nesting limit holds in every
+/// build and on every thread. A panic of `work` is passed on.
 fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     thread::scope(|scope| {
         let builder = thread::Builder::new().stack_size(STACK_BYTES);
@@ -147,7 +151,8 @@ fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
         match handle.map(|handle| handle.join()) {
             Ok(Ok(result)) => result,
             Ok(Err(panic)) => std::panic::resume_unwind(panic),
-            // Without a thread: in an optimized build the caller's stack suffices for the limit.
+            // If no thread can be started, `work` runs here: in an optimized build, the caller's
+            // stack suffices for the nesting limit.
             Err(_) => work(),
         }
     })
@@ -158,10 +163,10 @@ pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
     words: &'w Vocabulary<'s>,
-    /// Start of the slice that pest reads; its offsets count from there.
+    /// Start of the slice that pest reads; pest's offsets count from it.
     base: usize,
-    /// Whether the item follows the grammar, but has an unknown field or function, so that
-    /// recovery should try it.
+    /// Whether the last item follows the grammar but has an unknown field or function, so that
+    /// recovery should read it again.
     doubtful: bool,
 }
 
@@ -177,8 +182,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Reads items until one does not follow the grammar. Returns where reading ended, and whether
-    /// pest stopped there; otherwise recovery read an item in another way, up to another place.
+    /// Reads items until one does not follow the grammar. Returns the offset where reading ended,
+    /// and `true` if pest stopped there. Returns `false` if recovery read the last item instead and
+    /// ended at another offset than pest.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -191,8 +197,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            // `let a = 2 pi`, followed by `sphere {`: the kind is the rest of the value, and the
-            // name is the kind.
+            // In `let a = 2 pi`, followed by `sphere {`, pest reads `pi sphere {` as a block: its
+            // kind is the rest of the value, and its name is the real kind.
             if let Item::Block(block) = &item
                 && let (Some(kind), Some(name)) = (block.kind, block.name)
                 && self.words.is_kind(name.text)
@@ -201,7 +207,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 return (end, true);
             }
             end = item.span().end;
-            // Two minuses may be a comment of another language.
+            // Two minuses may start a comment of another language.
             let written = self.written(item.span());
             if self.doubtful || (written.len() < CHUNK_BYTES && written.contains("--")) {
                 match recovery.item_as_meant(start) {
@@ -234,7 +240,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     fn block(&mut self, pair: Pair<'_, Rule>) -> Block<'s> {
         let mut block = Block::new(self.span(&pair), None, None);
         let parts = pair.into_inner();
-        // As a rule, all parts except the kind and the two braces are fields.
+        // Usually, all parts except the kind and the two braces are fields.
         block.fields.reserve_exact(parts.len().saturating_sub(3));
         for part in parts {
             match part.as_rule() {
@@ -296,7 +302,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         {
             return self.operand(operand);
         }
-        // All three closures make nodes of pairs, one at a time.
+        // The three closures share `self`; each borrows it only while it makes a node.
         let this = std::cell::RefCell::new(self);
         PRECEDENCE
             .map_primary(|pair| this.borrow_mut().operand(pair))
@@ -336,7 +342,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
 
     fn elements(&mut self, pair: Pair<'_, Rule>) -> Vec<Element<'s>> {
         let parts = pair.into_inner();
-        // Every other part is a comma.
+        // Values and commas alternate.
         let mut elements: Vec<Element<'s>> = Vec::with_capacity(parts.len().div_ceil(2));
         for part in parts {
             if part.as_rule() != Rule::comma {

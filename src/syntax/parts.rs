@@ -1,4 +1,4 @@
-//! A large file, parsed part by part on all processors.
+//! Parses a large file part by part on several threads.
 //!
 //! In: a source. Out: the items of each part in order, if the whole file follows the grammar.
 
@@ -22,14 +22,14 @@ use crate::{
     threads,
 };
 
-/// Maximum number of threads that parse. One thread lowers the items of all, and more parsers would
-/// wait for it.
+/// Maximum number of threads that parse. One thread lowers the items of all parts, so more parsers
+/// would only wait for it.
 const MOST_THREADS: usize = 4;
 
-/// Parses a file in parts of at least `bytes` bytes, and passes the items of each part to `each` in
-/// order, so that there is never a tree of the whole. Returns whether all parts were passed.
-/// Otherwise the file has mistakes, is short, `each` returned `false`, or parsing was cancelled,
-/// and the items that were passed must be discarded.
+/// Parses a file in parts of at least `bytes` bytes and passes the items of each part to `each`, in
+/// order, so that the whole tree is never in memory. Returns `true` if all parts were passed.
+/// Returns `false` if the file has mistakes or is too short for two parts, if `each` returned
+/// `false`, or if parsing was cancelled; the items that were passed must then be discarded.
 pub fn parse_in_parts<'s>(
     source: &'s Source,
     id: SourceId,
@@ -47,7 +47,8 @@ pub fn parse_in_parts<'s>(
     }
     let parts = ranges(source, bytes, &scan);
     let words = Vocabulary::new(text);
-    // The items of a part, if all of it follows the grammar and no item goes on behind it.
+    // Returns the items of a part; `None` if the part does not follow the grammar or its last item
+    // continues beyond its end.
     let read = |part: &Range<usize>| {
         let mut recovery = Recovery::new(source, id, &words);
         let mut right = TreeBuilder::new(text, id, &words);
@@ -66,7 +67,8 @@ pub fn parse_in_parts<'s>(
     };
     let count = threads::available().min(parts.len()).min(MOST_THREADS);
     thread::scope(|scope| {
-        // Thread i parses the parts i, i + count, …, and is a few parts ahead of the consumer.
+        // Thread i parses the parts i, i + count, … The channel holds one result, so the thread is
+        // at most two of its parts ahead of the consumer.
         let parsed: Vec<mpsc::Receiver<_>> = (0..count)
             .map(|first| {
                 let (found, results) = mpsc::sync_channel(1);
@@ -80,8 +82,8 @@ pub fn parse_in_parts<'s>(
                         }
                     }
                 };
-                // If the thread does not start, nothing is received from it, and the caller parses
-                // the file as a whole.
+                // If a thread does not start, its channel is closed, `recv` fails, and the caller
+                // parses the file as a whole.
                 let builder = thread::Builder::new().stack_size(STACK_BYTES);
                 let _ = builder.spawn_scoped(scope, work);
                 results
@@ -95,7 +97,8 @@ pub fn parse_in_parts<'s>(
     })
 }
 
-/// Returns the parts of a text, each of which ends behind a block.
+/// Returns the ranges of the parts: each ends at a split point and has at least `bytes` bytes,
+/// except the last.
 fn ranges(source: &Source, bytes: usize, scan: &Scan) -> Vec<Range<usize>> {
     let (mut parts, mut from) = (Vec::new(), source.bom_len());
     while let Some(to) = first_from(&scan.split_points, from + bytes.max(1)) {

@@ -1,4 +1,4 @@
-//! Makes problems of syntax of the texts in `messages`.
+//! Makes the diagnostics of syntax problems from the texts in `messages`.
 
 use std::collections::BTreeMap;
 
@@ -7,17 +7,18 @@ use crate::{
     source::Span,
 };
 
-/// Text of a problem, and whether its fix is safe.
+/// Texts of a problem, and whether its fix is safe.
 #[derive(Clone, Copy)]
 pub struct Message {
-    /// The code without `pinhole::`, the message, the label, and the help if there is no fix.
+    /// The code without `pinhole::`, the message, the label, and the help that is shown if there
+    /// is no fix.
     texts: [&'static str; 4],
     applicability: Applicability,
 }
 
 impl Message {
-    /// Makes a message, whose fix is unsafe if it has one, of a code, a message, a label and a
-    /// help.
+    /// Makes a message of its code, message, label and help. A fix of the problem is marked as
+    /// unsafe.
     pub const fn new(texts: [&'static str; 4]) -> Self {
         Self {
             texts,
@@ -25,7 +26,8 @@ impl Message {
         }
     }
 
-    /// Marks the fix as safe: it keeps all that was written and has one meaning.
+    /// Marks the fix as safe: it keeps everything that was written, and only one meaning is
+    /// possible.
     pub const fn safe(self) -> Self {
         self.safe_if(true)
     }
@@ -36,13 +38,13 @@ impl Message {
         self
     }
 
-    /// Returns whether the problem is something superfluous.
+    /// Returns whether the problem is that something is superfluous.
     pub fn is_needless(&self) -> bool {
         self.texts[0].starts_with("needless") || self.texts[0] == "plus_sign"
     }
 
-    /// Returns the problem at a place, with `words` in the places of `{0}`, `{1}` and so on. The
-    /// title of a fix replaces the help.
+    /// Makes the problem at `span`. Replaces `{0}`, `{1}` and so on in the texts by `words`. If
+    /// there is a fix, the help is left out, since the fix has a title.
     pub fn at(&self, span: Span, words: &[&str], fix: impl Into<Option<Fix>>) -> Diagnostic {
         let filled = |text: &str| {
             let mut parts = text.split('{');
@@ -77,14 +79,15 @@ impl Message {
     }
 }
 
-/// Returns the fix that replaces the text of a place.
+/// Returns the fix that replaces the text at `span` by `text`.
 pub fn replace(span: Span, text: impl Into<String>) -> Fix {
     let text = text.into();
     let title = format!("write `{}`", shorten(&text));
     Fix::new(title, [Edit::new(span, text)])
 }
 
-/// Returns the words for further places of the same problem.
+/// Returns the words that say at how many further places the same problem occurs; empty if `more`
+/// is 0.
 pub fn further_places(more: usize) -> String {
     match more {
         0 => String::new(),
@@ -93,9 +96,10 @@ pub fn further_places(more: usize) -> String {
     }
 }
 
-/// Merges reports about the same sign, such as each `−` of a text, into one at the first place.
+/// Merges the reports of the same unknown character, such as each `−` of a text, into one at its
+/// first place. The remaining report has all edits.
 pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
-    // Index of a sign's first report, and the number of further ones.
+    // For each message: the index of its first report in `kept`, and the number of further reports.
     let mut firsts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut kept: Vec<Diagnostic> = Vec::with_capacity(problems.len());
     for mut found in std::mem::take(problems) {
@@ -122,7 +126,7 @@ pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
     *problems = kept;
 }
 
-/// Shortens a text for a message: to one line of at most 40 characters.
+/// Shortens a text for a message: to one line, and to 40 characters and `…` if it is longer.
 pub fn shorten(written: &str) -> String {
     const LONGEST: usize = 40;
     let mut short = String::new();

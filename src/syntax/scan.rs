@@ -1,7 +1,8 @@
-//! A first walk over the text, before it is parsed.
+//! First pass over the text, before it is parsed.
 //!
-//! In: a text. Out: its comments, the places where it can be split, its invisible characters, and
-//! the places where it may nest too deep for pest. One walk of the lexer, without recursion.
+//! In: a text. Out: its comments, the offsets where it can be split, its invisible characters, and
+//! the offsets where it may nest too deep for pest. The pass runs the lexer once and does not
+//! recurse.
 
 use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
@@ -16,20 +17,20 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Minimum distance, in bytes, between two places in [`Scan::split_points`]: a small part of what
-/// is parsed at a time.
+/// Minimum distance, in bytes, between two of [`Scan::split_points`]. It is small compared with the
+/// number of bytes that are parsed at a time.
 const SPLIT_SPACING_BYTES: usize = 256;
 
-/// Result of the walk.
+/// Result of the first pass.
 #[derive(Debug, Default)]
 pub struct Scan {
-    /// Every comment.
+    /// All comments, in the order of the text.
     comments: Vec<Span>,
-    /// Places where more parentheses and minuses are open than a value may have. A minus between
-    /// two values counts, too; recovery, which reads these items, counts exactly.
+    /// Offsets where more parentheses and minuses are open than a value may have. A minus between
+    /// two values is counted, too; recovery, which reads these items, counts exactly.
     pub deep: Vec<usize>,
-    /// Places where a text without mistakes can be split: behind a `}` or before a `let`, at most
-    /// one in [`SPLIT_SPACING_BYTES`] bytes.
+    /// Ascending offsets where a text without mistakes can be split: after a `}` or before a
+    /// `let`. Two of them are at least [`SPLIT_SPACING_BYTES`] apart.
     pub split_points: Vec<usize>,
     /// Invisible characters that are not white space of the language, and carriage returns that
     /// end no line.
@@ -37,12 +38,12 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Walks a text from an offset on, until the end or until cancelled.
+    /// Scans a text from the offset `start` to its end, or until cancelled.
     pub fn of(text: &str, id: SourceId, start: usize, cancel: &AtomicBool) -> Self {
         let mut scan = Self::default();
         let mut lexer = Lexer::new(text, start);
-        // Minuses since the last operand, the sum of those before all open parentheses, and those
-        // before each of them.
+        // Number of minuses since the last operand, number of minuses before all open parentheses,
+        // and number of minuses before each open parenthesis.
         let (mut minuses, mut outside, mut open) = (0, 0, Vec::new());
         let mut is_told = false;
         // Number of tokens between two checks for cancellation.
@@ -96,8 +97,8 @@ impl Scan {
         scan
     }
 
-    /// Adds carriage returns that end no line, including those in comments: other programs show
-    /// what follows one as a new line, which the comment would hide.
+    /// Records carriage returns that end no line, including those in comments: other programs start
+    /// a new line at one, but to the parser the comment continues.
     fn find_carriage_returns(&mut self, text: &str, id: SourceId, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {
@@ -109,7 +110,7 @@ impl Scan {
         self.odd_spaces.extend(alone.take(room));
     }
 
-    /// Adds a place where the text can be split, unless it is near the previous one.
+    /// Adds a split point, unless it is too near the previous one.
     fn add_split_point(&mut self, place: usize) {
         if self
             .split_points
@@ -126,8 +127,8 @@ impl Scan {
         self.open_comment(text).is_none() && self.deep.is_empty() && self.odd_spaces.is_empty()
     }
 
-    /// Returns the `/*` of an unclosed comment. It extends to the end of the text, so it is the
-    /// last one.
+    /// Returns the span of the `/*` of an unclosed comment, if there is one. Such a comment extends
+    /// to the end of the text, so only the last comment is tested.
     fn open_comment(&self, text: &str) -> Option<Span> {
         let last = self.comments.last()?;
         let inner = text.get(last.range())?.strip_prefix("/*")?;
@@ -137,11 +138,11 @@ impl Scan {
     /// Adds the comments and the problems of the scan to the result of parsing.
     pub fn report(self, text: &str, parsed: &mut Parsed<'_>) {
         self.report_odd_spaces(text, &mut parsed.problems);
-        // What a comment hides is missing only because of the carriage return.
+        // What a comment hides after a carriage return is not really missing.
         let hides = |place: &Span| text[place.start..].starts_with('\r');
         parsed.is_cut |= self.odd_spaces.iter().any(hides);
         if let Some(open) = self.open_comment(text) {
-            // What the comment hides is not a second mistake.
+            // What the comment hides is not a mistake of its own.
             parsed.problems.retain(|problem| {
                 let first = problem.labels.first().map_or(0, |label| label.span.end);
                 problem.code != "pinhole::unclosed_block" && first < open.start
@@ -153,7 +154,7 @@ impl Scan {
         parsed.comments = self.comments;
     }
 
-    /// Reports each kind of character once, at its first place.
+    /// Reports each kind of odd character once, at its first place.
     fn report_odd_spaces(&self, text: &str, problems: &mut Vec<Diagnostic>) {
         let mut sorts: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
         for place in &self.odd_spaces {
@@ -166,7 +167,8 @@ impl Scan {
                 let edits = places.iter().map(|place| Edit::new(*place, text));
                 Fix::new(title, edits)
             };
-            // Words that an invisible character without width separates may be one word or two.
+            // Without an invisible character of zero width, two words may become one, so removing
+            // it is not safe.
             let has_width = sort.chars().all(char::is_whitespace);
             let joins = |place: &Span| !Edit::remove_in(*place, text).text.is_empty();
             let is_safe = has_width || !places.iter().any(joins);
@@ -178,14 +180,15 @@ impl Scan {
                 let said = say::ODD_SPACE.safe_if(is_safe);
                 said.at(at, &words, all("write plain spaces", " "))
             };
-            // Characters without width are usually not meant to separate words.
+            // A character of zero width is usually not meant to separate words, so its removal is
+            // the first fix.
             if !has_width {
                 let applicability = Applicability::safe_if(is_safe);
                 let away = all("take it away", "").with_applicability(applicability);
                 found.fixes.insert(0, away);
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
-                // There may be others.
+                // If the maximum was reached, not all places are known, so there is no fix.
                 found.fixes.clear();
             }
             problems.push(found);

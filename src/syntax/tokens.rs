@@ -2,8 +2,8 @@
 //!
 //! In: a text and an offset. Out: one token after the other, including comments; between two tokens
 //! there is only white space. The lexer does not know the grammar, so it reads any text: a
-//! character that starts no token is a token by itself. Recovery, the editor and the scan for
-//! comments use it; the formatter walks the tree instead.
+//! character that starts no other token is a token by itself. Recovery, the editor and the scan use
+//! it; the formatter walks the tree instead.
 
 /// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,7 +14,8 @@ pub enum TokenKind {
     Number,
     /// `#` and the word that follows it without a space.
     Color,
-    /// A text with its quotation marks; it ends within its line, before a comment.
+    /// A text in quotation marks, including the marks. It ends within its line, and before a
+    /// comment.
     Quoted,
     /// A word with letters that are not ASCII.
     Word,
@@ -29,18 +30,18 @@ pub enum TokenKind {
     End,
 }
 
-/// A token and its place.
+/// A token with its span in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token {
-    /// Its kind.
+    /// The token's kind.
     pub kind: TokenKind,
-    /// Its first byte.
+    /// Offset of the token's first byte.
     pub start: usize,
-    /// One past its last byte.
+    /// One past the offset of the token's last byte.
     pub end: usize,
 }
 
-/// Reads a text token by token; past the end it gives [`TokenKind::End`] again and again.
+/// Lexer of a text. After the last token it returns [`TokenKind::End`] again and again.
 #[derive(Clone, Debug)]
 pub struct Lexer<'s> {
     text: &'s str,
@@ -48,7 +49,7 @@ pub struct Lexer<'s> {
 }
 
 impl<'s> Lexer<'s> {
-    /// Starts at an offset.
+    /// Makes a lexer that starts at the offset `at`.
     pub fn new(text: &'s str, at: usize) -> Self {
         Self { text, at }
     }
@@ -66,7 +67,7 @@ impl<'s> Lexer<'s> {
         Token { kind, start, end }
     }
 
-    /// Returns the next token that is visible and not a comment.
+    /// Returns the next token, except comments and invisible characters.
     pub fn seen_token(&mut self) -> Token {
         loop {
             let token = self.token();
@@ -99,7 +100,8 @@ impl<'s> Lexer<'s> {
         }
     }
 
-    /// Reads a token that starts with a control character or one that is not ASCII.
+    /// Returns kind and end of a token that starts with a control character or a character that is
+    /// not ASCII.
     fn other(&self, start: usize) -> (TokenKind, usize) {
         let first = self.rest(start).chars().next().unwrap_or(' ');
         match first {
@@ -147,8 +149,9 @@ impl<'s> Lexer<'s> {
         end
     }
 
-    /// Reads up to the closing quotation mark in the same line; without one, the mark and the word
-    /// behind it. A comment may start within, as the grammar has no quotation marks.
+    /// Returns kind and end of a quoted text. It ends with the closing quotation mark in the same
+    /// line; if there is none, it is the mark and the word after it. It also ends before a comment,
+    /// since the grammar has no quotation marks.
     fn quoted(&self, start: usize) -> (TokenKind, usize) {
         let mut characters = self.rest(start).char_indices().peekable();
         let first = characters.next().map_or('"', |(_, first)| first);
@@ -177,7 +180,7 @@ impl<'s> Lexer<'s> {
     }
 }
 
-/// Returns the end of the line; a CRLF belongs to the line end as a whole.
+/// Returns the offset of the end of the line that contains `at`, before its LF or CRLF.
 pub fn line_end(text: &str, at: usize) -> usize {
     let mut lines = text.get(at..).unwrap_or_default().lines();
     at + lines.next().map_or(0, str::len)
@@ -230,7 +233,7 @@ pub fn numeric_part(written: &str) -> &str {
 
 /// Returns whether a name occurs in a text outside its comments.
 pub fn has_name(text: &str, name: &str) -> bool {
-    // Most texts need no lexing.
+    // Most texts do not contain the name at all and need no lexing.
     let mut lexer = Lexer::new(text, 0);
     text.contains(name)
         && loop {

@@ -1,13 +1,12 @@
 //! The syntax tree.
 //!
-//! It records what was written and where, but not what it means. Every token of a text without
-//! mistakes lies in a node's span, so that the formatter can put the text together again from the
-//! tree and the comments. Text that could not be understood is `Bad`, and a problem was reported
-//! for it.
+//! The tree records what was written and where, but not what it means. Every token of a text
+//! without mistakes lies in a node's span, so that the formatter can rebuild the text from the tree
+//! and the comments. Text that could not be understood is `Bad`; a problem was then reported.
 
 use crate::{math::Angle, source::Span};
 
-/// A whole file.
+/// The tree of a whole file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tree<'s> {
     /// The items in their order.
@@ -17,16 +16,16 @@ pub struct Tree<'s> {
 /// An item of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item<'s> {
-    /// `let NAME = VALUE`
+    /// A definition: `let NAME = VALUE`.
     Definition(Definition<'s>),
-    /// `KIND NAME? { FIELD VALUE … }`
+    /// A block: `KIND NAME? { FIELD VALUE … }`.
     Block(Block<'s>),
-    /// Text that is neither.
+    /// Text that is neither; a problem was reported.
     Bad(Span),
 }
 
 impl Item<'_> {
-    /// Returns the whole item.
+    /// Returns the span of the whole item.
     pub fn span(&self) -> Span {
         match self {
             Self::Definition(definition) => definition.span,
@@ -36,32 +35,32 @@ impl Item<'_> {
     }
 }
 
-/// A name where it stands in the text.
+/// A name and its place in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name<'s> {
-    /// The name.
+    /// The name's text.
     pub text: &'s str,
-    /// Its place.
+    /// The name's place in the text.
     pub span: Span,
 }
 
-/// `let NAME = VALUE`
+/// A definition: `let NAME = VALUE`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Definition<'s> {
-    /// `let`
+    /// The place of `let`.
     pub keyword: Span,
     /// The name that is defined; `None` if it is missing.
     pub name: Option<Name<'s>>,
-    /// `=`; `None` if it is missing.
+    /// The place of `=`; `None` if it is missing.
     pub equals: Option<Span>,
-    /// The value of the name.
+    /// The value that the name gets.
     pub value: Value<'s>,
-    /// From `let` to the value's end.
+    /// The whole definition, from `let` to the value's end.
     pub span: Span,
 }
 
 impl Definition<'_> {
-    /// Makes a definition whose other parts are not known yet.
+    /// Makes a definition of which only `keyword` is known yet.
     pub fn begun(keyword: Span) -> Self {
         Self {
             keyword,
@@ -73,29 +72,31 @@ impl Definition<'_> {
     }
 }
 
-/// `KIND NAME? { FIELD VALUE … }`, or `KIND NAME? for INDEX < COUNT, … { FIELD VALUE … }`
+/// A block: `KIND NAME? { FIELD VALUE … }`, or with indices `KIND NAME? for INDEX < COUNT, … {
+/// FIELD VALUE … }`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block<'s> {
     /// The kind; `None` if it is missing.
     pub kind: Option<Name<'s>>,
     /// The name of the object, if it has one.
     pub name: Option<Name<'s>>,
-    /// The indices of several objects; boxed, as few blocks have any.
+    /// The indices of a repeated object; boxed, since few blocks have any.
     pub repetition: Option<Box<Repetition<'s>>>,
-    /// `{`; `None` if it is missing.
+    /// The place of `{`; `None` if it is missing.
     pub open: Option<Span>,
     /// The fields, in the order of the text.
     pub fields: Vec<Field<'s>>,
-    /// Places between the fields that are no fields.
+    /// Places between the fields that are not understood as fields; a problem was reported for
+    /// each.
     pub bad: Vec<Span>,
-    /// `}`; `None` if it is missing.
+    /// The place of `}`; `None` if it is missing.
     pub close: Option<Span>,
     /// The whole block.
     pub span: Span,
 }
 
 impl<'s> Block<'s> {
-    /// Makes a block whose other parts are not known yet.
+    /// Makes a block of which only the kind, the name and a span are known yet.
     pub fn new(span: Span, kind: Option<Name<'s>>, name: Option<Name<'s>>) -> Self {
         Self {
             kind,
@@ -109,8 +110,8 @@ impl<'s> Block<'s> {
         }
     }
 
-    /// Returns the place that represents the whole block: its kind, or the first thing that is
-    /// there.
+    /// Returns the span that represents the block in messages: its kind, or else its `{`, or else
+    /// the whole block.
     pub fn keyword(&self) -> Span {
         match (&self.kind, self.open) {
             (Some(kind), _) => kind.span,
@@ -120,12 +121,12 @@ impl<'s> Block<'s> {
     }
 }
 
-/// `for INDEX < COUNT, …`
+/// The indices of a repeated object: `for INDEX < COUNT, …`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repetition<'s> {
-    /// `for`
+    /// The place of `for`.
     pub keyword: Span,
-    /// The indices, in the order of the text; empty if they were not understood.
+    /// The indices, in the order of the text; empty if none was understood.
     pub indices: Vec<Index<'s>>,
 }
 
@@ -138,21 +139,21 @@ impl Repetition<'_> {
     }
 }
 
-/// `INDEX < COUNT`
+/// An index and its count: `INDEX < COUNT`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Index<'s> {
-    /// Its name.
+    /// The name of the index.
     pub name: Name<'s>,
-    /// `<`
+    /// The place of `<`.
     pub less: Span,
-    /// The number of its values.
+    /// The count: the number of values of the index.
     pub count: Value<'s>,
-    /// The comma after it.
+    /// The place of the comma after the count; `None` if there is none.
     pub comma: Option<Span>,
 }
 
 impl<'s> Index<'s> {
-    /// Makes an index whose other parts are not known yet.
+    /// Makes an index of which only the name is known yet.
     pub(super) fn begun(name: Name<'s>) -> Self {
         Self {
             name,
@@ -163,23 +164,23 @@ impl<'s> Index<'s> {
     }
 }
 
-/// `FIELD VALUE`
+/// A field and its value: `FIELD VALUE`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field<'s> {
-    /// Its name.
+    /// The field's name.
     pub name: Name<'s>,
-    /// Its value.
+    /// The field's value.
     pub value: Value<'s>,
-    /// The name and the value.
+    /// The whole field, from its name to its value's end.
     pub span: Span,
 }
 
 /// A value with its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Value<'s> {
-    /// Its form.
+    /// The value's form.
     pub kind: ValueKind<'s>,
-    /// Its place.
+    /// The value's place in the text.
     pub span: Span,
 }
 
@@ -188,7 +189,8 @@ impl<'s> Value<'s> {
         Self { kind, span }
     }
 
-    /// Returns the values that it is made of, in order.
+    /// Returns the direct parts of a value, in order: arguments, elements or operands. Empty for a
+    /// value without parts.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             ValueKind::Call(call) => call.arguments.iter().map(|e| &e.value).collect(),
@@ -207,56 +209,56 @@ impl<'s> Value<'s> {
 /// Forms of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ValueKind<'s> {
-    /// A number by its spelling, without a unit.
+    /// A number without a unit, as it is spelled.
     Number(&'s str),
     /// A number with a unit.
     Angle {
         /// The number's spelling.
         number: &'s str,
-        /// Its unit.
+        /// The number's unit.
         unit: Unit,
     },
-    /// `#rgb` or `#rrggbb` with the `#`; the number of digits is right.
+    /// A colour code with its `#`: `#rgb` or `#rrggbb`, with three or six hexadecimal digits.
     ColorCode(&'s str),
     /// A name.
     Name(&'s str),
-    /// `FUNCTION(ARGUMENT, …)`; boxed, as it would double the size of every value.
+    /// A call, `FUNCTION(ARGUMENT, …)`; boxed, since it would double the size of every value.
     Call(Box<Call<'s>>),
-    /// `(VALUE)`
+    /// A value in parentheses: `(VALUE)`.
     Parentheses(Box<Value<'s>>),
-    /// `(VALUE, VALUE, …)` with two or more values, or none.
+    /// A list in parentheses, `(VALUE, VALUE, …)`, with two or more values or none.
     Tuple(Vec<Element<'s>>),
-    /// `-VALUE`
+    /// A negation: `-VALUE`.
     Negation {
-        /// `-`
+        /// The place of `-`.
         sign: Span,
         /// The operand.
         operand: Box<Value<'s>>,
     },
     /// `VALUE + VALUE - VALUE` or `VALUE * VALUE / VALUE`: operators of one precedence, applied
-    /// from left to right. A chain rather than a tree, so that a long sum is no deeper than a short
-    /// one.
+    /// from left to right. They are a list rather than a binary tree, so that a long sum nests no
+    /// deeper than a short one.
     Chain {
         /// The first value.
         first: Box<Value<'s>>,
         /// The operators and their right operands, in order.
         rest: Vec<Step<'s>>,
     },
-    /// A missing value behind a field's name. The next stage reports it, as only it knows the
-    /// fields and so whether the value is missing or the name is a value.
+    /// A missing value after a field's name. The next stage reports it: only that stage knows the
+    /// fields, and so whether the value is missing or the name was meant as a value.
     Missing,
-    /// Text for which a problem was reported.
+    /// Text that was not understood; a problem was reported for it.
     Bad,
 }
 
-/// `FUNCTION(ARGUMENT, …)`
+/// A call: `FUNCTION(ARGUMENT, …)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Call<'s> {
-    /// The function.
+    /// The function's name.
     pub function: Name<'s>,
-    /// Its arguments.
+    /// The function's arguments.
     pub arguments: Vec<Element<'s>>,
-    /// `(` to `)`
+    /// The span from `(` to `)`.
     pub parentheses: Span,
 }
 
@@ -265,7 +267,7 @@ pub struct Call<'s> {
 pub struct Step<'s> {
     /// The operator.
     pub operator: Operator,
-    /// The place of its sign.
+    /// The place of the operator.
     pub sign: Span,
     /// The right operand.
     pub operand: Value<'s>,
@@ -276,21 +278,21 @@ pub struct Step<'s> {
 pub struct Element<'s> {
     /// The value.
     pub value: Value<'s>,
-    /// The comma after it.
+    /// The place of the comma after the value; `None` if there is none.
     pub comma: Option<Span>,
 }
 
 /// Unit of an angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// `deg`
+    /// Degrees: `deg`.
     Degrees,
-    /// `rad`
+    /// Radians: `rad`.
     Radians,
 }
 
 impl Unit {
-    /// Returns the spelling.
+    /// Returns the spelling of the unit.
     pub fn name(self) -> &'static str {
         match self {
             Self::Degrees => "deg",
@@ -298,7 +300,7 @@ impl Unit {
         }
     }
 
-    /// Returns the angle of a number in this unit.
+    /// Returns the angle of `number` in this unit.
     pub fn of(self, number: f64) -> Angle {
         match self {
             Self::Degrees => Angle::from_degrees(number),
@@ -321,7 +323,7 @@ pub enum Operator {
 }
 
 impl Operator {
-    /// Returns the operator with a sign; `None` if there is none.
+    /// Returns the operator that is written `sign`; `None` if there is none.
     pub fn of(sign: &str) -> Option<Self> {
         let mut all = [Self::Add, Self::Subtract, Self::Multiply, Self::Divide].into_iter();
         all.find(|operator| sign.chars().eq([operator.sign()]))
@@ -332,7 +334,7 @@ impl Operator {
         matches!(self, Self::Multiply | Self::Divide)
     }
 
-    /// Returns the spelling.
+    /// Returns the spelling of the operator.
     pub fn sign(self) -> char {
         match self {
             Self::Add => '+',
@@ -343,7 +345,7 @@ impl Operator {
     }
 }
 
-/// Makes a number, with its unit if it has one.
+/// Makes a number, or an angle if the text has a unit.
 pub(super) fn number(written: &str) -> ValueKind<'_> {
     let units = [("deg", Unit::Degrees), ("rad", Unit::Radians)];
     let angle = units.into_iter().find_map(|(word, unit)| {
@@ -375,7 +377,7 @@ pub(super) fn call<'s>(
     Value::new(ValueKind::Call(Box::new(call)), span)
 }
 
-/// Makes `(VALUE)`, or `(VALUE, VALUE, …)`.
+/// Makes `(VALUE)` if there is one element, and `(VALUE, VALUE, …)` otherwise.
 pub(super) fn group(elements: Vec<Element<'_>>) -> ValueKind<'_> {
     match <[Element<'_>; 1]>::try_from(elements) {
         Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
@@ -383,7 +385,8 @@ pub(super) fn group(elements: Vec<Element<'_>>) -> ValueKind<'_> {
     }
 }
 
-/// Makes `VALUE OPERATOR VALUE`, or adds the operator to a chain of the same precedence.
+/// Makes `VALUE OPERATOR VALUE`. If `left` is a chain of the same precedence, appends the operator
+/// and its operand to it.
 pub(super) fn chain<'s>(
     mut left: Value<'s>,
     operator: Operator,

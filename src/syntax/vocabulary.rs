@@ -1,8 +1,8 @@
 //! The words that recovery knows.
 //!
-//! To the grammar, a field, a kind or a value may have any name. Which names are known decides what
-//! a text that does not follow the grammar means: in `radius color olive` a value is missing. They
-//! are looked up in the schema and among the names that the text defines.
+//! To the grammar, a field, a kind or a value may have any name. Recovery must know which names
+//! exist to tell what a wrong text means: in `radius color olive`, a value is missing. The names
+//! are looked up in the schema and among those that the text defines.
 
 use std::{collections::HashMap, sync::OnceLock};
 
@@ -12,14 +12,14 @@ use super::{
 };
 use crate::schema::{self, Condition, Type, predefined};
 
-/// Functions of other languages that make a vector or a colour.
+/// Functions of other languages that make a vector, a point or a colour.
 const FOREIGN_FUNCTIONS: &str = "vec vec3 Vec3 vector Vector vector3 Vector3 Vector3D point Point point3 Point3 Point3D rgba color Color";
 
-/// Words of the language and of a text.
+/// Words of the language, and names that a text defines.
 #[derive(Debug)]
 pub struct Vocabulary<'s> {
     text: &'s str,
-    /// The defined names, computed on first use.
+    /// The defined names, each with whether it surely is a number; computed on first use.
     lets: OnceLock<HashMap<&'s str, bool>>,
 }
 
@@ -37,7 +37,8 @@ impl<'s> Vocabulary<'s> {
         schema::block(word).is_some()
     }
 
-    /// Returns the type of a block's field; for a mistyped kind, of the nearest block's.
+    /// Returns the type of a block's field. If `kind` is mistyped, uses the nearest kind. Returns
+    /// `None` if either is unknown.
     pub fn takes(&self, kind: &str, field: &str) -> Option<Type> {
         let row = schema::block_or_nearest(kind)?;
         row.field(field).map(|field| field.takes)
@@ -55,7 +56,7 @@ impl<'s> Vocabulary<'s> {
         row.is_some_and(|row| row.must.contains(&Condition::EachMoreThanZero))
     }
 
-    /// Returns the names of a block's fields; for a mistyped kind, of the nearest block's.
+    /// Returns the names of a block's fields. If `kind` is mistyped, uses the nearest kind.
     pub fn fields(&self, kind: &str) -> impl Iterator<Item = &'static str> + use<> {
         let row = schema::block_or_nearest(kind);
         row.into_iter().flat_map(|row| row.field_names())
@@ -66,13 +67,13 @@ impl<'s> Vocabulary<'s> {
         self.lets().contains_key(name)
     }
 
-    /// Returns the names of definitions and indices, each with whether it surely is a number: an
-    /// index, or a definition whose value starts with a number without a unit.
+    /// Returns the names of definitions and indices, each with whether it surely is a number: it is
+    /// an index, or its definition starts with a number without a unit.
     fn lets(&self) -> &HashMap<&'s str, bool> {
         self.lets.get_or_init(|| {
             let mut lets = HashMap::new();
             let mut lexer = Lexer::new(self.text, 0);
-            // The last three tokens except comments.
+            // The last three tokens that are not comments.
             let mut last = ["", "", ""];
             loop {
                 let token = lexer.token();
@@ -120,8 +121,8 @@ impl<'s> Vocabulary<'s> {
     }
 
     /// Returns whether a field that follows the grammar may have been meant otherwise: its block
-    /// does not have it, its value is the name of a field, or it takes a word and has something
-    /// else.
+    /// does not have that field, its value is the name of a field, or it takes a word and has
+    /// something else.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
         let row = schema::block_or_nearest(kind);
         let takes = row.and_then(|row| Some(row.field(field.name.text)?.takes));

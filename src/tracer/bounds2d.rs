@@ -1,12 +1,12 @@
 //! Bounds of an object in the view plane, and of its inverse depth.
 //!
 //! In: an object. Out: its bounds in X and Y, from which the quadtree is built, and the maximum of
-//! its inverse depth. The bounds of a sphere are its tangents from the eye, those of a triangle and
-//! of a box the extremes of their corners.
+//! its inverse depth. A sphere is bounded by its tangents from the eye, a triangle or a box by the
+//! extremes of its corners.
 //!
-//! The bounds are those of the object's convex hull, widened by far more than all roundings and
-//! than the last precision can distinguish: outside of them, every decision certainly says that the
-//! object is missed.
+//! The bounds are those of the object's convex hull. They are widened by far more than all rounding
+//! errors, and by more than the last precision can distinguish. For a ray outside of the bounds,
+//! every test certainly finds that the ray misses the object.
 
 use super::{
     camera::Camera, convex::Convex, cuboid, interval::Interval, local_form::Patch, object::Object,
@@ -20,21 +20,23 @@ use crate::{
 /// Bounds of an object as seen from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Ranges of X and of Y where rays meet the object.
+    /// Ranges of X and Y, as in [`Direction`](super::camera::Direction), in which rays hit the
+    /// object.
     pub across: [Interval; 2],
     /// Maximum of the object's inverse depth.
     pub nearest: f64,
 }
 
-/// Relative widening of a quotient, in units of its terms: a few roundings amount to 2^−50 of them.
+/// Relative widening of a bound that is a quotient: 2^−40. Its few rounding errors amount to 2^−50.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Number below which rounding errors, 2^−53 of a number, may lose digits to the range of an `f64`,
-/// whose normal numbers end at 1e-308.
+/// Threshold below which a divisor is not used. The rounding error of such a number, 2^−53 of it,
+/// may be below the normal numbers of `f64`, which end at about 1e-308.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
-    /// Prepares an object, or a face of a box, and bounds it if it may be seen through the window.
+    /// Prepares an object, or only the face `face` of a box. Also returns the object's bounds, or
+    /// `None` if it is certainly not seen in the camera's window.
     pub fn with_extent(
         double: &Camera<Double>,
         fast: &Camera<f64>,
@@ -54,7 +56,7 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
         let hull = match (&object, shape) {
-            // The view is so wide that the slopes of X are out of the range of numbers.
+            // In so wide a view, products with Z (`ahead`) lose digits to the range of `f64`.
             _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), _) => of_sphere(sphere, ahead),
             (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), ahead),
@@ -76,26 +78,31 @@ impl Object<f64> {
     }
 }
 
-/// The bounds of a convex hull.
+/// Position and bounds of a convex hull.
 enum Hull {
     /// All of the hull is behind the eye.
     Behind,
     /// All of the hull is in front of the eye.
     Ahead(Extent),
-    /// The hull is on both sides, or endless, or out of the range of numbers.
+    /// The hull is on both sides of the eye, or unlimited, or its numbers exceed the range of
+    /// `f64`.
     Unbounded,
 }
 
 impl Extent {
-    /// Whether no overflow has spoilt the numbers.
+    /// Returns whether each range is in order and the inverse depth is not negative. Returns
+    /// `false` for NaN, which an overflow leaves.
     fn is_sound(&self) -> bool {
         self.across.iter().all(|range| range.low <= range.high) && self.nearest >= 0.0
     }
 }
 
-/// Bounds a sphere. Two planes through the eye and parallel to an axis of the picture touch the
-/// ball. In the plane across that axis the ball is a disc with the centre (c, z), to which two
-/// lines through the origin are tangent. Their slopes are (cz ± R √(c² + z² − R²))/(z² − R²).
+/// Bounds a sphere by its tangents from the eye. `ahead` is the Z of all directions.
+///
+/// In the plane of the X (or Y) axis and the Z axis, the ball is a disc with the centre (c, z) and
+/// the radius R. Two lines through the origin are tangent to it. Their slopes are
+///
+/// (c·z ± R·√(c² + z² − R²))/(z² − R²).
 fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     let Some(([x, y, z], radius)) = sphere.ball() else {
         return Hull::Unbounded;
@@ -103,8 +110,8 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     if z + radius < 0.0 {
         return Hull::Behind;
     }
-    // z − R and z + R are rounded once, so that their product has a small relative error, and so
-    // has the sum with it.
+    // z − R and z + R are each rounded once, so that their product has a small relative error. The
+    // sum of c² and the positive product then has a small relative error, too.
     let below = (z - radius) * (z + radius);
     if !(z > radius && below > SMALLEST) {
         return Hull::Unbounded;
@@ -123,7 +130,8 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     })
 }
 
-/// Bounds a hull by its corners: its slopes lie between theirs.
+/// Bounds a convex hull by its corners: the slopes of its points lie between the slopes of the
+/// corners. `ahead` is the Z of all directions.
 fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     let mut across = [Interval {
         low: f64::INFINITY,
@@ -138,7 +146,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
                 ball.rad.to_f64() * UP + middle.abs() * QUOTIENT_SLACK,
             )
         });
-        // `min` and `max` would ignore NaN.
+        // NaN is excluded first, since `min` and `max` ignore it.
         let is_finite = |range: &Interval| range.low.is_finite() && range.high.is_finite();
         if ![x, y, z].iter().all(is_finite) {
             return Hull::Unbounded;
@@ -155,7 +163,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     if greatest < 0.0 {
         return Hull::Behind;
     }
-    // False if an overflow has left NaN.
+    // This comparison also fails if an overflow has left NaN.
     if !(least > SMALLEST && greatest >= least) {
         return Hull::Unbounded;
     }

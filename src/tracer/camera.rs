@@ -23,22 +23,22 @@ pub struct Basis {
     pub v: [Big; 3],
     /// Unit vector against the view direction.
     pub w: [Big; 3],
-    /// The side of a pixel at depth 1: view_height / (height · d).
+    /// Side of a pixel at depth 1: view_height/(height · d), with the picture's height in pixels.
     pub pitch: Big,
     /// Distance from the eye to the view plane, in metres.
     pub d: Big,
-    /// Exact sign of the view direction's y.
+    /// Exact sign of the view direction's y coordinate.
     pub looks: std::cmp::Ordering,
 }
 
-/// Returns v/|v|, each component to the last bits of a [`Big`].
+/// Returns v/|v|, each component accurate to the last bits of a [`Big`].
 fn normalized(v: &Dyadic3) -> [Big; 3] {
     let length = Dyadic::dot(v, v).to_big().sqrt();
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// Returns a + b, or 0 if the sum is no larger than the terms' roundings, at most four in each: in
-/// a roll by 45 degrees, equal numbers cancel.
+/// Returns a + b, or 0 if the sum does not exceed the rounding errors of a and b (at most four
+/// roundings each). With a roll of 45 degrees, equal numbers cancel.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -48,7 +48,7 @@ fn sum(a: &Big, b: &Big) -> Big {
     sum
 }
 
-/// Returns lookat − eye, or the direction as it is written.
+/// Returns the view direction: lookat − eye, or the direction that the scene gives.
 fn view_direction(camera: &scene::Camera) -> Dyadic3 {
     match camera.view {
         View::Lookat(lookat) => Dyadic::between(camera.eye, lookat),
@@ -57,12 +57,13 @@ fn view_direction(camera: &scene::Camera) -> Dyadic3 {
 }
 
 impl Basis {
-    /// Computes the basis of a camera: w = −f/|f|, u = (up × w)/|up × w|, v = w × u, then the roll.
+    /// Computes the basis of a camera with the view direction f: w = −f/|f|, u = (up × w)/|up × w|,
+    /// v = w × u. Then u and v are turned by the roll.
     ///
-    /// Numerators are exact, so u is right to the last bits however nearly parallel up and the view
-    /// direction are. If they are parallel, u = (h × up)/|h × up| with the [level
-    /// direction](scene::level_direction) h: the u of a camera that looks along h and has the same
-    /// up.
+    /// Numerators are exact, so u is accurate to the last bits even if up and f are almost
+    /// parallel. If they are parallel, u = (h × up)/|h × up|, where h is the [level
+    /// direction](scene::level_direction). This is the u of a camera that looks along h and has the
+    /// same up.
     pub fn new(camera: &scene::Camera, image: &Image) -> Self {
         let forward = view_direction(camera);
         let up = Dyadic::vector(camera.up);
@@ -100,7 +101,7 @@ impl Basis {
     }
 }
 
-/// Bounds on the directions of rays through sample points.
+/// Bounds on the [`Direction`]s of rays through sample points.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<R> {
     /// Maximum of |X|.
@@ -112,7 +113,7 @@ pub struct Window<R> {
 }
 
 impl<R: Copy> Window<R> {
-    /// Returns all three bounds.
+    /// Returns the bounds of |X|, |Y| and Z, in this order.
     pub fn sizes(&self) -> [R; 3] {
         [self.x, self.y, self.z]
     }
@@ -121,25 +122,26 @@ impl<R: Copy> Window<R> {
 /// The camera in one precision.
 #[derive(Clone, Debug)]
 pub struct Camera<T: Real> {
-    /// The eye, in the world.
+    /// Position of the eye, in world coordinates.
     pub eye: DVec3,
-    /// Binary logarithm of the factor by which lengths of the world are multiplied, so that very
-    /// large and very small worlds stay within the range of `f64`; 0 for all others.
+    /// Binary logarithm of the factor by which lengths of the world are multiplied. It keeps the
+    /// lengths of very large and very small worlds within the range of `f64`; for other worlds it
+    /// is 0.
     pub exponent: i32,
-    /// Unit vectors to the right, down and ahead, in the world.
+    /// Unit vectors to the right, down and ahead, in world coordinates.
     pub axes: [Ball3<T>; 3],
-    /// Side of a pixel, in units of X and Y.
+    /// Side of a pixel, in units of X and Y of a [`Direction`].
     pub pitch: T,
-    /// The Z of all directions.
+    /// The Z of all [`Direction`]s.
     pub z: T,
     /// Half the picture's width and height, in pixels.
     pub half: DVec2,
-    /// Bounds on the directions' X and Y.
+    /// Bounds on the [`Direction`]s of rays through sample points.
     pub window: Window<T::Radius>,
 }
 
-/// A ray's direction (X, Y, Z) and its square. The relative error of X and of Y is at most 5
-/// [`UNIT`](Real::UNIT).
+/// A ray's direction (X, Y, Z) in the camera's axes, and its squared length. The relative errors of
+/// X and Y are at most 5 · [`UNIT`](Real::UNIT).
 #[derive(Clone, Debug)]
 pub struct Direction<T> {
     /// X, to the right.
@@ -164,12 +166,12 @@ pub struct PicturePoint {
 }
 
 impl<T: Real> Camera<T> {
-    /// Prepares the camera of a scene for sample points at most `reach` pixels from the picture's
-    /// centre in x and y.
+    /// Prepares the camera of a scene. Sample points may be at most `reach` pixels from the
+    /// picture's centre in x and y.
     pub fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
         let (eye, image) = (scene.camera.eye, scene.image);
         let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));
-        // The power of two that brings the greatest X or Y below 1; a narrow view needs none.
+        // A wide view is scaled by the power of two that brings the greatest X or Y below 1.
         let exponent = widest.magnitude().exponent();
         let exponent = if widest.to_f64() <= 1.0 { 0 } else { exponent };
         let pitch = basis.pitch.scaled(-exponent);
@@ -198,7 +200,8 @@ impl<T: Real> Camera<T> {
         }
     }
 
-    /// Returns the point at an offset from the centre of the pixel in column `x` and row `y`.
+    /// Returns the point at an offset, in pixels, from the centre of the pixel in column `x` and
+    /// row `y`.
     #[inline]
     pub fn sample_point(&self, x: u32, y: u32, offset: DVec2) -> PicturePoint {
         // Half-integers below 2^21 are exact.
@@ -217,7 +220,8 @@ impl<T: Real> Camera<T> {
         ))
     }
 
-    /// Converts a point in pixels from the picture's top left corner, x to the right and y down.
+    /// Converts a point that is given in pixels from the picture's top left corner, x to the right
+    /// and y down.
     pub fn picture_point(&self, pixels: DVec2) -> PicturePoint {
         PicturePoint {
             x: (pixels.x, -self.half.x),
@@ -239,34 +243,36 @@ impl<T: Real> Camera<T> {
         }
     }
 
-    /// Rotates a vector of the world into the camera's axes.
+    /// Rotates a vector from world coordinates into the camera's axes.
     pub fn turned(&self, v: &Ball3<T>) -> Ball3<T> {
         self.axes.each_ref().map(|axis| crate::math::dot(axis, v))
     }
 
-    /// Returns point − eye, computed without loss, in the world's axes and scaled.
+    /// Returns point − eye in the world's axes, multiplied by 2^`exponent`. The difference is
+    /// computed without cancellation error.
     pub fn relative(&self, point: DVec3) -> Ball3<T> {
         [0, 1, 2].map(|axis| self.relative_coordinate(axis, point[axis]))
     }
 
-    /// Returns one coordinate of a point as seen from the eye, scaled.
+    /// Returns one coordinate of point − eye in the world's axes, multiplied by 2^`exponent`. `at`
+    /// is the point's coordinate.
     pub fn relative_coordinate(&self, axis: usize, at: f64) -> Ball<T> {
         Ball::difference(at, self.eye[axis]).scaled(self.exponent)
     }
 
-    /// Scales a length of the world.
+    /// Multiplies a length of the world by 2^`exponent`.
     pub fn length(&self, length: f64) -> Ball<T> {
         Ball::exact(length).scaled(self.exponent)
     }
 }
 
-/// Binary exponents of lengths that are not scaled. Squares of lengths up to the greatest of them,
-/// and of lengths down to 2^−200 of the least, are well within the range of `f64`, which is 2^−1022
-/// to 2^1024.
+/// Range of the binary exponent of a scene's greatest length in which lengths are not scaled.
+/// Squares of lengths up to 2^400, and of lengths down to 2^−200 times 2^−300, are well within the
+/// range of `f64`, which is 2^−1022 to 2^1024.
 const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
-/// Returns the power of two that brings the greatest length of a scene into [`LENGTHS`]; 0 if it
-/// lies there already.
+/// Returns the binary logarithm of the factor that brings the greatest length of a scene into the
+/// range [`LENGTHS`]. Returns 0 if the length lies there already.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
     let shapes = scene.objects.iter().map(|object| &object.shape);
     let farthest = shapes.map(|shape| shape.greatest_length(scene.camera.eye));

@@ -1,9 +1,10 @@
 //! Conservative visibility: which objects may be seen in a part of the picture.
 //!
-//! In: the world, and a rectangle of its view plane. Out: the objects that are not certainly missed
-//! or hidden there. The method is interval arithmetic: the range of each object's forms over the
-//! rectangle, widened by the error bounds of its decisions. An object that every ray of the
-//! rectangle meets hides all objects whose greatest inverse depth is below its own least one.
+//! In: the world, and a rectangle of its view plane. Out: the objects that may be seen there, which
+//! are all those not proved to be missed or hidden. The method is interval arithmetic: the range of
+//! each object's forms over the rectangle, widened by the forms' error bounds. An object that every
+//! ray through the rectangle hits hides every other object whose maximum inverse depth is below the
+//! first object's minimum.
 
 use glam::DVec2;
 
@@ -24,25 +25,26 @@ use super::{
 pub struct VisibilityCandidate {
     /// The object's index in the file.
     pub object: usize,
-    /// Whether every ray through the part meets the object between the near and the far plane.
+    /// Whether every ray through the part hits the object between the near and the far plane.
     pub is_whole: bool,
     /// Interval that contains the inverse depths of everything that may be seen of the object.
     pub(crate) inverse_depth: Interval,
-    /// Crossings at which the object may be seen: not only the first if the near plane may cut the
-    /// object.
+    /// The crossings at which the object may be seen: only the first, unless the near plane may
+    /// cut the object.
     pub(crate) crossings: Crossings,
-    /// Bounds of the object in the view plane. Beside them a patch need not be examined.
+    /// Bounds of the object in the view plane. In a patch outside of the bounds, the object is not
+    /// seen.
     pub(super) bounds: Rectangle,
 }
 
 impl VisibilityCandidate {
-    /// Whether the near plane may cut the object.
+    /// Returns whether the near plane may cut the object.
     pub(crate) fn is_cut(&self) -> bool {
         self.crossings != Crossings::First
     }
 }
 
-/// Narrows a list of candidates, in file order, to those that may be seen in a part of the picture.
+/// Writes those of the candidates `among`, in file order, that may be seen in `part` to `out`.
 pub fn narrowed(
     world: &World,
     part: Area,
@@ -56,9 +58,10 @@ pub fn narrowed(
     visible_of(world, &patch, objects, out);
 }
 
-/// Finds all objects that may be seen in a part of the picture. Returns `false`, and leaves `out`
-/// as it was, if there seem to be more than `most`, or if `is_worth` rejects them: it is given the
-/// number of objects, and the mean number whose bounds contain a ray through the part.
+/// Writes all objects that may be seen in `part` to `out`, in file order. Returns `false`, and
+/// leaves `out` unchanged, if there seem to be more than `most` objects, or if `is_worth` returns
+/// `false`. `is_worth` gets the number of objects, and the mean number of objects whose bounds
+/// contain a ray through the part.
 #[must_use]
 pub fn within(
     world: &World,
@@ -95,7 +98,7 @@ pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Interval>; 2] 
         .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
 }
 
-/// Finds the objects that may be seen in a patch, among the given ones, which are in file order.
+/// Writes those of the objects `among`, in file order, that may be seen in a patch to `out`.
 pub(crate) fn visible_among(
     world: &World,
     patch: &Patch,
@@ -110,8 +113,8 @@ pub(crate) fn visible_among(
     );
 }
 
-/// Finds the objects that may be seen in a patch, among the given ones with their bounds, in file
-/// order.
+/// Writes those of the objects `among`, given with their bounds and in file order, that may be seen
+/// in a patch to `out`.
 fn visible_of(
     world: &World,
     patch: &Patch,
@@ -120,7 +123,8 @@ fn visible_of(
 ) {
     out.clear();
     let [near, far] = clips_over(world, patch);
-    // The nearest object that is met everywhere hides whatever is farther.
+    // Of all objects that every ray hits, the greatest minimum of the inverse depth. An object
+    // below it is hidden.
     let mut hidden = f64::NEG_INFINITY;
     for (object, bounds) in among {
         let Some(mut candidate) = cover(world, object, patch, near, far) else {
@@ -141,7 +145,8 @@ fn visible_of(
     }
 }
 
-/// Returns an object as a candidate for a patch. Returns `None` if it is certainly not seen there.
+/// Returns an object as a candidate for a patch. `near` and `far` are the inverse depths of the
+/// clip planes over the patch. Returns `None` if the object is certainly not seen there.
 pub(super) fn cover(
     world: &World,
     index: usize,
@@ -189,9 +194,9 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects that lie behind the nearest one all over the patch although their depths
-/// there overlap, and those in one plane with an object earlier in the file. Of parallel layers the
-/// nearest hides all others; of objects in one plane the first in the file does.
+/// Removes flat objects that the nearest flat object hides in the whole patch, although the ranges
+/// of their depths overlap. Of parallel layers, only the nearest remains; of objects in one plane,
+/// only the first in the file.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);
@@ -213,8 +218,9 @@ fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCan
     }
 }
 
-/// Whether an object that every ray through a patch meets hides another one there, decided by the
-/// forms of their planes.
+/// Returns whether the object `front`, which every ray through the patch hits, hides the object
+/// `back` there. This is decided by the forms of their planes; it is `false` if one of them is a
+/// sphere.
 pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
     let [a, b] = [front, back].map(|object| f64::object(&world.geometry, object));
     let (a, b) = match (a.surface_kind(), b.surface_kind()) {
@@ -245,9 +251,9 @@ pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
     backs.any(is_behind)
 }
 
-/// Returns the object that is seen at a point of a sub-pixel, among the candidates; and whether the
-/// answer was found before the last precision, in which inverse depths that cannot be told apart
-/// count as equal.
+/// Returns which of the candidates is seen at the point `at` of a sub-pixel, and whether the answer
+/// was found before the last precision. In the last precision, inverse depths that cannot be told
+/// apart count as equal.
 pub fn object_at<'a>(
     world: &World,
     sub_pixel: SubPixel,

@@ -24,12 +24,13 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// Minimum ratio of a quotient's denominator to the denominator's error. From 4 on, (a ± e)/(l ± f)
-/// is within 4/3 of (e + f·|a/l|)/l of a/l; the number itself is used instead of the 4/3.
+/// Minimum ratio of a quotient's denominator l to its error f. From 4 on, (a ± e)/(l ± f) differs
+/// from a/l by at most 4/3 · (e + f·|a/l|)/l. The error bound uses the factor 4 instead of 4/3.
 const MIN_CLEARANCE: f64 = 4.0;
 
-/// Error of a board coordinate, in squares, from which on it is useless: at 1/4, only the half of
-/// each square that is away from its edges would be certain.
+/// Maximum error of a board coordinate, in squares; with a larger error, the squares are not
+/// computed. At 1/4, only the half of a square's width that is away from its edges would be
+/// certain.
 const MAX_ERROR: f64 = 0.25;
 
 /// Maximum side of a block, in pixels: the side of the squares that quartering begins with.
@@ -45,8 +46,8 @@ pub struct CheckerPixel {
     /// The squares of the four corners, in x and in z: top left, top right, bottom left, bottom
     /// right.
     pub(crate) corners: [[f64; 4]; 2],
-    /// Whether the corners certainly lie in these squares. If not, they do so for lines of the
-    /// board that are displaced by no more than the error bounds of `squares`.
+    /// Whether the corners certainly lie in these squares. If not, they lie in these squares of a
+    /// board whose lines are displaced by at most the error bounds of `squares`.
     pub(crate) is_certain: bool,
 }
 
@@ -55,8 +56,9 @@ struct BoardBlock {
     block: Area,
     squares: CheckerForms,
     /// Minimum distance of a corner from the edges of its square, in x and in z, in squares.
+    /// Nearer corners are uncertain.
     slack: [f64; 2],
-    /// The columns of the corners, in units of the block's width from its centre.
+    /// x of each column of corners, in units of the block's width from its centre.
     columns: [f64; LANES],
 }
 
@@ -64,14 +66,15 @@ struct BoardBlock {
 struct CornerRow {
     /// The square of each corner, in x and in z; NaN if it is uncertain.
     squares: [[f64; LANES]; 2],
-    /// The sign of each corner's square: 1, or −1 for squares of the other parity.
+    /// The parity of each corner's square: 1 if the sum of its two indices is even, −1 if it is
+    /// odd.
     sign: [f64; LANES],
 }
 
-/// What some pixels show of a board.
+/// The squares of a checkerboard that a run of pixels, or one pixel, shows.
 #[derive(Clone, Copy, Debug)]
 pub enum ShownSquares<'a> {
-    /// One square, or adjacent squares of one colour; `true` for the second colour.
+    /// One colour, in a run of pixels; `true` for the second colour.
     One(bool),
     /// A few squares, in one pixel.
     Squares(&'a CheckerPixel),
@@ -79,9 +82,10 @@ pub enum ShownSquares<'a> {
     Unknown,
 }
 
-/// Calls `each` with what the pixels of a part of the picture show of a checkerboard, in runs of
-/// one colour and pixel by pixel. Nothing else may be seen in the part, whose sides are at most
-/// [`SIDE`]. Returns `None` if the object is no checkerboard, or if the board is too far away.
+/// Calls `each` with what the pixels of `part` show of the checkerboard `object`: with runs of
+/// pixels that show one colour, and with every other pixel. Nothing but the board may be seen in
+/// `part`, whose sides are at most [`SIDE`] pixels. Returns `None` if the object is not a
+/// checkerboard, or if the board is too far away. Otherwise returns `Break` if `each` did.
 pub fn show(
     world: &World,
     part: Area,
@@ -117,7 +121,7 @@ impl CornerRow {
         }
     }
 
-    /// Returns the squares of a corner.
+    /// Returns the indices in x and z of the square that contains a corner.
     fn at(&self, column: usize) -> [f64; 2] {
         [self.squares[0][column], self.squares[1][column]]
     }
@@ -188,7 +192,8 @@ impl BoardBlock {
         }
     }
 
-    /// Calls `each` with the pixels of a row that lies between two rows of corners.
+    /// Calls `each` with the pixels of row `row`, between the rows of corners `above` and `below`.
+    /// Stops if `each` breaks.
     fn row(
         &self,
         row: u32,
@@ -225,7 +230,8 @@ impl BoardBlock {
         ControlFlow::Continue(())
     }
 
-    /// Returns the squares in which the corners of a pixel certainly or probably lie.
+    /// Returns the squares in which a pixel's corners certainly or probably lie. Returns `None` if
+    /// one of them is not finite.
     fn checks(
         &self,
         row: u32,
@@ -251,8 +257,8 @@ impl BoardBlock {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The error of the block's form counts once for the factors and once for the value at
-            // the pixel's centre.
+            // The error bound of the block's form counts once for the factors and once for the
+            // value at the pixel's centre.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let CheckerForms { across, below, odd } = &self.squares;
@@ -275,9 +281,9 @@ impl BoardBlock {
         })
     }
 
-    /// Fills in the squares in which a pixel's corners probably lie, and returns the maximum
-    /// distance, in squares, of such a corner from the nearest line. Returns `None` if a quotient
-    /// is not finite.
+    /// Replaces each uncertain square (NaN) in `corners` with the one in which the corner probably
+    /// lies. Returns the squares, and the maximum distance, in squares, of such a corner from the
+    /// nearest line in x and in z. Returns `None` if a quotient is not finite.
     #[cold]
     fn probable(
         &self,
@@ -293,7 +299,7 @@ impl BoardBlock {
                 if corner[axis].is_nan() {
                     corner[axis] =
                         floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
-                    // The computed quotient and the true one both lie within the slack of the line.
+                    // Both the computed quotient and the true one lie within `slack` of the line.
                     doubt[axis] = 2.0 * self.slack[axis];
                 }
             }
@@ -317,8 +323,8 @@ impl CheckerPixel {
     }
 }
 
-/// Position of `halves` half pixels from the left or the top, in units of the block's side from its
-/// centre.
+/// Returns the position `halves` half pixels from the left or top edge of a block that is `pixels`
+/// pixels long, in units of the block's side from its centre.
 fn middle(halves: u32, pixels: u32) -> f64 {
     (f64::from(halves) - f64::from(pixels)) / f64::from(2 * pixels)
 }
@@ -331,7 +337,8 @@ fn corners_simd(board_block: &BoardBlock, y: f64, length: usize, out: &mut Corne
     board_block.evaluate(y, length, out);
 }
 
-/// Writes the sign of each pixel whose corners all lie in one square, and 0 for all other pixels.
+/// Writes the parity sign (1 or −1) of each pixel whose corners all lie in one square to `out`, and
+/// 0 for all other pixels.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
@@ -377,14 +384,15 @@ impl CheckerForms {
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)
     }
 
-    /// Bounds the error of a computed quotient whose magnitude is at most `greatest`.
+    /// Bounds the error of the quotient of `across` and ℓ, where the quotient's magnitude is at
+    /// most `greatest` and ℓ is at least `least`.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
         let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
     /// Returns the first and the last square in the pixel, in x and in z, with at most one square
-    /// too many at each end. Returns `None` if they are uncertain.
+    /// too many at each end. Returns `None` if ℓ is not clearly positive or an error is too large.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));

@@ -2,9 +2,10 @@
 //!
 //! In: the board's height and squares, and the camera. Out: for a ray, its crossing and the colour
 //! there. Below the horizon the plane's inverse depth ℓ is positive, and x/square is a ratio of
-//! linear forms, N/ℓ. Of the eye's position in whole squares only the parity matters, and it is
-//! kept apart: far from the origin the whole number would cost N its precision. Errors: those of
-//! the forms; a ratio whose error interval contains a whole number is in doubt.
+//! linear forms, N/ℓ. N is measured from the line between squares that is nearest to the eye: far
+//! from the origin, the number of whole squares up to there would cost N its precision. Of this
+//! number only the parity matters, and it is kept apart. Errors: those of the forms; a ratio whose
+//! error interval contains a whole number is in doubt.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -16,30 +17,32 @@ use crate::{
     scene,
 };
 
-/// Number of squares from which on the origin of a board is not moved: a rounded quotient of 2^52
-/// or more need not be the nearest whole number.
+/// Limit on the number of squares by which the origin of a board is moved. A rounded quotient of
+/// 2^52 or more need not be the nearest whole number; the origin then stays.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
 #[derive(Clone, Debug)]
 pub struct Checkerboard<T: Real> {
-    /// The board's plane, which a ray meets where ℓ, the plane's inverse depth, is positive.
+    /// The board's plane. A ray hits it where the plane's inverse depth ℓ is positive.
     pub plane: Convex<T>,
-    /// ℓ in the unit of N: scaled by a power of two that suits the eye's height.
+    /// ℓ, scaled like `across` by the power of two that brings the height of the eye to about 1.
     pub below: Form<T>,
-    /// N for x and for z, each measured from the line between squares that is nearest to the eye.
+    /// N for x and for z: N/ℓ is the coordinate in squares from the line that is nearest to the
+    /// eye.
     pub across: [Form<T>; 2],
     /// Whether the sum of these two lines' indices is odd.
     pub odd: bool,
 }
 
-/// A checkerboard in a pixel, in a part of one, or in a rectangle of pixels. The point (x, y), from
-/// the centre and in units of the sides, shows the point (N₀/ℓ, N₁/ℓ) of the board, in squares from
-/// a nearby corner of squares, where ℓ > 0.
+/// A checkerboard in a pixel, in a part of one, or in a rectangle of pixels. A point (x, y) of the
+/// rectangle is measured from its centre, in units of its sides. Where ℓ > 0, the point shows the
+/// point (N₀/ℓ, N₁/ℓ) of the board, in squares from a nearby corner of squares.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalBoard {
-    /// Factors of x, y and 1 in N₀ and N₁. In the last precision, whose numbers may exceed the
-    /// range of `f64`, all forms are scaled to about 1.
+    /// Factors of x, y and 1 in N₀ and N₁. In the last precision, numbers may exceed the range of
+    /// `f64`, so all forms are scaled by one power of two that brings the largest factor to about
+    /// 1.
     pub across: [[f64; 3]; 2],
     /// Factors of x, y and 1 in ℓ.
     pub below: [f64; 3],
@@ -84,8 +87,8 @@ impl<T: Real> Checkerboard<T> {
         })
     }
 
-    /// Whether the square that the ray meets has the second colour: floor(x/square) +
-    /// floor(z/square) is odd.
+    /// Returns whether the square that the ray hits has the second colour, which is so if
+    /// floor(x/square) + floor(z/square) is odd.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         let below = self.below.at(r);
@@ -97,9 +100,12 @@ impl<T: Real> Checkerboard<T> {
         Ok(odd)
     }
 
-    /// Expands the board about a ray, in units of the sides of a rectangle of the picture. A
-    /// multiple of ℓ is subtracted from N₀ and N₁, which moves the origin nearby. It is the one
-    /// that makes N₀ and N₁ small at the corner where ℓ is greatest; elsewhere ℓ may be almost 0.
+    /// Expands the board about the direction `center`, in units of `sides`, the sides of a
+    /// rectangle in X and Y.
+    ///
+    /// A multiple of ℓ is subtracted from N₀ and N₁, which moves the origin to a nearby corner of
+    /// squares. The multiple makes N₀ and N₁ small at the corner of the rectangle where ℓ is
+    /// greatest; elsewhere ℓ may be almost 0.
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
         let local = |form: &Form<T>| {
             let [a, b, _] = form.factors();
@@ -120,8 +126,8 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
-            // The error of ℓ is at least 12 of its roundings, so that twice as much also covers the
-            // roundings of the product and the difference.
+            // The error bound of ℓ covers at least 12 roundings. Twice the bound therefore also
+            // covers the roundings of the product and of the difference.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];
@@ -165,10 +171,10 @@ struct EyeOffset {
 }
 
 impl EyeOffset {
-    /// Splits a coordinate without rounding.
+    /// Splits a coordinate of the eye by the side `square` of the squares, without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
-        // The remainder operation of f64 is exact, also by infinity, and so are differences of
-        // numbers within a factor of two of each other (Sterbenz).
+        // The remainder operation of `f64` is exact, also with an infinite divisor. Differences of
+        // numbers within a factor of two of each other are exact, too (Sterbenz).
         let mut rest = coordinate % (2.0 * square);
         let whole = match rest.abs() {
             size if size < square * 0.5 => 0,

@@ -1,11 +1,11 @@
-//! A convex object with flat faces: what a triangle, a box and a checkerboard's plane are to a ray.
+//! A convex object with flat faces: the geometry of a triangle, a box, or a checkerboard's plane.
 //!
 //! In: linear forms over the view plane. Out: a ray's crossings; over a rectangle, the intervals of
-//! their inverse depths. A ray meets the object where no edge's form is negative: the edge
-//! functions of Olano and Greer ("Triangle scan conversion using 2D homogeneous coordinates",
-//! 1997). There it enters through the farthest of the planes that the eye sees from outside, and
-//! leaves through the nearest of the others: the slabs of Kay and Kajiya ("Ray tracing complex
-//! scenes", 1986) in inverse depths, which are linear forms. Errors: each form has its own bound.
+//! their inverse depths. A ray hits the object where no edge's form is negative: the edge functions
+//! of Olano and Greer ("Triangle scan conversion using 2D homogeneous coordinates", 1997). There it
+//! enters through the farthest of the planes that the eye sees from outside, and leaves through the
+//! nearest of the others: the slabs of Kay and Kajiya ("Ray tracing complex scenes", 1986) in
+//! inverse depths, which are linear forms. Errors: each form has its own bound.
 
 use std::cmp::Ordering;
 
@@ -25,22 +25,22 @@ pub type Face<T> = (u8, Form<T>);
 #[derive(Clone, Debug)]
 pub struct Convex<T: Real> {
     /// First the forms of the edges, each ≥ 0 on the object's side; then the inverse depths of the
-    /// faces that rays meet first, and of the faces behind them.
+    /// first faces, which rays hit first; then those of the second faces, behind them.
     forms: Vec<Form<T>>,
     /// Number of edges.
     edges: u8,
     /// Number of edges and first faces together.
     firsts: u8,
-    /// Numbers of the faces' planes.
+    /// Number of each face's plane, the first faces before the second ones.
     planes: [u8; 6],
-    /// Whether the eye is inside, so that a ray first meets the nearest of the first faces'
-    /// planes, not the farthest.
+    /// Whether the eye is inside. A ray then first hits the nearest of the first faces' planes,
+    /// not the farthest.
     is_inside: bool,
 }
 
 impl<T: Real> Convex<T> {
-    /// Builds an object from its edges and its faces, at most six: those that the eye sees from
-    /// outside, and those that it sees from inside.
+    /// Builds an object from its edges and at most six faces: `fronts`, which the eye sees from
+    /// outside, and `backs`, which it sees from inside. Without `fronts`, the eye is inside.
     pub fn new(edges: Vec<Form<T>>, fronts: Vec<Face<T>>, backs: Vec<Face<T>>) -> Self {
         let is_inside = fronts.is_empty();
         let firsts = if is_inside { backs.len() } else { fronts.len() };
@@ -63,7 +63,7 @@ impl<T: Real> Convex<T> {
         convex
     }
 
-    /// An object that no ray meets, such as one that is seen edge-on.
+    /// Returns an object that no ray hits, such as a triangle that is seen edge-on.
     pub fn nothing() -> Self {
         Self::new(Vec::new(), Vec::new(), Vec::new())
     }
@@ -72,17 +72,18 @@ impl<T: Real> Convex<T> {
         &self.forms[..usize::from(self.edges)]
     }
 
-    /// The inverse depths of the faces where rays first meet the object.
+    /// Returns the inverse depths of the faces where rays first hit the object.
     pub fn firsts(&self) -> &[Form<T>] {
         &self.forms[usize::from(self.edges)..usize::from(self.firsts)]
     }
 
-    /// The inverse depths of the faces where rays from outside leave the object.
+    /// Returns the inverse depths of the faces where rays from outside leave the object.
     pub fn seconds(&self) -> &[Form<T>] {
         &self.forms[usize::from(self.firsts)..]
     }
 
-    /// Forms that are all ≥ 0 where rays meet the object, and one of which is 0 on its outline.
+    /// Returns the forms that bound the object: all are ≥ 0 where rays hit it, and at least one is
+    /// 0 on its silhouette.
     pub fn bounds(&self) -> &[Form<T>] {
         if self.is_inside {
             return self.edges();
@@ -90,29 +91,30 @@ impl<T: Real> Convex<T> {
         &self.forms[..usize::from(self.firsts)]
     }
 
-    /// Whether the eye is inside, so that of several faces' planes the nearest one is seen.
+    /// Returns whether the eye is inside. Of several faces' planes, the nearest one is then seen.
     pub fn is_inside(&self) -> bool {
         self.is_inside
     }
 
-    /// Returns the surface part of a face, by its index among all faces, the first ones before the
-    /// others.
+    /// Returns the surface part of a face. `face` is its index among all faces, the first faces
+    /// before the second ones.
     pub fn part(&self, face: usize) -> SurfacePart {
         SurfacePart::Plane(self.planes[face])
     }
 
-    /// Returns the inverse depth of a part.
+    /// Returns the inverse depth of the face that is the given part. Returns `None` if there is
+    /// none.
     pub fn face(&self, part: SurfacePart) -> Option<&Form<T>> {
         let mut faces = self.forms[usize::from(self.edges)..].iter().enumerate();
         faces.find_map(|(face, form)| (self.part(face) == part).then_some(form))
     }
 
     /// Returns the nearest crossing in front of the eye: where the ray enters the closed object or,
-    /// from inside, leaves it.
+    /// from inside, leaves it. Returns `None` if the ray misses the object.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        // In the last precision, an object of which no edge's form is positive is too small or too
-        // nearly edge-on to be distinguished from nothing.
+        // In the last precision, an object with edges of which no form is positive is too small, or
+        // too nearly edge-on, to be distinguished from nothing.
         let (mut doubt, mut is_met) = (false, self.is_inside || self.edges == 0);
         for edge in self.edges() {
             match edge.at(r).sign() {
@@ -140,15 +142,19 @@ impl<T: Real> Convex<T> {
         Ok(is_met.then_some(crossing))
     }
 
-    /// Returns the crossing behind the first one.
+    /// Returns the crossing behind the first one, for a ray that hits the object. Returns `None` if
+    /// the object has no second faces.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }
 
-    /// Returns the least or the greatest inverse depth of some faces. If two of them are not
-    /// clearly apart, the centre of the least ball need not be the least number, but is within the
-    /// larger radius of it. The crossing is assigned to a plane only if that is certain: just
-    /// outside of an edge, a ray meets one plane slightly before it meets the box in the other.
+    /// Returns the crossing with the least inverse depth of `faces`, or with the greatest if
+    /// `which` is `Greater`. Returns `None` if there are no faces.
+    ///
+    /// If two inverse depths are not clearly apart, the centre of the returned ball need not be the
+    /// exact extreme, but is within the larger of the two radii of it. The crossing is then
+    /// assigned to an edge, not to a plane: just outside of an edge, a ray hits one plane slightly
+    /// before it hits the box in the other.
     #[inline]
     fn extreme(
         &self,
@@ -169,7 +175,7 @@ impl<T: Real> Convex<T> {
             if !difference.is_zero() && difference.is_negative() == which.is_lt() {
                 extreme = other;
             }
-            // NaN, which comes from an overflow, is not clear either.
+            // NaN, which an overflow leaves, is not clear either.
             let is_clear = distance > rad * (2.0 * UP);
             if !is_clear {
                 extreme.part = SurfacePart::Edge;
@@ -182,7 +188,8 @@ impl<T: Real> Convex<T> {
 }
 
 impl Convex<f64> {
-    /// Relates the object to a rectangle. Returns `None` if no ray through the rectangle meets it.
+    /// Computes how the object covers a rectangle. Returns `None` if no ray through the rectangle
+    /// hits it.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let mut is_whole = true;
         for edge in self.edges() {
@@ -201,7 +208,8 @@ impl Convex<f64> {
         })
     }
 
-    /// Returns the inverse depths of the crossings where rays from outside leave the object.
+    /// Returns the range of the inverse depths at which rays from outside leave the object. Returns
+    /// `None` if it has no second faces.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let faces = self.seconds().iter().map(|face| face.over(patch));
         Interval::fold(faces, f64::max)

@@ -3,12 +3,13 @@
 
 use crate::math::{Ball, Real};
 
-/// A point of a ray on the surface of an object.
+/// A crossing of a ray with the surface of an object.
 #[derive(Clone, Debug)]
 pub struct Crossing<T: Real> {
-    /// 1/λ of the point λr, positive. The nearest crossing has the greatest inverse depth.
+    /// Inverse depth 1/λ of the point λr, where r is the ray's direction; positive. The nearest
+    /// crossing has the greatest inverse depth.
     pub inverse_depth: Ball<T>,
-    /// The part of the object's surface.
+    /// The part of the object's surface that contains the crossing.
     pub part: SurfacePart,
 }
 
@@ -19,10 +20,10 @@ pub enum SurfacePart {
     Entry,
     /// The side of a sphere where a ray leaves.
     Exit,
-    /// The plane of a flat object: that of a triangle, of the checkerboard, or of a box's face with
+    /// The plane of a flat object: of a triangle, of the checkerboard, or of the face of a box with
     /// this number.
     Plane(u8),
-    /// An edge of a box, or a point so near to one that the precision in use cannot decide between
-    /// the planes of its faces.
+    /// An edge of a box, or a point so close to an edge that the precision in use cannot decide
+    /// between the planes of its faces.
     Edge,
 }

@@ -1,9 +1,9 @@
 //! The box: six faces along the axes.
 //!
 //! In: the box's corners and the camera. Out: a [`Convex`] object, and its corners. With μ = 1/λ, a
-//! point λr lies between the planes x = lo and x = hi (as seen from the eye) where lo·μ ≤ r_x ≤
-//! hi·μ. The side of the two planes on which the eye lies turns these inequalities into a greatest
-//! and a least μ, each a linear form, without a division by r_x, which may be zero.
+//! point λr lies between the planes x = lo and x = hi (relative to the eye) if lo·μ ≤ r_x ≤ hi·μ.
+//! Depending on the side of the planes on which the eye lies, each inequality bounds μ from above
+//! or from below. Each bound is a linear form, without a division by r_x, which may be zero.
 
 use std::{array, cmp::Ordering};
 
@@ -17,8 +17,8 @@ use crate::{
     scene,
 };
 
-/// Prepares a box, or one of its faces as a flat object. The number of a face's plane is twice its
-/// axis, plus one for the greater coordinate.
+/// Prepares a box, or only its face `only` as a flat object. The number of a face's plane is twice
+/// the number of its axis, plus one for the greater coordinate.
 pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<u8>) -> Convex<T> {
     let (mut fronts, mut backs, mut edges) = (Vec::new(), Vec::new(), Vec::new());
     for plane in 0..6_u8 {
@@ -31,7 +31,7 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         let faces = match outside {
             _ if eye == at => {
                 // A face whose plane contains the eye is seen edge-on and bounds no depth, but a
-                // ray must not run on its outer side.
+                // ray must not run on the plane's outer side.
                 let inward = if is_upper { -1.0 } else { 1.0 };
                 let normal = normal.map(|x| x.times_power(inward));
                 edges.push(Form::new(camera, &camera.turned(&normal)));
@@ -44,8 +44,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         faces.push((plane, inverse_depth(camera, &normal, &height)));
     }
     for (i, front) in &fronts {
-        // Every ray passes between two parallel faces. A single face is bounded only by the lines
-        // that it takes part in: the others follow from these.
+        // Every ray passes between two parallel faces, so they need no line. A single face is
+        // bounded by the lines that it takes part in; the other lines follow from these.
         let is_bound = |j: &u8| i / 2 != j / 2 && only.is_none_or(|only| [*i, *j].contains(&only));
         let bounding = backs.iter().filter(|(j, _)| is_bound(j));
         edges.extend(bounding.map(|(_, back)| front.minus(back)));
@@ -54,7 +54,7 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         return Convex::new(edges, fronts, backs);
     };
     // A ray enters through the farthest of the front planes, and leaves through the nearest of the
-    // back planes.
+    // back planes. These comparisons bound the face within its own side of the box.
     for (mut faces, is_nearest) in [(fronts, false), (backs, true)] {
         let Some(at) = faces.iter().position(|(number, _)| *number == only) else {
             continue;
@@ -72,7 +72,7 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
     Convex::nothing()
 }
 
-/// Returns the eight corners in the camera's axes.
+/// Returns the eight corners relative to the eye, in the camera's axes.
 pub fn corners<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid) -> [Ball3<T>; 8] {
     let (min, max) = (camera.relative(shape.min), camera.relative(shape.max));
     array::from_fn(|corner| {

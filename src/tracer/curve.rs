@@ -1,9 +1,9 @@
 //! The curves that separate what is seen in a pixel, or in a part of one: lines and conics.
 //!
-//! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: their outlines, and the
-//! curves where their depths are equal, in the coordinates of that sub-pixel. The outline of a
-//! sphere is Q = 0 (`sphere`). Two planes cross where their inverse depths are equal, a plane and a
-//! sphere in the cone of a circle, two spheres in their radical plane.
+//! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
+//! and the curves where their depths are equal, in the coordinates of that sub-pixel. The
+//! silhouette of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line, a
+//! plane and a sphere in the cone of a circle, two spheres in their radical plane.
 //!
 //! Errors: each form is computed anew in the sub-pixel's coordinates and in high precision, with an
 //! error bound for its values there. The result is therefore right to the last bits of an `f64`,
@@ -13,8 +13,9 @@ use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
-/// Error of a line's form, in units of its greatest slope, from which on double-double was not
-/// precise enough: eight roundings of an `f64`, more than the three of its factors amount to.
+/// Threshold of a line's error, in units of its greatest slope, from which on double-double was not
+/// precise enough: eight roundings of an `f64`, more than the three roundings of the line's factors
+/// amount to.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A curve that separates objects in a pixel.
@@ -26,34 +27,35 @@ pub enum Boundary {
     Conic(Conic),
 }
 
-/// The line ax + by + c = 0, the greater of |a| and |b| being 1.
+/// The line ax + by + c = 0, scaled so that the greater of |a| and |b| is 1.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundaryLine {
     /// The factors a, b and c.
     pub factors: [f64; 3],
-    /// Error bound of the form's values in the pixel.
+    /// Error bound of the value of ax + by + c in the pixel.
     pub rad: f64,
 }
 
-/// The conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0; the greatest factor is about 1 in magnitude.
+/// The conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0, scaled so that its greatest factor is about 1 in
+/// magnitude.
 #[derive(Clone, Copy, Debug)]
 pub struct Conic {
     /// The factors A, B, C, D, E and F.
     pub factors: [Double; 6],
-    /// Error bound of the form's values in the pixel.
+    /// Error bound of the value of the conic's quadratic form in the pixel.
     pub rad: f64,
 }
 
-/// The inverse depth of a surface, as a function of the point of the picture.
+/// The inverse depth of a surface, as a function of a point of the picture.
 #[derive(Debug)]
 pub enum InverseDepth<'a, T: Real> {
-    /// A plane's: a linear form.
+    /// The inverse depth of a plane: a linear form.
     Plane(&'a Form<T>),
-    /// A sphere's: linear plus the root of a quadratic form.
+    /// The inverse depth of a sphere: a linear form plus the root of a quadratic form.
     Sphere(&'a Sphere<T>),
 }
 
-/// The crossings of a ray with an object that are meant.
+/// Selection among the crossings of a ray with an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crossings {
     /// The first crossing.
@@ -69,12 +71,12 @@ type Linear<T> = [Ball<T>; 3];
 /// A quadratic form: factors of x², 2xy, y², 2x, 2y and 1.
 type Quadratic<T> = [Ball<T>; 6];
 
-/// A sub-pixel in one precision.
+/// A sub-pixel's position in the view plane, in one precision.
 #[derive(Clone, Debug)]
 pub struct SubPixelFrame<T: Real> {
-    /// The direction through its centre.
+    /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// Its side, in units of X and Y.
+    /// The sub-pixel's side, in units of X and Y.
     pitch: Ball<T>,
 }
 
@@ -82,7 +84,7 @@ impl<T: Real> SubPixelFrame<T> {
     /// Places a sub-pixel in the view plane of a camera.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
         let r = sub_pixel.middle(camera);
-        // Five roundings in a coordinate, and those of the pitch.
+        // A coordinate has five roundings, and the side fewer.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
             mid,
@@ -93,7 +95,7 @@ impl<T: Real> SubPixelFrame<T> {
         }
     }
 
-    /// Returns the zero line of a form.
+    /// Returns the line on which a form is zero.
     pub fn line(&self, form: &Form<T>) -> Boundary {
         let (factors, rad) = self.local(form);
         line(&factors, rad)
@@ -107,12 +109,16 @@ impl<T: Real> SubPixelFrame<T> {
         ([a, b, middle], form.rad())
     }
 
-    /// Returns the outline of a sphere, Q = R² r·r − |c × r|² = 0; for an eye on its surface, the
-    /// line c·r = 0 instead.
+    /// Returns the silhouette of a sphere,
     ///
-    /// For an eye outside, the line c·r = 0 is returned as well. No ray on it meets the sphere, but
-    /// it separates the conic's two branches, in front of the eye and behind it. If the sphere is a
-    /// plane except for a 1e-200th part, no precision tells these branches apart.
+    /// Q = R² r·r − |c × r|² = 0,
+    ///
+    /// where c is the centre, R the radius and r the ray's direction. For an eye on the sphere's
+    /// surface, returns the line c·r = 0 instead.
+    ///
+    /// For an eye outside, the line c·r = 0 is returned as well. No ray on it hits the sphere, but
+    /// it separates the conic's two branches, in front of the eye and behind it. If the sphere
+    /// differs from a plane only by a 1e-200th part, no precision tells these branches apart.
     pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Boundary> {
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
@@ -130,7 +136,8 @@ impl<T: Real> SubPixelFrame<T> {
         curves
     }
 
-    /// Returns the curve of rays that meet two surfaces at the same depth, if there is one.
+    /// Returns the curve of rays that hit two surfaces at the same depth. Returns `None` if the
+    /// surfaces are equal planes or concentric spheres.
     pub fn crossing(&self, a: &InverseDepth<T>, b: &InverseDepth<T>) -> Option<Boundary> {
         match (a, b) {
             (InverseDepth::Plane(a), InverseDepth::Plane(b)) if a.equals(b) => None,
@@ -139,8 +146,8 @@ impl<T: Real> SubPixelFrame<T> {
             | (InverseDepth::Sphere(sphere), InverseDepth::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // In the sphere's unit of inverse depth. Its scale is within the range of an f64;
-                // the inverse of the scale need not be.
+                // Converts the plane's form to the sphere's unit of inverse depth. The sphere's
+                // scale is within the range of an `f64`; the inverse of the scale need not be.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
@@ -149,11 +156,15 @@ impl<T: Real> SubPixelFrame<T> {
         }
     }
 
-    /// Two spheres cross in their radical plane: |q − c|² − R² is the same for both where 2 (c' −
-    /// c)·q = C' − C.
+    /// Returns the curve of rays that hit two spheres at the same depth, by their radical plane: |q
+    /// − c|² − R² is the same for both spheres where
+    ///
+    /// 2 (c' − c)·q = C' − C,
+    ///
+    /// with the centres c and c', and C = c·c − R². Returns `None` for concentric spheres.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
         let ((c, square), (d, other)) = (a.parts(), b.parts());
-        // Both spheres in one unit.
+        // Brings both spheres to one unit.
         let exponent = libm::frexp(a.scale()).1 - libm::frexp(b.scale()).1;
         let d = d.map(|x| x.scaled(exponent));
         let other = other.scaled(2 * exponent);
@@ -171,11 +182,13 @@ impl<T: Real> SubPixelFrame<T> {
         Some(self.circle(&c, &square, &linear, &h))
     }
 
-    /// Returns the cone of the circle where the plane n·q = h crosses a sphere: with q = (h/n·r) r,
-    /// |hr − (n·r)c|² = R² (n·r)².
+    /// Returns the cone of the circle in which the plane n·q = h intersects a sphere. A ray of
+    /// direction r hits the plane at q = (h/(n·r)) r, so the cone is
     ///
-    /// In this form it is a sum of squares that are small where the circle is, so it does not
-    /// cancel for a small and far sphere.
+    /// |h r − (n·r) c|² = R² (n·r)².
+    ///
+    /// `plane` is n·r as a linear form. The left side is a sum of squares that are small where the
+    /// circle is, so the formula does not cancel for a small and far sphere.
     fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Boundary {
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
@@ -184,7 +197,7 @@ impl<T: Real> SubPixelFrame<T> {
         conic(&[0, 1, 2, 3, 4, 5].map(|i| &outside[i] - square * &inside[i]))
     }
 
-    /// Returns the components of r as linear forms.
+    /// Returns the components of the direction r as linear forms of the point of the sub-pixel.
     fn directions(&self) -> [Linear<T>; 3] {
         let [x, y, z] = self.center.clone();
         let zero = || Ball::exact(0.0);
@@ -195,7 +208,7 @@ impl<T: Real> SubPixelFrame<T> {
         ]
     }
 
-    /// Returns v·r as a linear form.
+    /// Returns v·r as a linear form of the point of the sub-pixel.
     fn along(&self, v: &Ball3<T>) -> Linear<T> {
         [
             &v[0] * &self.pitch,
@@ -210,12 +223,12 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// Returns the zero line of a linear form. Its greater slope becomes 1, so that forms of the same
-/// line, such as the horizon of parallel planes, get the same factors.
+/// Returns the line on which a linear form is zero. The form is divided by its greater slope, so
+/// that forms of the same line, such as the horizon of parallel planes, get the same factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
-    // A form without slope has no zero line, and any power of two will do.
+    // A form without slope is zero nowhere on a line, and any power of two will do.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
     let slope = if greatest.is_zero() {
@@ -226,10 +239,10 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // The roundings of the quotients, and of their conversion to `f64`.
+    // This covers the roundings of the quotients, and of their conversion to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-    // The error's own quotient, and the slope's conversion to `f64`, are rounded, too.
+    // The quotient of the error bound is rounded, too, and so is the slope's conversion to `f64`.
     let rad = rad.scaled(exponent).to_f64() / slope.to_f64().abs() * (1.0 + 8.0 * f64::UNIT);
     Boundary::Line(BoundaryLine {
         factors,
@@ -254,13 +267,13 @@ fn sum<T: Real>([a, b, c]: [Quadratic<T>; 3]) -> Quadratic<T> {
     [0, 1, 2, 3, 4, 5].map(|i| &a[i] + &b[i] + &c[i])
 }
 
-/// Returns the conic of a quadratic form.
+/// Returns the conic on which a quadratic form is zero.
 fn conic<T: Real>(factors: &Quadratic<T>) -> Boundary {
     let size = factors
         .iter()
         .fold(T::Radius::ZERO, |size, x| size.max(x.size()));
     let exponent = -size.exponent();
-    // |x| and |y| are at most 1/2.
+    // The factors' errors are summed, since |x| and |y| are at most 1/2.
     let rad = factors.iter().fold(T::Radius::ZERO, |rad, x| rad + x.rad);
     Boundary::Conic(Conic {
         factors: factors.each_ref().map(|x| double(&x.mid.scaled(exponent))),
@@ -275,17 +288,17 @@ fn double<T: Real>(x: &T) -> Double {
 }
 
 impl Conic {
-    /// Bounds the part of the pixel's area between the true conic and the computed one, by the area
-    /// of the points where |F| ≤ ε, the form's error. Three bounds of it hold, and the least is
-    /// returned:
+    /// Bounds the part of the pixel's area between the true conic and the computed one. These
+    /// points satisfy |F| ≤ ε, where F is the computed form and ε its error bound. Three bounds of
+    /// their area hold, and the least one is returned:
     ///
-    /// - By the coarea formula 2ε · length / least gradient; a conic in the pixel is no longer than
-    ///   twice the perimeter.
+    /// - By the coarea formula, 2ε · length/(least gradient). A conic in the pixel is no longer
+    ///   than twice the pixel's perimeter.
     /// - For an ellipse 2πε/√(AC − B²), the difference of two ellipses' areas.
-    /// - In any case 4 · 2 · √(ε / greatest |F|), by the inequality of Brudnyi and Ganzburg (1973)
+    /// - In any case 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg (1973)
     ///   for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest |F| is at
-    ///   least 1/16, since a factor of at least 1/2 is a combination of values of F: A of three
-    ///   with the weights 2, 4 and 2, the others of fewer.
+    ///   least 1/16: a factor of at least 1/2 is a combination of values of F, the factor A of
+    ///   three values with the weights 2, 4 and 2, and the other factors of fewer.
     pub fn doubtful_area(&self) -> f64 {
         let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
         let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
@@ -295,7 +308,7 @@ impl Conic {
         if gradient > 0.0 {
             area = area.min(16.0 * self.rad / gradient);
         }
-        // The difference of products has an error of two of their roundings.
+        // The determinant's error is at most two roundings of its products.
         let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
         if determinant > 0.0 {
             area = area.min(7.0 * self.rad / determinant.sqrt());
@@ -303,11 +316,12 @@ impl Conic {
         area
     }
 
-    /// Returns the range of the form over the pixel.
+    /// Returns the range of the conic's form over the pixel.
     ///
     /// Its extremes lie at corners, or where a derivative vanishes along a side or in all
-    /// directions. An inaccurate position of such an extreme hardly matters: the form differs there
-    /// by half the product of the distance and the gradient, which is almost 0.
+    /// directions. Such an extreme may be computed at an inaccurate position. This hardly matters:
+    /// the form differs there by half the product of the distance and the gradient, which is almost
+    /// 0.
     pub fn over_pixel(&self) -> Interval {
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
         let at = |x: f64, y: f64| x * (a * x + 2.0 * (b * y + d)) + y * (c * y + 2.0 * e) + f;
@@ -331,7 +345,8 @@ impl Conic {
         let determinant = a * c - b * b;
         hold((b * e - c * d) / determinant, (b * d - a * e) / determinant);
         let size = 0.25 * (a.abs() + 2.0 * b.abs() + c.abs()) + d.abs() + e.abs() + f.abs();
-        // Six terms of three roundings each are summed; no extreme lies between these points.
+        // The form sums six terms of three roundings each. Its extremes lie at the points above, so
+        // no further slack is needed.
         let rad = self.rad + 16.0 * f64::UNIT * size;
         Interval {
             low: range.low - rad,
@@ -341,7 +356,7 @@ impl Conic {
 }
 
 impl BoundaryLine {
-    /// Returns the range of the form over the pixel.
+    /// Returns the range of ax + by + c over the pixel.
     pub fn over_pixel(&self) -> Interval {
         let [a, b, c] = self.factors;
         Interval::about(c, 0.5 * (a.abs() + b.abs()) + self.rad)

@@ -1,32 +1,33 @@
 //! Linear forms: the boundaries and inverse depths of everything flat.
 //!
 //! In: a vector in the camera's axes. Out: the linear form aX + bY + c over the view plane that it
-//! defines. Every edge of a flat surface is the zero line of such a form, and the inverse depth of
-//! its plane is one. Errors: one bound for all values in the window, from the errors of the factors
-//! and the roundings of the evaluation.
+//! defines. Every edge of a flat surface is a line on which such a form is zero, and the inverse
+//! depth of a surface's plane is such a form. Errors: one bound for all values in the window, from
+//! the errors of the factors and the roundings of the evaluation.
 
 use super::camera::{Camera, Direction, Window};
 use crate::math::{Ball, Ball3, Double, Real, UP};
 
-/// A linear form over the view plane with one error bound for all its values.
+/// A linear form aX + bY + c over the view plane, with one error bound for all its values.
 #[derive(Clone, Debug)]
 pub struct Form<T: Real> {
-    /// Factors of X, Y and 1.
+    /// The factors a, b and c of X, Y and 1.
     factors: [T; 3],
     /// Error bound of a computed value.
     rad: T::Radius,
-    /// Error bounds in units of |X|, |Y| and |Z|; in the last precision only. No precision follows
-    /// it, so the error is bounded for each ray: in the middle of the widest views, values are far
-    /// smaller than elsewhere.
+    /// For big numbers only: error bounds in units of |X|, |Y| and |Z| of a ray. The bound `rad`
+    /// holds in the whole window, so in the middle of a very wide view it is far greater than a
+    /// ray's own error. Other precisions can afford that, since a doubt is passed to the next one;
+    /// big numbers are the last.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
-/// Number of roundings in a value: five in a coordinate, one in its product, two in the sum; half
-/// as many again cover the products of roundings.
+/// Number of roundings in a value of a form: five in a coordinate, one in its product, two in the
+/// sum. Half as many again cover the products of roundings.
 const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
-    /// Returns the form v·r of a vector in the camera's axes.
+    /// Builds the form v·r, where v is a vector in the camera's axes and r a ray's [`Direction`].
     pub fn new(camera: &Camera<T>, v: &Ball3<T>) -> Self {
         let window = &camera.window;
         let factors = [
@@ -35,7 +36,7 @@ impl<T: Real> Form<T> {
             v[2].mid.times(&camera.z),
         ];
         let inherited = v[0].rad * window.x + v[1].rad * window.y + v[2].rad * window.z;
-        // In the widest views, Z is below the normal numbers, and rounded.
+        // In the widest views, Z is below the normal numbers, so its rounding error is added.
         let lost = v[2].size() * T::TINY;
         let rad = (inherited + lost + rounding(&factors, window)) * UP;
         let by_component = |x: &Ball<T>| (x.rad + x.size() * (FORM_ROUNDINGS * T::UNIT)) * UP;
@@ -46,7 +47,7 @@ impl<T: Real> Form<T> {
         }
     }
 
-    /// Returns the value at a direction.
+    /// Returns the form's value for a ray's direction, with its error bound.
     #[inline]
     pub fn at(&self, r: &Direction<T>) -> Ball<T> {
         let [a, b, c] = &self.factors;
@@ -62,26 +63,26 @@ impl<T: Real> Form<T> {
         }
     }
 
-    /// The factors of X, Y and 1.
+    /// Returns the factors of X, Y and 1.
     pub fn factors(&self) -> &[T; 3] {
         &self.factors
     }
 
-    /// The error bound of a computed value.
+    /// Returns the error bound of a computed value.
     pub fn rad(&self) -> T::Radius {
         self.rad
     }
 
-    /// Returns the difference of two forms.
+    /// Returns the difference of two forms, self − other.
     pub fn minus(&self, other: &Self) -> Self {
         let sizes = [0, 1, 2].map(|i| self.factors[i].magnitude() + other.factors[i].magnitude());
         let sum = sizes[0] + sizes[1] + sizes[2];
         Self {
             factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
-            // X and Y are at most 1.
+            // The difference's own roundings are bounded with |X|, |Y| and Z at most 1.
             rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
-            // Each error bound contains as many roundings of its own factors as their difference
-            // has.
+            // The error bounds of a form already contain the roundings of its own factors. Twice
+            // their sum also covers the roundings of the difference.
             rads: self
                 .rads
                 .as_ref()
@@ -92,7 +93,7 @@ impl<T: Real> Form<T> {
         }
     }
 
-    /// Whether two forms have equal factors, as all forms of one plane have.
+    /// Returns whether two forms have equal factors. All forms of one plane have equal factors.
     pub fn equals(&self, other: &Self) -> bool {
         let equal = |(a, b): (&T, &T)| a.minus(b).is_zero();
         self.factors.iter().zip(&other.factors).all(equal)
@@ -111,18 +112,18 @@ impl Form<Double> {
     }
 }
 
-/// Bounds what rounding adds to the error of a form's values.
+/// Returns the error that roundings add to a form's values in the window.
 fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius {
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
     (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
         + T::TINY * (a + b)
-        // A product below the normal numbers loses at most half of the least number; there are
-        // fewer than 16.
+        // Each of fewer than 16 products below the normal numbers loses at most half of the least
+        // number.
         + T::TINY * 8.0
 }
 
-/// Returns the inverse depth of the plane n·q = h as a form: n in the world's axes, points q as
-/// seen from the eye.
+/// Returns the inverse depth of the plane n·q = h as a form. The normal n is in the world's axes,
+/// and q are points relative to the eye.
 pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> Form<T> {
     let n = camera.turned(n).map(|component| component / h);
     Form::new(camera, &n)

@@ -14,7 +14,7 @@ pub struct Interval {
 /// How an object covers a rectangle in which it may be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cover {
-    /// Whether every ray through the rectangle meets the object.
+    /// Whether every ray through the rectangle hits the object.
     pub is_whole: bool,
     /// Interval that contains the inverse depths of all crossings with the object, seen or hidden.
     pub inverse_depth: Interval,
@@ -37,7 +37,8 @@ impl Interval {
         high: f64::INFINITY,
     };
 
-    /// Returns the numbers at a distance of at most `reach` from `middle`.
+    /// Returns an interval that contains all numbers at a distance of at most `reach` from
+    /// `middle`.
     pub fn about(middle: f64, reach: f64) -> Self {
         let reach = reach * UP + f64::MIN_POSITIVE;
         Self {
@@ -46,7 +47,8 @@ impl Interval {
         }
     }
 
-    /// Returns the interval itself, or all numbers if an overflow has left NaN or no numbers in it.
+    /// Returns the interval itself, or all numbers if its ends are NaN or in the wrong order, as an
+    /// overflow leaves them.
     pub fn or_all(self) -> Self {
         if self.low <= self.high {
             self
@@ -67,15 +69,16 @@ impl Interval {
         }
     }
 
-    /// Whether 0 may lie in the interval: NaN contains everything.
+    /// Returns whether 0 may lie in the interval. Ends that are NaN count as unlimited.
     pub fn holds_zero(self) -> bool {
         !(self.low > 0.0 || self.high < 0.0)
     }
 
     /// Returns the interval of the greatest (or the least) of several numbers, one from each
-    /// interval.
+    /// interval. `which` is `f64::max` for the greatest and `f64::min` for the least. Returns
+    /// `None` without intervals.
     pub fn fold(ranges: impl Iterator<Item = Self>, which: fn(f64, f64) -> f64) -> Option<Self> {
-        // NaN is replaced first, since `max` and `min` would return the other operand.
+        // NaN is replaced first, since `max` and `min` would return the other interval's end.
         ranges.map(Self::or_all).reduce(|a, b| Self {
             low: which(a.low, b.low),
             high: which(a.high, b.high),

@@ -17,27 +17,28 @@ use crate::{
     math::{Real, UP},
 };
 
-/// Rounding error of a value of a linear local form, relative to the sum of its factors'
-/// magnitudes: one for each factor, one for its quotient by the error bound, and two for products
-/// and sums, since offsets are at most ½.
+/// Rounding error of a value of a [`LocalForm`], relative to the sum of its factors' magnitudes. It
+/// counts one rounding for each factor, one for its division by the error bound, and two for
+/// products and sums, since offsets are at most ½.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
-/// Rounding error of a value of a quadratic local form, relative to the sum of its factors'
-/// magnitudes: at most five for each of six terms, generously counted.
+/// Rounding error of a value of a [`LocalQuadratic`], relative to the sum of its factors'
+/// magnitudes. There are at most five roundings in each of six terms; 16 roundings of the sum cover
+/// them.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
-/// Error bound of products below the normal numbers: each of at most 16 loses up to half of the
-/// least number.
+/// Error bound of products below the normal numbers: each of at most 16 products loses at most half
+/// of the least number.
 const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
 #[derive(Clone, Debug)]
 pub struct Patch {
-    /// The direction through its centre.
+    /// The direction through the rectangle's centre.
     pub center: Direction<f64>,
     /// The sides in units of X and Y.
     pub sides: [f64; 2],
 }
 
-/// A linear form of the offset, with an error bound of its computed values.
+/// A linear form of the offset (x, y) from the centre of a [`Patch`], in units of its sides.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalForm {
     /// Factors of x, y and 1.
@@ -45,11 +46,12 @@ pub struct LocalForm {
     pub rad: f64,
 }
 
-/// A linear form in units of its error bound.
+/// A linear form divided by its error bound: its sign is certain where its value is above 1 or
+/// below −1.
 pub type ScaledLine = [f64; 3];
 
-/// A quadratic form of the offset: factors of 1, x, y, x², xy and y², with an error bound of its
-/// values.
+/// A quadratic form of the offset (x, y) from the centre of a [`Patch`], in units of its sides:
+/// factors of 1, x, y, x², xy and y², and an error bound of the values.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalQuadratic {
     pub factors: [f64; 6],
@@ -57,7 +59,7 @@ pub struct LocalQuadratic {
 }
 
 impl Patch {
-    /// The rectangle of an area of pixels.
+    /// Returns the rectangle of an area of pixels.
     pub fn new(camera: &Camera<f64>, area: Area) -> Self {
         Self {
             center: camera.direction(&camera.middle(area)),
@@ -65,7 +67,7 @@ impl Patch {
         }
     }
 
-    /// The square of a sub-pixel.
+    /// Returns the square of a sub-pixel.
     pub fn of_sub_pixel(camera: &Camera<f64>, sub_pixel: SubPixel) -> Self {
         Self {
             center: sub_pixel.middle(camera),
@@ -73,7 +75,7 @@ impl Patch {
         }
     }
 
-    /// The whole window of a camera.
+    /// Returns the rectangle of the whole window of a camera.
     pub fn window(camera: &Camera<f64>) -> Self {
         let window = camera.window;
         Self {
@@ -89,8 +91,8 @@ impl Patch {
 }
 
 impl Form<f64> {
-    /// Expands the form about a rectangle. Its error bound counts twice: for its factors, and for
-    /// its value at the centre.
+    /// Expands the form about the centre of a rectangle. The form's error bound counts twice: for
+    /// the factors, and for the value at the centre.
     #[inline]
     pub fn local(&self, patch: &Patch) -> LocalForm {
         let [a, b, _] = *self.factors();
@@ -99,7 +101,7 @@ impl Form<f64> {
         LocalForm::new(factors, 2.0 * self.rad())
     }
 
-    /// Returns the range of the form over a rectangle.
+    /// Returns an interval that contains the form's values over a rectangle.
     #[inline]
     pub fn over(&self, patch: &Patch) -> Interval {
         self.local(patch).range()
@@ -107,8 +109,8 @@ impl Form<f64> {
 }
 
 impl LocalForm {
-    /// Builds a form from its factors and their error bound, to which the roundings of the
-    /// evaluation are added.
+    /// Builds a form from its factors. The error bound is `inherited`, the error from the factors,
+    /// plus the roundings of the evaluation.
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
@@ -116,13 +118,13 @@ impl LocalForm {
         Self { factors, rad }
     }
 
-    /// Half the difference between the greatest and the least value.
+    /// Returns half the difference between the greatest and the least value.
     pub fn spread(&self) -> f64 {
         let [a, b, _] = self.factors;
         0.5 * (a.abs() + b.abs())
     }
 
-    /// Returns the range of the values.
+    /// Returns an interval that contains the form's values over the rectangle.
     pub fn range(&self) -> Interval {
         Interval::about(self.factors[2], self.spread() + self.rad)
     }
@@ -143,23 +145,23 @@ impl LocalForm {
             .map(|i| self.factors[i].abs() + (k * other.factors[i]).abs())
             .sum();
         let factors = [0, 1, 2].map(|i| self.factors[i] - k * other.factors[i]);
-        // One rounding of the product, one of the difference.
+        // The product and the difference are rounded once each.
         let inherited = self.rad + k.abs() * other.rad + sizes * (2.0 * f64::UNIT);
         Self::new(factors, inherited)
     }
 }
 
 impl LocalQuadratic {
-    /// Builds a form from its factors and their error bound, to which the roundings of the
-    /// evaluation are added.
+    /// Builds a form from its factors. The error bound is `inherited`, the error from the factors,
+    /// plus the roundings of the evaluation.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
         let rad = (inherited + sizes * LOCAL_ROUNDING + UNDERFLOW_ERROR) * UP;
         Self { factors, rad }
     }
 
-    /// Returns the range of the values, from the extremes along each axis and a bound of the mixed
-    /// term.
+    /// Returns an interval that contains the form's values over the rectangle: the sum of the
+    /// extremes along each axis, widened by a bound of the mixed term.
     pub fn range(&self) -> Interval {
         let [c, x, y, xx, xy, yy] = self.factors.map(|factor| 0.25 * factor);
         let c = 4.0 * c;
@@ -174,7 +176,8 @@ impl LocalQuadratic {
         }
     }
 
-    /// Returns the form in units of its error bound.
+    /// Divides the form by its error bound, so that its sign is certain where its value is above 1
+    /// or below −1.
     pub fn certain(&self) -> Self {
         Self {
             factors: self.factors.map(|factor| factor / self.rad),
@@ -189,8 +192,8 @@ impl LocalQuadratic {
     }
 }
 
-/// Returns the greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0: at an end, or where the
-/// derivative vanishes before it.
+/// Returns the greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0. It is taken at t = 1, or
+/// where the derivative vanishes before it.
 fn greatest(a: f64, b: f64) -> f64 {
     if a < -b { a * a / -b } else { 2.0 * a + b }
 }

@@ -1,14 +1,14 @@
-//! What a ray meets: the scene's objects as seen from the eye.
+//! What a ray hits: the scene's objects as seen from the eye.
 //!
 //! In: a [`Scene`](crate::scene::Scene). Out: for a sample point of the picture, the colour seen
 //! there, as a slot of the palette. The tracer knows no text and no names: an object is its index
 //! in the file.
 //!
 //! All rays share the eye, so everything happens in the view plane. Boundaries are lines and conics
-//! there; of the surfaces at a point, the nearest is the one with the greatest inverse depth, which
-//! is a linear form for everything flat. What does not depend on the sample point is prepared once
-//! per picture, and a quadtree over the view plane knows which objects a ray may meet at all. Every
-//! decision is made in `f64` with an error bound; what that leaves in doubt is decided in
+//! there. Of the surfaces at a point, the nearest has the greatest inverse depth, which is a linear
+//! form for every flat surface. Everything that does not depend on the sample point is prepared
+//! once per picture, and a quadtree over the view plane finds the objects that a ray may hit. Every
+//! decision is made in `f64` with an error bound. If that leaves doubt, the decision is made in
 //! double-double, and if that fails, in big numbers.
 
 mod camera;

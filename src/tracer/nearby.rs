@@ -1,8 +1,8 @@
 //! The objects near a small part of the picture, by their bounds alone.
 //!
 //! In: a part with too many objects to tell all of them apart. Out: the objects that rays through
-//! it may meet, the nearest first, and from these the objects that rays through one pixel may meet.
-//! Finding them once takes less time than the way of each ray down the quadtree.
+//! the part may hit, the nearest first; and from these, the objects that rays through one pixel may
+//! hit. Finding them once takes less time than a search of the quadtree for each ray.
 
 use super::{
     candidates,
@@ -12,15 +12,16 @@ use super::{
 };
 use crate::area::Area;
 
-/// Returns the objects that rays through a part of the picture may meet, the nearest first. Returns
-/// `None` if they are so many that the quadtree finds a ray's objects sooner.
+/// Returns the objects that rays through a part of the picture may hit, the nearest first. Returns
+/// `None` if there are so many that the quadtree finds a single ray's objects sooner.
 pub fn nearby(world: &World, part: Area) -> Option<Vec<BoundedObject>> {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     world.quadtree.nearby(&patch)
 }
 
-/// Narrows the objects near an area to those that rays through a part of that area may meet, in the
-/// same order. Returns a palette slot if that colour is certainly seen all over the part.
+/// Writes those of the objects `nearby` that rays through `part` may hit to `out`, in the same
+/// order. `nearby` must contain the objects of an area around the part. Returns a palette slot if
+/// its colour is certainly seen in the whole part.
 pub fn in_part(
     world: &World,
     part: Area,
@@ -31,7 +32,7 @@ pub fn in_part(
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let rectangle = world.quadtree.rectangle(&patch)?;
     let [near, far] = candidates::clips_over(world, &patch);
-    // The nearest object that fills the part.
+    // The object that fills the part and whose minimum inverse depth is the greatest.
     let (mut front, mut hidden) = (None, Nearness::NONE);
     for item in nearby {
         if item.nearest <= hidden {

@@ -1,8 +1,9 @@
 //! Any object, prepared for one picture.
 //!
 //! In: an object of the scene and the camera in one precision. Out: what the rest of the tracer
-//! asks of every kind of object: crossings of a ray, intervals over a rectangle, and the curves
-//! that bound it. Each kind answers for itself; this file only selects among the kinds.
+//! needs of every kind of object: crossings of a ray, intervals over a rectangle, and the curves
+//! that bound the object. Each kind computes these in its own file; this file only selects among
+//! the kinds.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -22,7 +23,7 @@ use crate::{
     scene::{self, Shape},
 };
 
-/// An object by the geometry of its surface. Matches on it name every kind, so that the compiler
+/// The geometry of an object's surface. A `match` on it names every kind, so that the compiler
 /// lists the places to complete when a kind is added.
 pub enum SurfaceKind<'a, T: Real> {
     /// Flat faces.
@@ -31,13 +32,13 @@ pub enum SurfaceKind<'a, T: Real> {
     Round(&'a Sphere<T>),
 }
 
-/// An object prepared for one picture. A sphere is stored in place, since scenes may have very many
-/// spheres.
+/// An object prepared for one picture. A sphere is stored without a box, since scenes may have very
+/// many spheres.
 #[derive(Clone, Debug)]
 pub enum Object<T: Real> {
     /// A sphere.
     Sphere(Sphere<T>),
-    /// A triangle or a box; empty if the eye lies in a flat object's plane.
+    /// A triangle or a box; without faces if the eye lies in a flat object's plane.
     Convex(Convex<T>),
     /// A checkerboard.
     Checkerboard(Box<Checkerboard<T>>),
@@ -62,7 +63,7 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the object by the geometry of its surface.
+    /// Returns the geometry of the object's surface.
     #[inline]
     pub fn surface_kind(&self) -> SurfaceKind<'_, T> {
         match self {
@@ -72,7 +73,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the nearest crossing in front of the eye.
+    /// Returns the nearest crossing in front of the eye. Returns `None` if the ray misses the
+    /// object.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
         match self.surface_kind() {
@@ -81,7 +83,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the crossing behind the first one, if the ray has one.
+    /// Returns the crossing behind the first one, for a ray that hits the object. Returns `None` if
+    /// there is no second crossing.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.second(r),
@@ -89,7 +92,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Whether the second colour is seen where the ray meets the object first.
+    /// Returns whether the ray hits the second colour of a checkerboard; `false` for all other
+    /// objects.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         match self {
@@ -98,7 +102,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the inverse depth of a flat part as a form.
+    /// Returns the inverse depth of a flat surface part as a form. Returns `None` for a sphere or a
+    /// part that the object does not have.
     pub fn plane(&self, part: SurfacePart) -> Option<&Form<T>> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.face(part),
@@ -106,8 +111,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the boundary of the rays that meet the object. The form of each line is ≥ 0 on the
-    /// object's side.
+    /// Returns the curves that bound the rays that hit the object. The form of each line is ≥ 0 on
+    /// the object's side.
     pub fn outline(&self, frame: &SubPixelFrame<T>) -> Vec<Boundary> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.bounds().iter().map(|f| frame.line(f)).collect(),
@@ -115,8 +120,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the inverse depths of the surfaces where rays meet the object: those of their first
-    /// crossings, of their second ones, or of both.
+    /// Returns the inverse depths of the object's surfaces at the crossings `which`. A sphere has
+    /// one formula for both crossings.
     pub fn inverse_depths(&self, which: Crossings) -> Vec<InverseDepth<'_, T>> {
         let convex = match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex,
@@ -136,7 +141,8 @@ impl<T: Real> Object<T> {
 }
 
 impl Object<f64> {
-    /// Relates the object to a rectangle. Returns `None` if no ray through the rectangle meets it.
+    /// Computes how the object covers a rectangle. Returns `None` if no ray through the rectangle
+    /// hits it.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.cover(patch),
@@ -144,7 +150,8 @@ impl Object<f64> {
         }
     }
 
-    /// Returns the inverse depths of the second crossings, if there are any.
+    /// Returns the range of the inverse depths of second crossings over a rectangle. Returns `None`
+    /// if the object has none.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.behind(patch),

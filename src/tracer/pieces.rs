@@ -1,8 +1,8 @@
 //! Boxes whose faces have colours of their own, taken apart into their faces.
 //!
 //! In: a scene. Out: the scene in which every such box is replaced by one object for each face that
-//! may be seen, and the origin of each object. To a ray a face is a flat object. Two faces that
-//! share an edge have the same line for it, so that no ray slips through between them.
+//! may be seen, and the origin of each object. The tracer treats a face as a flat object. Two faces
+//! that share an edge have the same line for it, so that no ray passes between them.
 
 use std::{array, borrow::Cow, sync::Arc};
 
@@ -13,19 +13,20 @@ use crate::scene::{Cuboid, Object, Scene, Shape};
 /// The faces of a box that become objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Faces {
-    /// The faces that may be seen, for a picture.
+    /// The faces that may be seen in a picture.
     Seen,
-    /// All faces, for every crossing of a ray.
+    /// All faces, to find every crossing of a ray.
     All,
 }
 
-/// For each object of a scene that was taken apart, its index in the file and its face. Empty if
-/// every object of the scene is one object here, too.
+/// For each object of the divided scene, the index in the file of the object that it comes from,
+/// and its face if it is one. Empty if no object was divided.
 #[derive(Debug, Default)]
 pub(super) struct Pieces(Vec<(usize, Option<u8>)>);
 
 impl Pieces {
-    /// Takes a scene apart.
+    /// Divides every box with coloured faces into the faces `which`. Returns the new scene, or the
+    /// scene itself if it has no such box, and the origin of each object.
     pub fn of(scene: &Scene, which: Faces) -> (Cow<'_, Scene>, Self) {
         let faces = |object: &Object| match object.shape {
             Shape::Box(cuboid) => cuboid.faces,
@@ -66,18 +67,19 @@ impl Pieces {
         (Cow::Owned(Scene { objects, ..scene }), Self(pieces))
     }
 
-    /// Returns the index in the file of the object that a piece belongs to.
+    /// Returns the index in the file of the object that a piece comes from.
     pub fn owner(&self, piece: usize) -> usize {
         self.0.get(piece).map_or(piece, |(owner, _)| *owner)
     }
 
-    /// Returns the number of the face that a piece is. Returns `None` if it is a whole object.
+    /// Returns the number of the face that a piece is. Returns `None` if the piece is a whole
+    /// object.
     pub fn face(&self, piece: usize) -> Option<u8> {
         self.0.get(piece)?.1
     }
 }
 
-/// Whether the eye is on the outer side of each face; faces are numbered as in
+/// Returns for each face whether the eye is on its outer side. Faces are numbered as in
 /// [`cuboid`](super::cuboid).
 fn fronts(cuboid: &Cuboid, eye: DVec3) -> [bool; 6] {
     array::from_fn(|face| match (face / 2, face % 2) {

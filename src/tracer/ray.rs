@@ -1,8 +1,8 @@
-//! All crossings of one ray, for people.
+//! All crossings of one ray, for the output of `probe`.
 //!
 //! In: the world, and a point of the picture. Out: the ray's direction and its crossings, the
-//! nearest first, computed in big numbers, so that each printed number is the correctly rounded
-//! true one.
+//! nearest first. They are computed in big numbers, so that each printed number is the correctly
+//! rounded exact value.
 
 use std::cmp::Ordering;
 
@@ -17,7 +17,8 @@ use crate::{
     math::{Ball, Ball3, Big, Real},
 };
 
-/// A crossing of a ray with a surface, for people. Each number is correctly rounded.
+/// A crossing of a ray with a surface, for output. Each number is the correctly rounded exact
+/// value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The object's index in the file.
@@ -26,7 +27,7 @@ pub struct Hit {
     pub t: f64,
     /// Distance along the view direction, in metres.
     pub depth: f64,
-    /// The point in the world.
+    /// The crossing's position in world coordinates.
     pub point: DVec3,
     /// The colour at the point.
     pub color: Color,
@@ -34,10 +35,10 @@ pub struct Hit {
     pub visible: bool,
 }
 
-/// Follows the ray through a point of the picture plane, in pixels from the picture's top left
-/// corner. Returns its direction, of length 1, and all its crossings in front of the eye, the
-/// nearest first, equal ones in file order. The point must lie within the reach that the world was
-/// prepared for.
+/// Follows the ray through a point of the picture plane, given in pixels from the picture's top
+/// left corner. Returns the ray's direction, of length 1, and all its crossings in front of the
+/// eye, the nearest first. Crossings at the same depth are in file order. The point must lie within
+/// the `reach` of [`World::for_rays`].
 pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     let camera = &world.geometry.big.camera;
     let point = camera.picture_point(pixels);
@@ -81,10 +82,11 @@ pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     (direction, crossings.into_iter().map(hit).collect())
 }
 
-/// Sorts crossings by depth; those that cannot be told apart are in file order.
+/// Sorts crossings by depth, the nearest first. Crossings whose depths cannot be told apart are in
+/// file order.
 fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
-    // First by the computed depths, which are totally ordered; then pair by pair, as the tracer
-    // compares them.
+    // First sorts by the computed depths, which have a total order. Then neighbours with equal
+    // depths are put into file order, compared as the tracer compares them.
     crossings.sort_by(|(.., a), (.., b)| {
         let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
         difference.to_f64().total_cmp(&0.0)
@@ -111,8 +113,8 @@ fn rounded(x: &Big) -> Ball<Big> {
     }
 }
 
-/// Returns the nearest `f64`, or 0 if the number cannot be told from 0: a point on the plane y = 0
-/// must not get a height of 1e-97.
+/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0: a point in the
+/// plane y = 0 must not get a height of 1e-97.
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
         Ok(Ordering::Equal) => 0.0,

@@ -1,29 +1,29 @@
 //! A pixel, or a square part of one: where exact pictures are computed.
 //!
-//! In: a pixel, and quarterings. Out: points of the part as offsets from the pixel's centre,
-//! without error, since sides are powers of two.
+//! In: a pixel, and quarterings of it. Out: points of the part as offsets from the pixel's centre.
+//! Offsets have no rounding error, since sides are powers of two.
 
 use glam::DVec2;
 
 use super::camera::{Camera, Direction};
 use crate::math::Real;
 
-/// A pixel, or a square part of one. Its own coordinates (x, y) are in units of its side from its
-/// centre, x to the right and y down.
+/// A pixel, or a square part of one. A point (x, y) of it is measured from its centre in units of
+/// its side, x to the right and y down.
 #[derive(Clone, Copy, Debug)]
 pub struct SubPixel {
     /// The pixel's column.
     pub x: u32,
     /// The pixel's row.
     pub y: u32,
-    /// Offset of its centre from the pixel's.
+    /// Offset of the part's centre from the pixel's centre, in pixels.
     center: DVec2,
     /// Side in pixels: a power of two.
     pub side: f64,
 }
 
 impl SubPixel {
-    /// A whole pixel.
+    /// Returns a whole pixel.
     pub fn pixel(x: u32, y: u32) -> Self {
         Self {
             x,
@@ -42,12 +42,12 @@ impl SubPixel {
         })
     }
 
-    /// Returns the ray through the centre.
+    /// Returns the direction of the ray through the centre.
     pub(crate) fn middle<T: Real>(&self, camera: &Camera<T>) -> Direction<T> {
         camera.direction(&camera.sample_point(self.x, self.y, self.center))
     }
 
-    /// Converts a point of the part to an offset from the pixel's centre.
+    /// Converts a point of the part to an offset from the pixel's centre, in pixels.
     pub(crate) fn offset(&self, at: DVec2) -> DVec2 {
         self.center + at * self.side
     }

@@ -1,4 +1,5 @@
-//! The quadtree against the plain loop over all objects, in scenes that are hard on its bounds.
+//! Tests of the quadtree against the plain loop over all objects, in scenes that are hard on its
+//! bounds.
 
 use std::{cmp::Ordering, sync::Arc};
 
@@ -47,7 +48,8 @@ impl SceneGenerator {
         libm::exp2(self.within(-12.0, 4.0))
     }
 
-    /// Returns an object somewhere around the eye, behind it, about it, or touching it.
+    /// Returns an object at a random position: in front of the eye, behind it, around it, or
+    /// touching it.
     fn shape(&mut self, eye: DVec3) -> Shape {
         let at = eye + self.vector(12.0);
         let size = dvec3(self.length(), self.length(), self.length());
@@ -59,7 +61,7 @@ impl SceneGenerator {
                 DVec3::splat(size.x),
                 self.within(0.0, 360.0),
             ),
-            // In a plane that contains the eye, and about parallel to the rays.
+            // A triangle in a plane that contains the eye, about parallel to the rays.
             2 => triangle(
                 eye + dvec3(1.0, 0.0, -2.0),
                 dvec3(0.0, 1.0, 0.0),
@@ -67,7 +69,8 @@ impl SceneGenerator {
             ),
             3 | 4 => triangle(at, self.vector(1.0), dvec3(2.0, 2.0, 1.0) * size.x),
             5 | 6 => cuboid(at - size, at + size),
-            // The eye lies in a face's plane; on the surface; inside.
+            // The eye lies in the plane of a face in case 7, on the surface in case 8, and inside
+            // in case 9.
             7 => cuboid(dvec3(eye.x, at.y, at.z), dvec3(eye.x, at.y, at.z) + size),
             8 => sphere(eye + dvec3(0.0, 0.0, -size.x), size.x),
             9 => sphere(eye + size * 0.25, size.max_element()),
@@ -75,7 +78,7 @@ impl SceneGenerator {
         }
     }
 
-    /// Returns a picture of such objects, some of them twice.
+    /// Returns a scene of random objects, some of them twice.
     fn scene(&mut self, objects: usize) -> Scene {
         let eye = self.vector(2.0);
         let mut shapes: Vec<Shape> = Vec::new();
@@ -107,7 +110,7 @@ impl SceneGenerator {
     }
 }
 
-/// A pixel, and an offset in it.
+/// The column and row of a pixel, and an offset from its centre.
 type Sample = (u32, u32, DVec2);
 
 /// Returns the slot that is seen at a point, by the plain loop over all objects.
@@ -115,8 +118,8 @@ fn plain(world: &World, (x, y, offset): Sample) -> usize {
     world.slot_among(x, y, offset, 0..world.object_count())
 }
 
-/// Returns the slot that is seen at a point, in one precision alone. Returns `None` if that is in
-/// doubt.
+/// Returns the slot that is seen at a point, decided in one precision alone. Returns `None` if that
+/// precision leaves doubt.
 fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize> {
     let point = world.geometry.fast.camera.sample_point(x, y, offset);
     let r = T::frame(&world.geometry).camera.direction(&point);
@@ -124,7 +127,8 @@ fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize>
     Some(world.slot(seen))
 }
 
-/// Returns the sample at a point of the view plane, if it is in the picture.
+/// Returns the sample at a point of the view plane. Returns `None` if the point is outside of the
+/// picture.
 fn sample_of(world: &World, at: DVec2) -> Option<Sample> {
     let pixels = at / world.geometry.fast.camera.pitch + f64::from(SIZE) / 2.0;
     let floor = pixels.floor();
@@ -145,7 +149,8 @@ fn the_quadtree_changes_nothing() {
         let scene = random.scene(3 + seed as usize * 4);
         let world = World::new(&scene);
         let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
-        // Also points at the ends of the bounds, where these matter, and within their last bits.
+        // Points at the ends of the bounds, within the last bits of their coordinates, are tested
+        // as well.
         for Extent { across, .. } in extents(&world, &scene).into_iter().flatten() {
             for _ in 0..2 {
                 let [x, y] = across.map(|range| match random.below(3) {
@@ -165,8 +170,8 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// The rows at the horizon leave about 1e-10 of the samples in doubt. Objects in one plane leave no
-/// doubt, which would cost a hundred times as much as a decision.
+/// The rows at the horizon leave about 1e-10 of the samples in doubt. Objects in one plane must
+/// leave no doubt, since resolving it would take a hundred times as long as a decision in `f64`.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [
@@ -230,8 +235,8 @@ fn what_a_ray_meets_is_within_bounds() {
 
 #[test]
 fn bounds_are_tight() {
-    // The left and right ends of a sphere at the height of the eye are met at that height, those of
-    // a box at a corner.
+    // A ray at the height of the eye hits the left and right ends of a sphere whose centre is at
+    // that height. It hits those of a box at a corner.
     for shape in [
         sphere(dvec3(0.4, 0.0, -8.0), 0.5),
         sphere(dvec3(-2.0, 0.0, -8.0), 1e-6),
@@ -295,9 +300,9 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
     assert!(seen > 1000, "{seen} points show an object");
 }
 
-/// With objects in one plane, nearly every sample point asks whether they are. If they were
-/// prepared in a higher precision for it, a point would cost as much as in a scene with too many
-/// objects for the cache.
+/// With objects in one plane, a test whether they are is needed at nearly every sample point. If
+/// objects were prepared in a higher precision for this test, a point would cost as much as in a
+/// scene with too many objects for the cache.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![
@@ -306,8 +311,8 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     ];
     let mut random = SceneGenerator::new(5);
     for _ in 0..80 {
-        // In the planes y = 0, y = −z and z = 0.3 x, with coordinates in whole 64ths and normals of
-        // several lengths.
+        // The triangles lie in the planes y = 0, y = −z and z = 0.3 x. Their coordinates are whole
+        // 64ths, and their normals have several lengths.
         let [a, b] = [0, 1].map(|_| (random.below(256) as f64 - 128.0) / 64.0);
         let length = random.below(9) as f64 - 4.5;
         for (at, normal) in [
@@ -333,8 +338,8 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
 
 #[test]
 fn very_many_objects() {
-    // Enough objects for several threads to prepare them, all over the picture and many in one
-    // place.
+    // There are enough objects for several threads to prepare them. Half of them are spread over
+    // the whole picture, and half lie in one place.
     let mut random = SceneGenerator::new(1);
     let eye = DVec3::ZERO;
     let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);
@@ -363,7 +368,8 @@ fn very_many_objects() {
     for number in 0..160 {
         let mut point = random.point();
         if number % 4 == 0 {
-            // A cluster that is far smaller than a pixel, about the corner of the middle pixels.
+            // Every fourth point lies in a cluster that is far smaller than a pixel, at the common
+            // corner of the picture's four middle pixels.
             let [x, y] = [0, 1].map(|_| random.within(-1e-9, 1e-9));
             point = sample_of(&world, dvec2(x, y)).expect("the middle of the picture");
         }

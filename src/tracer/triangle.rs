@@ -17,8 +17,9 @@ use crate::{
     scene::{self, CenteredTriangle, TriangleOutline},
 };
 
-/// Prepares a triangle, and returns it with its corners in the camera's axes. Returns `None` if its
-/// plane contains the eye, which sees nothing of it.
+/// Prepares a triangle. Returns it with its corners relative to the eye, in the camera's axes.
+/// Returns `None` if the triangle's plane contains the eye, which then sees nothing of the
+/// triangle.
 pub fn prepare<T: Real>(
     camera: &Camera<T>,
     shape: &scene::Triangle,
@@ -29,8 +30,8 @@ pub fn prepare<T: Real>(
     }
 }
 
-/// Prepares a triangle that is given by its vertices. Two triangles that share an edge have the
-/// same two points for it, so that they decide exactly the same of every ray.
+/// Prepares a triangle that is given by its vertices. Two triangles that share an edge compute it
+/// from the same two points. For a ray near the edge, their decisions therefore agree exactly.
 fn by_vertices<T: Real>(
     camera: &Camera<T>,
     vertices: &[DVec3; 3],
@@ -42,8 +43,8 @@ fn by_vertices<T: Real>(
     Some((triangle, corners))
 }
 
-/// Returns the normal a × b of the plane through the eye and an edge. Only the sign of its form
-/// matters, so its scale is free.
+/// Returns the normal a × b of the plane through the eye and an edge from a to b. Only the sign of
+/// the normal's form matters, so its scale is free.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
         // a × b = a × (b − a)
@@ -55,7 +56,8 @@ fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> B
             return normal;
         }
     }
-    // Corners may be so far away that their directions differ only after hundreds of bits.
+    // Vertices may be so far away that their directions from the eye differ only after hundreds of
+    // bits.
     let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));
     let normal = Dyadic::cross(&a, &b).map(|x| Ball::<Big>::from_big(&x.to_big()));
     camera.turned(&scaled_to_one(&normal).map(|x| Ball::from_big(&x.mid)))
@@ -66,8 +68,8 @@ fn by_centroid<T: Real>(
     shape: &CenteredTriangle,
 ) -> Option<(Convex<T>, [Ball3<T>; 3])> {
     let plane = SeenPlane::across(camera, shape)?;
-    // The eye sees each corner at c + o, where c is the centroid. The ratio of c to o may be of any
-    // size.
+    // A corner lies at c + o relative to the eye, where c is the centroid and o the corner's offset
+    // from it. The ratio of c to o may be of any size, so each is scaled on its own.
     let from_eye = camera.relative(shape.centroid);
     let offsets = offsets::<T>(shape);
     let [far, near] = [
@@ -80,9 +82,9 @@ fn by_centroid<T: Real>(
     let sum = |c: &Ball3<T>, o: &Ball3<T>, exponent: i32| -> Ball3<T> {
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
-    // Only the signs of the edges' forms matter, so lengths may be scaled. The corners themselves
-    // would lose most digits of a triangle that is small beside its distance; with a = c + o and b
-    // = c + p, a × b is therefore computed as c × (p − o) + o × p.
+    // Only the signs of the edges' forms matter, so lengths may be scaled. Computed from the
+    // corners themselves, a small and far triangle would lose most digits. With a = c + o and b = c
+    // + p, a × b is therefore computed as c × (p − o) + o × p.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);
@@ -95,20 +97,20 @@ fn by_centroid<T: Real>(
     ))
 }
 
-/// Scales a vector by the power of two that brings its greatest coordinate near to 1.
+/// Scales a vector by the power of two that brings its greatest coordinate to about 1.
 fn scaled_to_one<T: Real>(v: &Ball3<T>) -> Ball3<T> {
     let exponent = exponent_of(array::from_ref(v));
     v.each_ref().map(|x| x.scaled(-exponent))
 }
 
-/// Returns the exponent of the greatest coordinate.
+/// Returns the binary exponent of the greatest coordinate of some vectors.
 fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
     let sizes = points.iter().flatten().map(Ball::size);
     sizes.fold(T::Radius::ZERO, Radius::max).exponent()
 }
 
-/// Returns the vertices of a triangle in the world, each coordinate rounded once: as they are
-/// written, or left base end, right base end, apex.
+/// Returns the vertices of a triangle in world coordinates: as they are written, or the left end of
+/// the base, the right end, and the apex. Computed coordinates are rounded once.
 pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
     let shape = match &shape.outline {
         TriangleOutline::Vertices(vertices) => return *vertices,
@@ -119,25 +121,27 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
         .map(|offset| DVec3::from([0, 1, 2].map(|i| (&centroid[i] + &offset[i]).mid.to_f64())))
 }
 
-/// A plane n·q = h as seen from the eye, n divided by its greatest component, each number correctly
-/// rounded. Triangles in one plane therefore get the same n and h, whatever the lengths of their
-/// normals, and planes along the axes get those of a box's faces.
+/// A plane n·q = h, with points q relative to the eye. n and h are divided by the greatest
+/// component of n, and each number is then correctly rounded. Triangles in one plane therefore get
+/// the same n and h, whatever the lengths of their normals, and planes along the axes get those of
+/// a box's faces.
 struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
-    /// Side of the plane on which the eye lies: the sign of h for the normal that the scene gives.
+    /// Side of the plane on which the eye lies: the sign of h before the division.
     side: Ordering,
 }
 
 impl<T: Real> SeenPlane<T> {
-    /// The plane through three points, with the normal (b − a) × (c − a). Returns `None` if it
-    /// contains the eye.
+    /// Returns the plane through three points, with the normal (b − a) × (c − a). Returns `None` if
+    /// the plane contains the eye.
     fn through(camera: &Camera<T>, [a, b, c]: &[DVec3; 3]) -> Option<Self> {
         let normal = Dyadic::cross(&Dyadic::between(*a, *b), &Dyadic::between(*a, *c));
         Self::new(camera, *a, &normal)
     }
 
-    /// The plane through a triangle's centroid. Returns `None` if it contains the eye.
+    /// Returns the plane of a triangle that is given by its centroid. Returns `None` if the plane
+    /// contains the eye.
     fn across(camera: &Camera<T>, shape: &CenteredTriangle) -> Option<Self> {
         Self::new(camera, shape.centroid, &Dyadic::vector(shape.normal))
     }
@@ -156,8 +160,8 @@ impl<T: Real> SeenPlane<T> {
         })
     }
 
-    /// Returns the triangle with these edges in the plane. Seen from behind, every edge is
-    /// reversed.
+    /// Returns the triangle in this plane that `edges` bound. If the eye sees the triangle from
+    /// behind, every edge is reversed.
     fn with_edges(&self, camera: &Camera<T>, edges: [Ball3<T>; 3]) -> Convex<T> {
         let facing = |n: Ball3<T>| if self.side.is_lt() { n.map(|x| -x) } else { n };
         let edges = edges.into_iter().map(|n| Form::new(camera, &facing(n)));
@@ -166,11 +170,14 @@ impl<T: Real> SeenPlane<T> {
     }
 }
 
-/// Returns the vertices relative to the centroid, in the world's axes: left base end, right base
-/// end, apex.
+/// Returns the vertices relative to the centroid, in the world's axes: the left end of the base,
+/// the right end, and the apex.
 ///
-/// In the triangle's plane, with the base along x from 0 to c, the apex lies at x = (a² − b² +
-/// c²)/(2c) and y = 2A/c, the area A by Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
+/// In the triangle's plane, with the base along x from 0 to c, the apex lies at
+///
+/// x = (a² − b² + c²)/(2c) and y = 2A/c,
+///
+/// where the area A follows from Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
 fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
     let exponent = libm::frexp(shape.sides.max_element()).1;
     let [a, b, c] = shape
@@ -199,8 +206,8 @@ fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
     })
 }
 
-/// Returns unit vectors in the plane of a normal n: right = (Y × n)/|Y × n| and top = n/|n| ×
-/// right, with (0, 0, −1) instead of Y if n is parallel to it.
+/// Returns unit vectors in the plane with the normal n: right = (Y × n)/|Y × n| and top = n/|n| ×
+/// right, where Y is the y axis. If n is parallel to the y axis, (0, 0, −1) replaces Y.
 fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
     let [x, y, z] = normal.to_array();
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));

@@ -1,5 +1,5 @@
-//! The report's page in a real browser. Needs Chromium on the path: `cargo test -- --ignored
-//! browser`.
+//! Tests of the report's page in a real browser. They need `chromium` on the path: `cargo test --
+//! --ignored browser`.
 
 use std::{path::Path, process::Command};
 
@@ -15,7 +15,8 @@ sphere Ball { center (-1.6, 1, 0) color olive } checkerboard {}
 /// Script that measures the page; it is appended to the page and prints its findings as JSON.
 const SCRIPT: &str = include_str!("../browser.html");
 
-/// Returns what the script measures in a window of a width in pixels, with a dark or a light theme.
+/// Returns the findings of [`SCRIPT`] for `page` in a window `width` pixels wide, in the dark or
+/// the light theme.
 fn measured(page: &Path, width: u32, is_dark: bool) -> Value {
     let profile = page.with_extension("profile");
     let mut browser = Command::new("chromium");

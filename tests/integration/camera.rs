@@ -17,7 +17,7 @@ fn axes(camera: &Camera) -> [DVec3; 3] {
     [&basis.u, &basis.v, &basis.w].map(|v| DVec3::from(v.each_ref().map(Big::to_f64)))
 }
 
-/// Returns a camera at the origin that looks along −z, with a roll.
+/// Returns a camera at the origin that looks along −z and is rolled by `roll`.
 fn rolled(roll: Angle) -> Camera {
     Camera {
         roll,
@@ -25,8 +25,9 @@ fn rolled(roll: Angle) -> Camera {
     }
 }
 
-/// Along (1, 1, 1), the x components of u and v have the ratio of sin 60° and cos 60°. The products
-/// in the rotated u cancel exactly; computed separately they would leave a rounding error.
+/// In the view direction (1, 1, 1), the x components of u and v have the ratio sin 60° : cos 60°.
+/// In the rotated u, the products cancel exactly; if they were rounded first, an error would
+/// remain.
 #[test]
 fn a_roll_into_a_coordinate_plane_is_exact() {
     for (x, degrees) in [(1.0, 60.0), (1.0, -120.0), (-1.0, -60.0)] {
@@ -40,13 +41,13 @@ fn a_roll_into_a_coordinate_plane_is_exact() {
 #[test]
 fn views_along_the_up_vector_are_oriented_like_a_map() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
-    // (direction, up) to (right, top)
+    // Each case maps (direction, up) to the expected (right, top).
     let cases = [
         ((-y, y), (x, -z)),
         ((y, y), (x, z)),
         ((-y, -y), (-x, z)),
         ((y, -y), (-x, -z)),
-        // The same rule for up vectors along the other axes.
+        // The same rule holds for up vectors along the other axes.
         ((-z, z), (x, y)),
         ((z, z), (x, -y)),
         ((-x, x), (-y, -z)),
@@ -61,7 +62,7 @@ fn views_along_the_up_vector_are_oriented_like_a_map() {
     }
 }
 
-/// A positive roll lowers the right side.
+/// A positive roll lowers the right side of the picture's frame.
 #[test]
 fn any_number_of_quarter_rolls_is_exact() {
     let (x, y) = (DVec3::X, DVec3::Y);

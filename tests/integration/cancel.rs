@@ -1,5 +1,5 @@
-//! Cancellation: reading a long text, in each way in which a text is read, and building a world of
-//! many objects end soon after they are cancelled.
+//! Cancellation: reading a long text (by every reader of texts) and building a world of many
+//! objects both end soon after they are cancelled.
 
 use std::{
     fmt::Write,
@@ -24,7 +24,7 @@ use crate::scenes::{read, sources};
 
 const CAMERA: &str = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\n";
 
-/// Returns a scene of many spheres, of about 55 bytes each.
+/// Returns the text of a scene with `count` spheres, each of about 55 bytes.
 pub fn spheres(count: usize) -> String {
     let mut text = CAMERA.to_owned();
     for index in 0..count {
@@ -37,9 +37,10 @@ pub fn spheres(count: usize) -> String {
     text
 }
 
-/// Runs some work to its end, and cancels it from another thread after 1/16 and after 1/4 of that
-/// time. At least three quarters of the work are left then, and it must end within half the whole
-/// time. Other load on the machine may delay either, so one of five tries is enough.
+/// Runs `work` to its end and measures its time. Then cancels it from another thread, once after
+/// 1/16 and once after 1/4 of that time, and asserts that each run ends within half of that time,
+/// although at least three quarters of the work are left. Other load on the machine may delay a
+/// run, so one success in five tries is enough.
 #[track_caller]
 fn assert_stops_early<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
     for share in [16, 4] {

@@ -1,5 +1,5 @@
-//! A picture has the same bits whether its samples are culled and traced in batches, or one by one,
-//! which the tests of `tracer` compare with the oracle.
+//! A picture traced with culling and in batches has the same bits as one traced sample by sample.
+//! The tests of `tracer` compare the latter with the oracle.
 
 use std::{
     collections::BTreeSet,
@@ -32,7 +32,8 @@ use crate::{
     table::rows,
 };
 
-/// Compares a picture with the one traced sample by sample, and returns its number of colours.
+/// Compares the picture of `scene` with the one traced sample by sample. Returns its number of
+/// colours.
 #[track_caller]
 fn compare(scene: &Scene, method: Method, count: Count) -> usize {
     let scene = with_samples(scene, method, count);
@@ -117,7 +118,8 @@ fn culling_is_exact_for_generated_scenes() {
         let colors =
             scenes.map(|((_, scene), method)| compare(&scene, method, Count::PerPixel(24)));
         let colors: usize = colors.sum();
-        // A picture of ordinary numbers has at least ten colours on average, as edges mix them.
+        // A picture of ordinary numbers has at least ten colours on average, because pixels at
+        // edges mix colours.
         assert!(colors > 100 * 10 || wild > 5, "{wild}: {colors}");
     }
 }
@@ -127,15 +129,16 @@ sampled_and_exhaustive!(culling_is_exact_for_scenes_full_of_ties);
 fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 77);
     for (_, scene) in effort.first(60, scenes.take(300)) {
-        // The offsets are odd eighths, or the centre for one sample: on edges and in planes.
+        // The samples lie at odd eighths of a pixel, or a single one at its centre. So they hit
+        // edges exactly, and rays lie in planes.
         for n in [1, 4, 16] {
             compare(&scene, Method::Regular, Count::PerPixel(n));
         }
     }
 }
 
-/// Overlapping triangles in one tilted plane or on the board, more than the cache of higher
-/// precisions holds.
+/// Renders overlapping triangles in a tilted plane and in the board's plane. They are more than the
+/// cache of higher precisions holds.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);
@@ -145,8 +148,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut many = String::new();
     for index in 0..4000 {
         let (a, b) = (place(), place());
-        // Each plane is given by several normals. The tilted one is y = −z/3, the other the
-        // board's.
+        // Different normals describe the same plane. Triangles of even index lie in the plane
+        // y = −z/3, the others in the board's plane.
         let (centroid, normal) = match index % 2 {
             0 => ((a, b / 2.0, -1.5 * b), (0, 3, 1)),
             _ => ((a, 0.0, b), (0, 1, 0)),
@@ -162,7 +165,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
         }
     }
     few += "checkerboard {}\n";
-    // Each triangle once more, with another normal and colour: the first one in the file is seen.
+    // Each triangle occurs again with another normal and colour. The first one in the file is
+    // visible.
     many.insert_str(0, &few);
     let [few, many] = [&few, &many].map(|text| read(text));
     assert!(compare(&few, Method::Jittered, Count::PerPixel(4)) > 100);
@@ -171,7 +175,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     assert_eq!(few.pixels(), many.pixels());
 }
 
-/// Returns spheres of different colours with their centres in a cube about the origin.
+/// Returns the text of `count` spheres of different colours. Each coordinate of a centre is at most
+/// `reach` from 0, and the radii are from `low` to `high`.
 pub fn spheres(random: &mut Random, count: u32, reach: f64, [low, high]: [f64; 2]) -> String {
     let sphere = |index| {
         let DVec3 { x, y, z } = random.vector(reach);
@@ -188,7 +193,7 @@ fn culling_is_exact_for_parallel_layers() {
     for (count, apart) in [(9, 0.1), (33, 0.1), (33, 1e-13), (33, 1e-30), (120, 0.05)] {
         let mut text = "image { width 24 height 18 } camera { eye (0.3, 0.2, 4) lookat (0, 0, 0) roll 10deg }\n".to_owned();
         for index in 0..count {
-            // The layers are shuffled, and one of three has a hidden duplicate.
+            // The layers are shuffled, and every third one has a hidden duplicate.
             let place = f64::from(index * 37 % count);
             let height = 1.0 + apart * (place - place % 3.0 % 2.0);
             let sign = if index % 2 == 0 { "-" } else { "" };
@@ -213,8 +218,8 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
     let mut random = Random::new(12);
     let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     let mut methods = Method::SAMPLED.into_iter().cycle();
-    // In the larger picture only a few objects share a pixel, so several samples are compared
-    // together.
+    // In the larger picture, a pixel has only few candidate objects, so that several samples are
+    // compared in one batch.
     for (roll, clips, size, counts) in [
         (0, "", "width 31 height 23", &[2, 4, 8, 9, 100][..]),
         (0, "near 5.5 far 8", "width 31 height 23", &[1, 3, 16]),
@@ -238,8 +243,8 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
                  triangle {{ centroid -{at} normal {normal} sides (0.1, 0.1, 0.05) color {color} }}"
             );
         }
-        // Two equal spheres, of which the first is seen, one that touches them, and very large
-        // ones.
+        // Add two equal spheres, of which the first is visible, a sphere that touches them, and
+        // very large ones.
         text += "sphere { center (0, 0, 0) radius 0.7 color red }
             sphere { center (0, 0, 0) radius 0.7 color lime }
             sphere { center (1.4, 0, 0) radius 0.7 color blue }
@@ -249,10 +254,10 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
         let objects = Arc::make_mut(&mut all.objects);
         let (_, others) = scenes.next().unwrap();
         objects.extend_from_slice(&others.objects);
-        // Duplicates of some objects, which are hidden by the first ones.
+        // The first objects hide these duplicates of some of them.
         objects.extend_from_within(3500..4500);
-        // Where objects are dense, samples are traced one by one if there is one per pixel, and
-        // together if there are many.
+        // Where objects are dense, the samples are traced one by one if each pixel has a single
+        // sample, and together if it has many.
         let world = World::new(&all);
         let parts = Quartering::for_samples(&world, 1.0);
         let flow = parts.parts(

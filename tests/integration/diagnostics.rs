@@ -1,10 +1,10 @@
-//! Every diagnostic, compared with the fixtures in `tests/diagnostics`, and whole reports as people
-//! see them.
+//! Compares every diagnostic with the fixtures in `tests/diagnostics`, and some whole reports with
+//! snapshots of what a user sees.
 //!
-//! A fixture is a scene with the expectations in its own comments, below the line that they are
-//! about: `^^^` stands below the primary label, and `---` below every other label. A line `// --set
-//! TARGET=VALUE` is an argument, and the expectations below it are about the argument. `//! …` is
-//! about the start of the text. `PINHOLE_BLESS=1 cargo test` writes them anew.
+//! A fixture is a scene whose comments state the expected diagnostics, each below its line: `^^^`
+//! marks the primary label, and `---` every other label. A line `// --set TARGET=VALUE` is an
+//! argument of the command, and the expectations below it are about that argument. `//! …` is an
+//! expectation about the start of the text. `PINHOLE_BLESS=1 cargo test` rewrites the expectations.
 
 use std::{collections::BTreeSet, fs, path::Path};
 
@@ -16,19 +16,20 @@ use pinhole::{
 
 use crate::{scenes::scenes, snapshot::assert_file};
 
-/// Returns the diagnostics of a text with `--set` arguments.
+/// Returns the diagnostics of `text`, read with the `--set` arguments `sets`.
 pub fn diagnose(text: &str, sets: &[&str]) -> Vec<Diagnostic> {
     let sources = Sources::new(Source::from_text("a.scn", text));
     scene::read(&sources.with_sets(sets)).diagnostics
 }
 
-/// Returns the codes of the diagnostics of a text with `--set` arguments, without `pinhole::`.
+/// Returns the codes of the diagnostics of `text`, read with the `--set` arguments `sets`. The
+/// prefix `pinhole::` is removed.
 pub fn codes(text: &str, sets: &[&str]) -> Vec<String> {
     let found = diagnose(text, sets).into_iter();
     found.map(|d| d.code.replace("pinhole::", "")).collect()
 }
 
-/// Returns whether a line of a fixture is an expectation and not part of the scene.
+/// Returns whether a line of a fixture is an expectation, as opposed to a part of the scene.
 fn is_expectation(line: &[u8]) -> bool {
     let Some(rest) = line.strip_prefix(b"//") else {
         return false;
@@ -42,14 +43,14 @@ fn is_expectation(line: &[u8]) -> bool {
 
 const SET: &str = "// --set ";
 
-/// Returns the text of a fixture with its `--set` arguments.
+/// Returns the sources of a fixture: its text and its `--set` arguments.
 fn read(name: &str, bytes: &[u8]) -> Sources {
     let file = Source::from_bytes(name, bytes.to_vec());
     let sets: Vec<String> = sets(&file).map(|(_, set)| set.to_owned()).collect();
     Sources::new(file).with_sets(sets)
 }
 
-/// Returns the fixtures with their names.
+/// Returns the name and the sources of each fixture.
 pub fn fixtures() -> impl Iterator<Item = (String, Sources)> {
     scenes("tests/diagnostics").into_iter().map(|path| {
         let name = path.file_stem().expect("a name").to_string_lossy();
@@ -58,14 +59,14 @@ pub fn fixtures() -> impl Iterator<Item = (String, Sources)> {
     })
 }
 
-/// Returns the `--set` arguments of a fixture with their line numbers, counted from 1.
+/// Returns the `--set` arguments of a fixture, each with its line number, counted from 1.
 fn sets(file: &Source) -> impl Iterator<Item = (usize, &str)> {
     let lines = file.text().lines().enumerate();
     lines.filter_map(|(index, line)| Some((index + 1, line.strip_prefix(SET)?)))
 }
 
-/// Returns the expectations that a fixture should have, each with the number of the line above it;
-/// 0 stands for the start of the text.
+/// Returns the correct expectations for a fixture, each with the number of the line that it belongs
+/// below, counted from 1. The number is 0 for the start of the text.
 fn expectations(sources: &Sources) -> Vec<(usize, String)> {
     let mut expected = Vec::new();
     for diagnostic in scene::read(sources).diagnostics {
@@ -105,10 +106,10 @@ fn underlined(sources: &Sources, label: &Label, sign: &str) -> (usize, String) {
     (line, format!("//{blanks}{}", sign.repeat(width)))
 }
 
-/// Returns a fixture with its expectations replaced by the correct ones.
+/// Returns the bytes of a fixture with its expectations replaced by the correct ones.
 fn annotated(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    // A message can name a line, and a new expectation moves lines.
+    // Repeat this, because a message may name a line, and new expectations move lines.
     for _ in 0..4 {
         let expected = expectations(&read("fixture.scn", &bytes));
         let below = |line: usize| {
@@ -140,7 +141,7 @@ fn diagnostic_fixtures_match_their_annotations() {
     }
 }
 
-/// Returns every code that the source of the stages mentions, without `pinhole::`.
+/// Returns every code in the source files of the stages. The prefix `pinhole::` is removed.
 pub fn all_codes() -> BTreeSet<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut codes = BTreeSet::new();
@@ -238,7 +239,7 @@ fn long_source_lines_are_cut_in_reports() {
 #[test]
 fn a_text_in_utf_16_is_one_mistake() {
     let marked = "\u{feff}sphere { center (0, 1, 0) }\n";
-    // Some programs write UTF-16 without a mark. A comment need not be ASCII.
+    // Some programs write UTF-16 without a byte order mark. The comment here is not ASCII.
     let bare = "// Кубы\nsphere { center (0, 1, 0)  radius 2 }\n";
     let texts = [marked, bare, &marked[3..]].into_iter();
     let encoded = texts.flat_map(|text| {
@@ -255,8 +256,8 @@ fn a_text_in_utf_16_is_one_mistake() {
     }
 }
 
-/// In a narrow terminal, excerpts are cut around the label and all other lines wrap at words.
-/// Several labels in a line may need more room.
+/// In a narrow terminal, excerpts are cut around the label, and all other lines wrap at words. An
+/// excerpt with several labels in a line may be wider.
 #[test]
 fn reports_fit_into_the_terminal() {
     let mut cut = 0;

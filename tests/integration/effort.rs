@@ -1,24 +1,24 @@
-//! Tests with long tables of cases: every run tries a sample, and an exhaustive run all of them.
+//! Tests with long tables of cases: a normal run tries a sample, an exhaustive run all cases.
 //!
-//! `cargo test -- --ignored` tries the whole tables, as the continuous integration does. It needs
-//! Neovim, QEMU and Chromium, too.
+//! `cargo test -- --ignored` runs all cases, as the continuous integration does. It also needs
+//! Neovim, QEMU and Chromium.
 
-/// Share of its cases that a test tries.
+/// Which cases of its table a test tries.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Effort {
-    /// The first case of each table.
+    /// The first case of each table, or the first few.
     Sample,
-    /// All cases.
+    /// All cases of each table.
     Exhaustive,
 }
 
 impl Effort {
-    /// Returns the cases of a table to try: the first one for a sample.
+    /// Returns the cases to try: only the first one for [`Self::Sample`], else the whole table.
     pub fn of<T>(self, table: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
         self.first(1, table)
     }
 
-    /// Returns the cases of a table to try: a given number of them for a sample.
+    /// Returns the cases to try: the first `sample` for [`Self::Sample`], else the whole table.
     pub fn first<T>(
         self,
         sample: usize,
@@ -31,7 +31,8 @@ impl Effort {
         table.into_iter().take(count)
     }
 
-    /// Scales a length or a number of repetitions: a sample takes 1/64 of it.
+    /// Scales a length or a number of repetitions. Returns 1/64 of `whole` for [`Self::Sample`],
+    /// else `whole`.
     pub fn part_of(self, whole: usize) -> usize {
         match self {
             Self::Sample => whole / 64,
@@ -40,8 +41,8 @@ impl Effort {
     }
 }
 
-/// Makes two tests of a function that takes an [`Effort`]: `NAME::sample`, and `NAME::exhaustive`,
-/// which is ignored by default.
+/// Defines two tests of a function that takes an [`Effort`]: `NAME::sample`, and
+/// `NAME::exhaustive`, which is ignored by default.
 macro_rules! sampled_and_exhaustive {
     ($name:ident) => {
         mod $name {

@@ -1,9 +1,9 @@
-//! The explain pages of the diagnostic codes: each has the common structure, its wrong scene has
-//! that mistake alone, and its right scene none.
+//! Tests of the explain pages of the diagnostic codes. Each page has the common structure. Its
+//! wrong scene has only the mistake that the page is about; its right scene has none.
 //!
-//! A scene stands in a fence `scn`, or `scn escaped`, where `\xE9` is a byte and `\u{A0}` an
-//! invisible character. The `--set` arguments of a command in a fence `console` apply to the scene
-//! above it. `PINHOLE_BLESS=1 cargo test explain` writes the index anew.
+//! A scene is in a fence `scn`, or in a fence `scn escaped`, where `\xE9` is a byte and `\u{A0}` an
+//! invisible character. If a command in a fence `console` has `--set` arguments, they apply to the
+//! scene above it. `PINHOLE_BLESS=1 cargo test explain` rewrites the index of the pages.
 
 use std::{collections::BTreeSet, path::Path};
 
@@ -27,7 +27,7 @@ fn folder() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes"))
 }
 
-/// Returns the text of a page below a heading of the second level.
+/// Returns the text of `page` below a second-level heading.
 fn section<'p>(page: &'p Page, heading: &str) -> &'p str {
     let start = format!("\n## {heading}\n");
     let (_, rest) = page.text.split_once(&start).expect("the heading");
@@ -132,7 +132,7 @@ fn the_index_lists_every_explain_page() {
     assert_file(&folder().join("README.md"), &index);
 }
 
-/// Returns the output of `explain` for a word.
+/// Returns the output of `pinhole explain WORD`.
 fn explained(word: &str) -> String {
     let said = Folder::with([]).done(&format!("explain {word}"));
     said.text().to_owned()

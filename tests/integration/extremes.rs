@@ -1,8 +1,8 @@
-//! Scenes of numbers of any size: every valid scene is rendered, and every channel is a number from
-//! 0 to 1.
+//! Scenes with numbers of any magnitude: every valid scene is rendered, and every channel of its
+//! picture is finite and from 0 to 1.
 //!
-//! A run of the tests renders 150 scenes, or 1200 with the ignored tests. `PINHOLE_SCENES=10000000
-//! cargo test extremes` renders ten million, which takes some hours.
+//! A normal run renders 150 scenes, or 1200 with the ignored tests. `PINHOLE_SCENES=10000000 cargo
+//! test extremes` renders ten million scenes, which takes hours.
 
 use std::num::NonZero;
 
@@ -24,17 +24,17 @@ use crate::{
     table::list,
 };
 
-/// Number of scenes in an exhaustive run, unless the environment gives another one.
+/// Number of scenes in an exhaustive run, unless `PINHOLE_SCENES` overrides it.
 const SCENES: usize = 1200;
 
 /// Number of random samples per pixel.
 const SAMPLES: u64 = 64;
 
-/// Maximum distance of a mean of the samples from the exact mean. By Hoeffding's inequality for
-/// numbers from 0 to 1, one of 10^13 means is farther off.
+/// Maximum distance between the mean of the samples of a pixel and the exact mean. By Hoeffding's
+/// inequality for numbers from 0 to 1, one mean of 10^13 is farther off.
 const FAR: f64 = 0.49;
 
-/// Percentages of the numbers of a scene that may have any size.
+/// Percentages of a scene's numbers that may have any magnitude.
 const WILD: [u64; 4] = [0, 5, 30, 100];
 
 fn assert_light(film: &Film, text: &str) {
@@ -44,9 +44,9 @@ fn assert_light(film: &Film, text: &str) {
     }
 }
 
-/// Renders a scene culled, one by one and exactly, and compares the three pictures. If squares and
-/// positions have any size, hundreds of bits are needed to decide whether a sample sees the square
-/// that the exact picture sums up, so `is_decided` then turns the comparison with samples off.
+/// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures.
+/// `is_decided` is false if squares and positions may have any magnitude. Hundreds of bits are then
+/// needed to decide which square a sample hits, so samples are not compared with the exact picture.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));
@@ -90,7 +90,7 @@ fn channels_stay_between_0_and_1_for_scenes_of_any_numbers(effort: Effort) {
 
 sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 
-/// For any crop and any number of threads, the candidates of a pixel come from one grid.
+/// The candidates of a pixel are the same for any crop and any number of threads.
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = one_thread();
     let others = Control {
@@ -106,10 +106,10 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
         let scenes = generated(Numbers::Wild(wild), [1, 1], seed);
         for (index, (_, mut scene)) in scenes.take(count).enumerate() {
             if index % 5 == 0 {
-                // So far away that coordinates near the origin vanish in differences.
+                // The eye is so far away that differences lose coordinates near the origin.
                 scene.camera.eye = dvec3(3e267, -3e267, 1e267) * random.within(0.0, 1.0);
             }
-            // Pictures of few pixels that extend over several cells of the grid.
+            // Small pictures that extend over several cells of the candidate grid.
             let (width, height) = [(37, 3), (3, 35), (7, 9)][index % 3];
             let scene = resized(scene, width, height);
             let mut below = |n: u32| random.bits() as u32 % n;
@@ -134,7 +134,7 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
 
 sampled_and_exhaustive!(scenes_at_the_limits_of_f64_render_alike_in_every_way);
 
-/// Renders the scenes of `tests/extremes`.
+/// Renders each scene of `tests/extremes` in every way, and compares the pictures.
 fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     for path in scenes("tests/extremes") {
         if effort == Effort::Sample
@@ -147,7 +147,7 @@ fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     }
 }
 
-/// The two branches of its conic, in front of the eye and behind it, coincide in any precision.
+/// The silhouette is a hyperbola, whose two branches coincide even in the highest precision.
 #[test]
 fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     for radius in ["1e3", "1e10", "1e100", "1e200", "1.7976931348623157e308"] {
@@ -158,8 +158,8 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
         );
         let exact = exact(&read(&text));
         let bound = f64::from(exact.bounds[0]);
-        // The horizon is √(2h/R) above the middle, with the eye at a distance h from the surface.
-        // The view plane is as far away as it is high.
+        // With the eye at the height h above the surface, the horizon is √(2h/R) above the middle,
+        // for a view plane that is as far away as it is high.
         let above = libm::sqrt(0.5 / radius.parse::<f64>().unwrap());
         for channel in exact.film.pixels()[0] {
             assert!(
@@ -171,8 +171,8 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     }
 }
 
-/// At the centre, a ray's direction is tiny compared with all others, and so are the numbers by
-/// which its surfaces are compared.
+/// Near the picture's centre, the directions of rays are tiny compared with all others, and so are
+/// the numbers by which the tracer compares their surfaces.
 #[test]
 fn the_nearest_surface_is_seen_at_the_centre_of_the_widest_views() {
     for view in [

@@ -1,4 +1,4 @@
-//! Boxes whose faces have different colours, compared with the same faces as triangles.
+//! Compares boxes whose faces have different colours with triangles in the place of the faces.
 
 use glam::DVec3;
 use pinhole::{
@@ -35,8 +35,8 @@ fn triangles(min: DVec3, max: DVec3) -> String {
     text
 }
 
-/// Cameras and the corners of a box: seen from outside, from inside, cut by the near or far plane,
-/// with the eye in the plane of a face, with an edge along the view, from far away.
+/// Rows of a camera and the two corners of a box. The eye sees the box from outside, from inside,
+/// cut by the near or far plane, from the plane of a face, along an edge, and from far away.
 const VIEWS: &[(&str, [f64; 3], [f64; 3])] = &[
     (
         "eye (4, 3, 8) lookat (0, 1, 0)",
@@ -118,7 +118,7 @@ fn a_box_with_face_colours_looks_like_triangles_of_its_faces() {
     }
 }
 
-/// Asserts that the hits of a ray name objects by their index in the file.
+/// Asserts that the hits of rays name objects by their index in the file.
 fn objects_keep_their_places(scene: &Scene) {
     let world = World::new(scene);
     for (x, y) in [(18, 11), (3, 20), (30, 5)] {

@@ -1,4 +1,4 @@
-//! Scenes of random numbers, for properties of every scene.
+//! Generated scenes of random numbers, for properties that hold for every scene.
 
 use std::iter;
 
@@ -9,17 +9,18 @@ use pinhole::{
 
 use crate::{random::Random, scenes::sources};
 
-/// Kind of numbers in a generated scene.
+/// Kind of the random numbers in a generated scene.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Numbers {
-    /// Multiples of a unit. With 1/2, eyes lie on surfaces, rays in planes, through corners and
-    /// along edges, and faces in common planes and at the depths of the near and far planes.
+    /// Multiples of a unit. With the unit 1/2, eyes often lie on surfaces, rays in planes, through
+    /// corners and along edges, and faces in common planes or at the near and far depths.
     MultiplesOf(f64),
-    /// Whole, round and other numbers, of which the given percentage may have any size.
+    /// Whole, round and other numbers. The given percentage of them may have any magnitude.
     Wild(u64),
 }
 
-/// Generates endless scenes of up to eleven overlapping objects, as text and as scene.
+/// Generates endless valid scenes of up to eleven overlapping objects. Each item is the text and
+/// the scene read from it.
 pub fn generated(
     numbers: Numbers,
     size: [u32; 2],
@@ -31,19 +32,19 @@ pub fn generated(
         shared: [1.0; 3],
     };
     let texts = iter::repeat_with(move || generator.scene(size));
-    // Texts with mistakes are skipped, such as impossible sides of a triangle or a zero direction.
+    // Skip texts with mistakes, such as a triangle with impossible sides or a zero direction.
     texts.filter_map(|text| Some((text.clone(), scene::read(&sources(&text)).scene?)))
 }
 
 struct Generator {
     random: Random,
     numbers: Numbers,
-    /// Numbers that several parts of the scene share.
+    /// Numbers that several parts of a scene use.
     shared: [f64; 3],
 }
 
 impl Generator {
-    /// Returns a number of at most a given size, unless it is one of any size.
+    /// Returns a number from `-size` to `size`, or at random one of any magnitude.
     fn number(&mut self, size: f64) -> f64 {
         let ordinary = self.random.within(-size, size);
         let wild = match self.numbers {
@@ -66,7 +67,7 @@ impl Generator {
         }
     }
 
-    /// Returns a positive number, as a length of 0 is a mistake.
+    /// Returns a positive number, because a length of 0 is a mistake.
     fn length(&mut self, size: f64) -> f64 {
         match self.number(size).abs() {
             0.0 => size,
@@ -127,8 +128,8 @@ impl Generator {
             ),
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
-                // No side is longer than the other two together, and often one is just as long; or
-                // a triangle has rational vertices.
+                // No side is longer than the other two together, but often one is exactly as long.
+                // In the last case, the vertices can be rational.
                 let sides = match self.random.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],

@@ -1,4 +1,4 @@
-//! Data of `inspect` and `probe`, compared with numbers computed by hand and with the oracle.
+//! Compares data of `inspect` and `probe` with values computed by hand and with the oracle.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::{
@@ -44,8 +44,8 @@ fn the_default_triangle_has_the_sides_of_the_assignment() {
             ((left + right + apex) / 3.0).distance(dvec3(1.0, 2.0, 3.0)),
             0.0,
         ),
-        // The base is level, the apex above it, and `right` to the right as seen from the normal's
-        // tip.
+        // The base is level, and the apex above it. `right` is on the right as seen from the tip
+        // of the normal.
         (left.y, right.y),
         (normal.distance(dvec3(0.3, -0.2, 1.0).normalize()), 0.0),
     ] {
@@ -150,13 +150,13 @@ fn probe_sees_the_colour_that_the_picture_shows() {
 fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
     let text =
         "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
-    // The sphere is 10 times as far to the right as it is away: at x = 20 in the view plane, with
-    // 225 pixels per unit.
+    // The sphere's distance to the right is 10 times its depth. So it is seen at x = 20 in the view
+    // plane, where a unit is 225 pixels.
     let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
     assert_eq!(probe.color.to_string(), "#808000");
     assert!(probed(text, -1e300, 1e300).hits.is_empty());
-    // In the worked example, a floor point is twice its view plane point (1, −1.5), which is 160
-    // pixels to the right of the centre and 240 above it.
+    // In the worked example, a point of the floor is twice its view plane point (1, −1.5). That
+    // point is 160 pixels to the right of the picture's centre and 240 pixels above it.
     let worked = example("looking_down_the_y_axis");
     let hits = probed(&worked, 560.0, 160.0).hits;
     let floor = hits
@@ -177,18 +177,18 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // In the widest view the box covers less of the pixel than a number can express.
+        // In the widest view, the box covers less of the pixel than an `f64` can express.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }
-    // Values beyond the range of numbers are shown as its largest number.
+    // Values beyond the range of `f64` are shown as its largest value.
     let text = "camera { eye (0, 1.7e308, 0) direction (0, -1, -1) } checkerboard {}";
     let (hit, ..) = &probed(text, 400.0, 225.0).hits[0];
     assert_eq!((hit.t, hit.depth), (f64::MAX, f64::MAX));
     assert_eq!(hit.point, dvec3(0.0, 0.0, -1.7e308));
 }
 
-/// Visibility of each object in the program's own output.
+/// Tests what the program's output says about the visibility of each object.
 #[test]
 fn inspect_reports_what_is_visible_of_each_object() {
     let scene =
@@ -212,9 +212,10 @@ fn inspect_reports_what_is_visible_of_each_object() {
         (4, r#""outside":"above the window""#),
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
-        // Its outline is an ellipse from 41.5 to 29.2 pixels left of the centre. In a view plane
-        // at 1 metre, where 50 pixels are a metre, the outline of a sphere at the distance
-        // c and depth z has the area π r² √(c² − r²) / (z² − r²)^1.5.
+        // Its silhouette is an ellipse from 41.5 to 29.2 pixels left of the picture's centre. In a
+        // view plane at 1 m, where 50 pixels are 1 m, a sphere at distance c and depth z has the
+        // area
+        //     π·r²·√(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
     ] {
@@ -224,7 +225,7 @@ fn inspect_reports_what_is_visible_of_each_object() {
     assert_eq!(hits["hits"][0]["indices"].to_string(), "[0]", "{hits}");
 }
 
-/// Two scenes are compared without noise, and each command line has its exit status and message.
+/// Compares two scenes without sampling noise. Each row has an exit status and a message.
 #[test]
 fn diff_compares_two_scenes_without_sampling_noise() {
     let folder = Folder::with([
@@ -259,7 +260,7 @@ fn diff_compares_two_scenes_without_sampling_noise() {
     assert!(!folder.read("heat.png").is_empty());
 }
 
-/// A warning that an object is outside the picture is never false: no pixel shows it.
+/// If a warning says that an object is outside the picture, no pixel shows the object.
 #[test]
 fn objects_reported_outside_the_picture_are_not_visible() {
     let mut outside = 0;
@@ -282,7 +283,7 @@ fn objects_reported_outside_the_picture_are_not_visible() {
     assert!(outside > 50, "{outside}");
 }
 
-/// The text output lists a hundred objects, and the JSON output all of them.
+/// The text output lists 100 objects; the JSON output lists all of them.
 #[test]
 fn inspect_lists_100_objects_and_summarizes_the_rest() {
     let scene =
@@ -295,7 +296,7 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         said.contains("  1_000 more, which --format json lists"),
         "{said}"
     );
-    // All except the first eight are beside the window, which is 17.8 m wide at their distance.
+    // All except the first eight are beside the window, which is 17.8 m wide at their depth.
     let rest = "  1_000 more: 0 seen, 0 %; 1_000 outside of the picture; 0 hidden or too small";
     assert!(said.contains(rest), "{said}");
     let json = folder.done("inspect a.scn --format json").json();
@@ -306,7 +307,7 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         100
     );
     assert_eq!(json["rest"]["outside"], 1000);
-    // The summary counts what the objects count one by one.
+    // The numbers of the summary equal the sums over the objects.
     let picture = "image { width 96 height 54 } camera { eye (0, 0, 9) lookat (0, 0, 0) } ";
     let ball =
         |z: &str| format!("sphere for i < 15, j < 10 {{ center (i - 5, j - 4, {z}) radius 0.3 }}");

@@ -1,4 +1,4 @@
-//! Ctrl-C as a terminal sends it, and the signal by which a system ends a program.
+//! Ctrl-C as a terminal sends it (SIGINT), and the signal that ends a program (SIGTERM).
 
 use std::{
     process::{Child, Command, Stdio},
@@ -8,23 +8,23 @@ use std::{
 
 use crate::program::{Folder, Outcome};
 
-/// Runs a command and interrupts it after some milliseconds, when it has begun and is far from
-/// done. Returns its output.
+/// Runs a command and interrupts it after `after` milliseconds, when it has begun but is far from
+/// done. Asserts that it then ends within five seconds. Returns its output.
 pub fn interrupted(command: &mut Command, after: u64) -> Outcome {
     let (said, time) = end_with_signal("INT", command, after);
     assert!(time < Duration::from_secs(5));
     said
 }
 
-/// Sends a signal to a process.
+/// Sends a signal, such as `INT`, to a process.
 pub fn send_signal(signal: &str, child: &Child) {
     let mut kill = Command::new("kill");
     let sent = kill.args([format!("-{signal}"), child.id().to_string()]);
     assert!(sent.status().unwrap().success());
 }
 
-/// Runs a command and sends it a signal after some milliseconds. Returns its output, and the time
-/// that it took to end.
+/// Runs a command and sends it a signal after `after` milliseconds. Returns its output, and the
+/// time from the signal to its end.
 fn end_with_signal(signal: &str, command: &mut Command, after: u64) -> (Outcome, Duration) {
     let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
@@ -42,8 +42,8 @@ fn end_with_signal(signal: &str, command: &mut Command, after: u64) -> (Outcome,
     (said, time)
 }
 
-/// Returns a scene of one pixel with so many nearly equal spheres that its exact mean takes more
-/// than a minute.
+/// Returns a scene of one pixel. It has so many nearly equal spheres that the exact mean of the
+/// pixel takes more than a minute.
 pub fn long_pixel() -> String {
     let spheres = (0..150).map(|i| format!("sphere {{ center (0, 0, {i}e-9)  radius 20 }}\n"));
     format!(

@@ -1,5 +1,5 @@
-//! Laws of pictures: the effect of moving, turning, scaling and mirroring a world together with its
-//! camera, to the bit.
+//! Laws of pictures: how a picture changes, to the bit, if a world is moved, turned, scaled or
+//! mirrored together with its camera.
 //!
 //! Coordinates are multiples of 1/128, so moving and turning them is exact.
 
@@ -22,19 +22,19 @@ use crate::{
     tracer::is_upright,
 };
 
-/// Generates the scenes on which a law is tested, sampled by a method.
+/// Generates the scenes on which a law is tested, with 9 samples per pixel by `method`.
 fn worlds(seed: u64, method: Method) -> impl Iterator<Item = Scene> {
     let scenes = generated(Numbers::MultiplesOf(1.0 / 64.0), [24, 24], seed);
     let scenes = scenes.map(move |(_, scene)| {
         let mut scene = with_samples(&scene, method, Count::PerPixel(9));
-        // The eye lies on no surface.
+        // The eye is moved off all surfaces.
         scene.camera.eye.y += 1.0 / 128.0;
         for board in shapes(&mut scene).filter_map(board) {
             board.square = 1.0;
         }
         scene
     });
-    // Selects scenes with a board and more than two colours in the picture.
+    // Keep only scenes that have a board and more than two colours in the picture.
     let is_full = |scene: &Scene| {
         let mut objects = scene.objects.iter();
         let has_board = objects.any(|object| matches!(object.shape, Shape::Checkerboard(_)));
@@ -71,7 +71,8 @@ fn centered(shape: &mut Shape) -> Option<&mut CenteredTriangle> {
     }
 }
 
-/// Maps all points of a scene by one function, all directions by another, and scales all lengths.
+/// Maps all points of a scene by `place` and all directions by `direction`, and multiplies all
+/// lengths by a factor.
 fn mapped(
     scene: &Scene,
     place: impl Fn(DVec3) -> DVec3,
@@ -138,8 +139,8 @@ fn swap_colors(scene: &mut Scene) {
     }
 }
 
-/// Asserts that the pictures of two scenes are equal except for the positions of their pixels:
-/// sampled pictures to the bit, and exact ones within their bounds.
+/// Asserts that the pictures of two scenes are equal if each pixel is moved as `goes` says. Sampled
+/// pictures must have the same bits, and exact pictures must agree within their error bounds.
 #[track_caller]
 fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32; 2]) -> [u32; 2]) {
     let [one, other] = [before, after].map(sampled);
@@ -160,7 +161,7 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
         let (light, bound) = pixel(&one, x, y);
         let (other, other_bound) = pixel(&other, other_x, other_y);
         let difference = difference(light, other);
-        // Each value has a rounding of its own, too.
+        // Each of the two values also has a rounding error.
         let most = bound + other_bound + f64::EPSILON;
         assert!(difference <= most, "{x}, {y}: {difference:e} of {before:?}");
         assert!(bound <= 1e-6, "{x}, {y}: {bound:e} of {before:?}");
@@ -170,11 +171,11 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
 #[test]
 fn quarter_turns_about_y_swap_the_boards_colours() {
     for (world, turns) in worlds(1, Method::MultiJittered).zip([1, 2, 3].into_iter().cycle()) {
-        // The square at (i, j) becomes that at (j, −1 − i).
+        // A turn moves the square (i, j) to (j, −1 − i).
         let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         let mut after = mapped(&world, turn, turn, 1.0);
-        // A triangle whose normal is along the axis does not turn with its normal, as its base
-        // stays along the world's x. Its spin turns it.
+        // If a triangle's normal is along the axis, its base stays parallel to the world's x axis,
+        // so turning the normal does not turn the triangle. Its spin does.
         for triangle in shapes(&mut after).filter_map(centered) {
             if triangle.normal.xz() == DVec2::ZERO {
                 let degrees = 90.0 * f64::from(turns);
@@ -215,7 +216,7 @@ fn scaling_by_a_power_of_two_changes_nothing() {
 
 #[test]
 fn a_mirror_in_x_mirrors_the_picture() {
-    // Pictures with an even and an odd number of columns.
+    // Test pictures with an even and an odd number of columns.
     for (world, width) in worlds(4, Method::Regular).zip([24, 23].into_iter().cycle()) {
         let world = resized(world, width, 24);
         let mirror = |v: DVec3| dvec3(-v.x, v.y, v.z);
@@ -235,7 +236,7 @@ fn a_quarter_roll_turns_the_picture() {
     for world in worlds(5, Method::Regular) {
         let mut after = world.clone();
         after.camera.roll.degrees += 90.0;
-        // Rolled to the right, the camera sees the world turned counter-clockwise.
+        // A camera rolled to the right sees the world turned counter-clockwise.
         assert_pictures_agree(&world, &after, |width, [x, y]| [y, width - 1 - x]);
     }
 }

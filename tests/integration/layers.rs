@@ -1,4 +1,5 @@
-//! The modules of the library import each other one way, in the order of `src/lib.rs`.
+//! The modules of the library import each other one way, in the order of `src/lib.rs`, and each
+//! file can be read in one sitting.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -101,4 +102,25 @@ fn modules_import_one_way_in_the_order_of_the_library() {
             rest.remove(free);
         }
     }
+}
+
+#[test]
+fn no_file_of_the_library_or_its_tests_is_longer_than_500_lines() {
+    let mut folders = ["src", "tests"]
+        .map(|folder| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder))
+        .to_vec();
+    let mut files = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                files += 1;
+                let lines = fs::read_to_string(&path).unwrap().lines().count();
+                assert!(lines <= 500, "{}: {lines} lines", path.display());
+            }
+        }
+    }
+    assert!(files > 100, "{files}");
 }

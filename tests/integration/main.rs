@@ -1,4 +1,4 @@
-//! One test binary, a module per subject.
+//! Integration tests: a single test binary with one module per subject.
 #![allow(
     clippy::disallowed_methods,
     reason = "tests make the files that the program is tried with"
@@ -18,6 +18,7 @@ mod exact;
 mod explain;
 mod extremes;
 mod faces;
+mod figure;
 mod files;
 mod film;
 mod fixes;
@@ -25,6 +26,7 @@ mod format;
 mod fuzz;
 mod generated;
 mod grade;
+mod handout;
 mod images;
 mod inspect;
 #[cfg(unix)]

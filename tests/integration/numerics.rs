@@ -1,4 +1,4 @@
-//! The hard cases of `report --numerics`: none is decided wrongly, and each is hard.
+//! The hard cases of `report --numerics`: the program decides none wrongly, and each is hard.
 
 use std::{
     collections::BTreeSet,
@@ -16,7 +16,7 @@ use pinhole::{
 
 use crate::effort::{Effort, sampled_and_exhaustive};
 
-/// Number of inputs of each case in every run.
+/// Number of inputs that are tried of each case.
 const INPUTS: u64 = 1_000;
 
 fn run(inputs: u64, threads: Option<usize>) -> NumericsTable {
@@ -27,7 +27,7 @@ fn run(inputs: u64, threads: Option<usize>) -> NumericsTable {
     numerics::run(inputs, &control).unwrap()
 }
 
-/// Returns the table, which is made once for all tests.
+/// Returns the table of all cases, which is computed once for all tests.
 fn table() -> &'static NumericsTable {
     static TABLE: OnceLock<NumericsTable> = OnceLock::new();
     TABLE.get_or_init(|| run(INPUTS, None))
@@ -52,15 +52,15 @@ fn hard_cases_break_the_textbook_formulas_and_stay_within_the_claimed_bound() {
     for row in &table().rows {
         let (id, tally) = (row.case.id, &row.tally);
         match tally.error[1] {
-            // A distance is rounded, so its last bit is sometimes wrong: an error of 0 would mean
-            // that nothing was measured.
+            // A distance is rounded, so its last bit is sometimes wrong. If the error were 0,
+            // nothing would have been measured.
             Some(error) => assert!(error > 0.0 && error <= row.case.bound, "{id}: {error}"),
-            // Rays parallel to the board never meet it.
+            // Rays parallel to the board never hit it.
             None => assert_eq!(id, "P2"),
         }
         if row.case.decides() {
             let share = tally.wrong[0] as f64 / INPUTS as f64;
-            // Equal spheres are decided correctly by one formula, in any precision.
+            // In S7, one formula decides equal spheres correctly in any precision.
             let least = if id == "S7" { 0.002 } else { 0.05 };
             assert!(share >= least, "{id}: {share}");
         } else {
@@ -90,7 +90,7 @@ fn the_numerics_report_shows_progress_and_can_be_cancelled() {
     let table = numerics::run(1_000_000, &control).unwrap();
     let done = done.load(Ordering::Relaxed);
     assert!((1..10_000).contains(&done));
-    // The table holds the inputs tried so far, and no others.
+    // The table contains exactly the inputs that were tried before the cancellation.
     assert_eq!((table.inputs(), table.is_complete()), (done, false));
     assert!(table.rows.iter().all(|row| row.tally.inputs > 0));
 }

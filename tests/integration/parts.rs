@@ -1,7 +1,7 @@
-//! A text read in parts means the same as read as a whole: it has the same tree, scene and
-//! diagnostics.
+//! Reading a text in parts yields the same tree, scene and diagnostics as reading it as a whole.
 //!
-//! With a part size of one byte, texts are split at every brace, so small texts have many parts.
+//! With a part size of one byte, a text is split at every brace, so that small texts have many
+//! parts.
 
 use std::sync::atomic::AtomicBool;
 
@@ -13,7 +13,8 @@ use crate::{
     table::{lines, list},
 };
 
-/// Compares both ways of reading. Returns whether the text was parsed in parts.
+/// Reads `text` in parts of `bytes` bytes and as a whole, and asserts equal results. Returns
+/// whether the text was really parsed in parts.
 #[track_caller]
 pub fn assert_same_in_parts(text: &str, bytes: usize, sets: &[&str]) -> bool {
     let sources = sources(text).with_sets(sets);
@@ -42,11 +43,11 @@ fn every_scene_means_the_same_when_read_in_parts() {
     let in_parts = scenes
         .filter(|text| assert_same_in_parts(text, 1, &[]))
         .count();
-    // These are the examples; most other scenes have mistakes.
+    // At least the examples are parsed in parts; most other scenes have mistakes.
     assert!(in_parts >= 20, "{in_parts}");
 }
 
-/// Mistakes at a brace, or on both sides of the end of a part.
+/// The mistakes are at a brace, or on both sides of the end of a part.
 #[test]
 fn mistakes_at_a_part_boundary_are_reported_as_in_the_whole_text() {
     let camera = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";

@@ -1,8 +1,8 @@
-//! The same pictures on other processors. Needs `qemu-x86_64` on the path: `cargo test -- --ignored
-//! processors`.
+//! Pictures are the same on other processors. The test needs `qemu-x86_64` on the path: `cargo test
+//! -- --ignored processors`.
 //!
-//! Vector instructions are detected at run time, so the same binary takes other paths on a
-//! processor that has none.
+//! The program detects vector instructions at run time, so the same binary takes other code paths
+//! on a processor that lacks them.
 
 use std::{env, fs, io::Cursor, path::Path, process::Command};
 
@@ -17,8 +17,8 @@ use crate::{
     scenes::{example, rendered, whole, with_samples},
 };
 
-/// Processors by their names in QEMU: one with only the baseline vectors of two doubles, and one
-/// with vectors of four.
+/// Names of processors in QEMU. The first has only vectors of two doubles; the second also has
+/// vectors of four.
 const PROCESSORS: [&str; 2] = ["qemu64", "Haswell"];
 
 const SCENES: [&str; 5] = [
@@ -29,11 +29,11 @@ const SCENES: [&str; 5] = [
     "inside_the_sphere",
 ];
 
-/// Environment variable with the folder for the pictures; if it is set, the test only draws them.
+/// Environment variable with a folder. If it is set, the test only writes pictures into the folder.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
-/// The test runs its own binary in QEMU once per processor, as QEMU translates most of the code
-/// anew in each process.
+/// Runs its own binary in QEMU, only once per processor: QEMU translates most of the code anew in
+/// each process.
 #[test]
 #[ignore = "needs QEMU"]
 fn all_processors_make_the_same_pictures() {
@@ -61,7 +61,7 @@ fn all_processors_make_the_same_pictures() {
     }
 }
 
-/// Writes small pictures of all scenes by all methods, in both formats.
+/// Writes small pictures of all scenes, by all methods and in both formats, into a folder.
 fn draw(folder: &Path) {
     for name in SCENES {
         let scene = example(name, 32, 24);

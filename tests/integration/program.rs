@@ -1,4 +1,4 @@
-//! The program, run from outside.
+//! Running the program from outside.
 
 use std::{
     ffi::OsStr,
@@ -11,8 +11,8 @@ use std::{
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Returns a command that runs the program in a folder, independent of the environment's language
-/// and terminal settings.
+/// Returns a command that runs the program in a folder. Language and terminal settings of the
+/// environment do not affect it.
 pub fn command(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
     any_command(env!("CARGO_BIN_EXE_pinhole"), folder, arguments)
 }
@@ -29,7 +29,7 @@ fn any_command(program: &str, folder: &Path, arguments: &[impl AsRef<OsStr>]) ->
     command
 }
 
-/// Returns the sorted names of a folder's entries.
+/// Returns the names of the entries of a folder, sorted.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -57,7 +57,7 @@ pub fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// Result of a command.
+/// Exit status and output of a command that has ended.
 pub struct Outcome {
     pub status: i32,
     pub output: Vec<u8>,
@@ -69,7 +69,7 @@ impl Outcome {
         std::str::from_utf8(&self.output).unwrap()
     }
 
-    /// Parses the only line of the output.
+    /// Parses the output, which must be a single line of JSON.
     pub fn json(&self) -> Value {
         let text = self.text();
         assert!(text.ends_with('\n') && text.lines().count() == 1, "{text}");
@@ -87,7 +87,7 @@ impl From<Output> for Outcome {
     }
 }
 
-/// Temporary folder in which the program is run by lines as one types them.
+/// Temporary folder in which commands, given as lines, run the program.
 pub struct Folder(TempDir);
 
 impl Folder {
@@ -103,14 +103,14 @@ impl Folder {
         self.0.path().join(name)
     }
 
-    /// Writes a file, and makes its folder if there is none.
+    /// Writes a file, and creates its parent folder if it does not exist.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         let path = self.path(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, content).unwrap();
     }
 
-    /// Makes a pipe.
+    /// Creates a named pipe.
     #[cfg(unix)]
     pub fn make_pipe(&self, name: &str) {
         let made = Command::new("mkfifo").arg(self.path(name)).status();
@@ -133,7 +133,7 @@ impl Folder {
         command(self.0.path(), &words(line))
     }
 
-    /// Runs a line in a shell, in which the program is called `pinhole`.
+    /// Runs a line in a shell, where the program under test is on the path as `pinhole`.
     pub fn shell(&self, line: &str) -> Outcome {
         let program = Path::new(env!("CARGO_BIN_EXE_pinhole")).parent().unwrap();
         let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
@@ -145,7 +145,7 @@ impl Folder {
         self.command(line).output().unwrap().into()
     }
 
-    /// Runs a command with a standard input.
+    /// Runs a command with `input` as its standard input.
     pub fn run_reading(&self, line: &str, input: impl AsRef<[u8]>) -> Outcome {
         let mut command = self.command(line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -155,7 +155,7 @@ impl Folder {
         child.wait_with_output().unwrap().into()
     }
 
-    /// Runs a command that must succeed and print nothing on standard error.
+    /// Runs a command that must succeed and print nothing to standard error. Returns its outcome.
     #[track_caller]
     pub fn done(&self, line: &str) -> Outcome {
         let said = self.run(line);
@@ -163,8 +163,8 @@ impl Folder {
         said
     }
 
-    /// Runs a command that must end with a status and print nothing on standard output. Returns its
-    /// standard error.
+    /// Runs a command that must end with the exit status `status` and print nothing to standard
+    /// output. Returns its standard error.
     #[track_caller]
     pub fn told(&self, line: &str, status: i32) -> String {
         let Outcome {

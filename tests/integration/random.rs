@@ -16,7 +16,7 @@ impl Random {
         self.0.next_u64()
     }
 
-    /// Returns a whole number below `end`, or 0 if `end` is 0.
+    /// Returns an integer from 0 to `end` − 1, or 0 if `end` is 0.
     pub fn below(&mut self, end: usize) -> usize {
         (self.bits() % end.max(1) as u64) as usize
     }

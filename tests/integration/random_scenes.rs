@@ -1,5 +1,5 @@
-//! Random scenes with extreme cameras and overlapping objects, as tiny pictures: every way to
-//! render one gives the same bits, and the exact picture agrees with samples.
+//! Tiny pictures of random scenes with extreme cameras and overlapping objects. Every way to render
+//! a picture yields the same bits, and the exact picture agrees with samples.
 
 use std::{
     num::NonZero,
@@ -21,12 +21,12 @@ use crate::{
     scenes::{one_thread, rendered, sources, whole, with_samples},
 };
 
-/// Generator of the text of random objects, with the points that they share.
+/// Generator of the texts of random objects, with the points that the objects share.
 struct Text<'r> {
     random: &'r mut Random,
-    /// Vertices, centres and points of surfaces.
+    /// Vertices, centres, and points of surfaces of the objects so far.
     points: Vec<DVec3>,
-    /// One of this many numbers has any size; 0 for none.
+    /// One in `wild` numbers has any magnitude; 0 means none.
     wild: u64,
 }
 
@@ -35,7 +35,7 @@ impl Text<'_> {
         n > 0 && self.random.bits().is_multiple_of(n)
     }
 
-    /// Returns a positive number whose logarithm is uniform, up to a number of decades from 1.
+    /// Returns a positive number from 10^−`decades` to 10^`decades`, whose logarithm is uniform.
     fn any_size(&mut self, decades: f64) -> f64 {
         libm::exp10(self.random.within(-decades, decades))
     }
@@ -60,7 +60,7 @@ impl Text<'_> {
         }
     }
 
-    /// Returns a point used by other objects, a point near one, or a new point.
+    /// Returns a point that other objects use, a point near such a point, or a new point.
     fn point(&mut self) -> DVec3 {
         let new = dvec3(self.number(3.0), self.number(3.0), self.number(3.0));
         if self.points.is_empty() || self.one_in(3) {
@@ -95,7 +95,7 @@ impl Text<'_> {
             2 | 3 => {
                 let (v1, mut v2) = (self.point(), self.point());
                 if self.one_in(3) {
-                    // A sliver.
+                    // Make the triangle a sliver.
                     let thickness = *self.random.one_of(&[1e-15, 1e-9, 1e-3]);
                     v2 = p + self.random.within(-1.0, 2.0) * (v1 - p) + thickness * v2;
                 }
@@ -161,7 +161,7 @@ impl Text<'_> {
         };
         for clip in ["near", "far"] {
             if self.one_in(4) {
-                // Often the depth of a point.
+                // The depth of the near or far plane is often the depth of a shared point.
                 let point = self.point();
                 let depth = (point - eye).dot(toward.normalize_or(DVec3::X)).abs();
                 let depth =
@@ -179,11 +179,11 @@ fn vector(DVec3 { x, y, z }: DVec3) -> String {
     format!("({x:?}, {y:?}, {z:?})")
 }
 
-/// Returns a random scene without mistakes, and its text.
+/// Returns the text of a random scene without mistakes, and the scene.
 fn random_scene(random: &mut Random) -> (String, Scene) {
     loop {
         let most = [3, 3, 10, 60][random.bits() as usize % 4];
-        // A pixel of many objects takes long to compute.
+        // A pixel of many objects takes long to compute, so the picture is smaller then.
         let [columns, rows] = if most > 3 { [4, 3] } else { [12, 8] };
         let (width, height) = (1 + random.bits() % columns, 1 + random.bits() % rows);
         let (count, wild) = (random.bits() % (most + 1), [0, 0, 30, 5]);
@@ -211,8 +211,8 @@ fn three_threads() -> Control<'static> {
     }
 }
 
-/// Compares a picture rendered by one thread with its four parts rendered by three threads. A
-/// random column and row divide the picture.
+/// Divides the picture at a random column and row into four parts. Asserts that the picture,
+/// rendered by one thread, has the same bits as its parts, rendered by three threads. Returns it.
 fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendered {
     let area = whole(scene);
     let picture: Rendered = rendered(scene, area, &one_thread());
@@ -235,8 +235,8 @@ fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendere
     picture
 }
 
-/// Asserts that an area of a picture has the bits of its crop, and so have the bounds of its
-/// pixels.
+/// Asserts that the area `part` of a picture has the same bits as the picture `crop` of that area:
+/// both their pixels and the error bounds.
 #[track_caller]
 fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     let numbers = |picture: &Rendered, x, y| {
@@ -253,8 +253,8 @@ fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     }
 }
 
-/// Returns whether samples and the exact picture may be compared. Squares smaller than 10⁻⁹⁸ of the
-/// eye's distance get one colour from samples, as the language specifies.
+/// Returns whether samples can be compared with the exact picture. If squares are smaller than
+/// 10⁻⁹⁸ of the eye's distance, samples have a single colour, as the language specifies.
 fn is_comparable(scene: &Scene) -> bool {
     scene.objects.iter().all(|object| match &object.shape {
         Shape::Checkerboard(board) => {
@@ -267,11 +267,14 @@ fn is_comparable(scene: &Scene) -> bool {
 
 /// Compares each pixel of an exact picture, and the mean of all pixels, with independent samples.
 ///
-/// Light is from 0 to 1. If its mean is within b of m, its variance is at most m(1 − m) + b, as μ(1
-/// − μ) has no slope above 1. By Bernstein's inequality, the mean of N samples with variances of
-/// sum V is farther off than √(2LV)/N + 2L/(3N) with a probability of at most 2e^−L. A picture has
-/// at most 97 · 3 comparisons, so among 10⁶ pictures one fails with a probability of at most 1e-9
-/// if 2e^−L is 3e-18, where √(2L) = 9.1 and 2L/3 = 27.4.
+/// Light is from 0 to 1. If its mean μ is within b of m, its variance is at most
+///     m·(1 − m) + b,
+/// because μ·(1 − μ) has a slope of at most 1. Let V be the sum of the variances of N samples. By
+/// Bernstein's inequality, the mean of the samples is farther off than
+///     √(2·L·V)/N + 2·L/(3·N)
+/// with a probability of at most 2·e^−L. A picture has at most 97 · 3 comparisons. If 2·e^−L is
+/// 3e-18, then √(2·L) = 9.1 and 2·L/3 = 27.4, and one of 10⁶ pictures fails with a probability of
+/// at most 1e-9.
 fn assert_agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
     let area = whole(scene);
     let each = (1 << 15) / area.pixels();
@@ -318,8 +321,8 @@ fn random_scenes_render_alike_in_parts_and_agree_with_samples() {
         let Rendered::Exact(exact) = assert_parts_agree(&computed, random, &text) else {
             panic!("not computed");
         };
-        // The picture and its parts take at most a second per pixel each if optimized, on an idle
-        // machine.
+        // In an optimized build on an idle machine, the picture and its parts each take at most a
+        // second per pixel.
         let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
         assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
         if is_comparable(&scene) {

@@ -1,5 +1,5 @@
-//! The documents are correct: their commands are run and the outputs compared, their scenes are
-//! checked, and their links lead to files.
+//! The documents are correct: their commands print the outputs shown, their scenes have no
+//! mistakes, and their links lead to files.
 //!
 //! `PINHOLE_BLESS=1 cargo test readme` writes the current outputs into the documents.
 
@@ -14,9 +14,13 @@ use crate::{
 };
 
 /// Documents whose `console` blocks are run and whose `scn` blocks are checked.
-const DOCUMENTS: [&str; 5] = [
+const DOCUMENTS: [&str; 9] = [
     "README.md",
     "docs/accuracy.md",
+    "docs/handout/camera.md",
+    "docs/handout/error.md",
+    "docs/handout/pixel.md",
+    "docs/handout/right.md",
     "docs/speed.md",
     "docs/teaching.md",
     "examples/README.md",
@@ -30,7 +34,7 @@ fn read(document: &str) -> String {
     fs::read_to_string(root().join(document)).unwrap()
 }
 
-/// Returns what a shell prints when it runs a command in a folder.
+/// Returns what `command` prints to either output when a shell runs it in a folder.
 fn run(command: &str, folder: &Folder) -> String {
     let said = folder.shell(&format!("{{ {command}; }} 2>&1"));
     match said.text() {
@@ -39,7 +43,7 @@ fn run(command: &str, folder: &Folder) -> String {
     }
 }
 
-/// Returns a folder with the examples of a fresh clone.
+/// Returns a folder with those example files that a fresh clone has.
 fn fresh_folder() -> Folder {
     let folder = Folder::with([]);
     for name in names(&root().join("examples")) {
@@ -51,7 +55,7 @@ fn fresh_folder() -> Folder {
     folder
 }
 
-/// Returns a document with the current outputs of its commands.
+/// Returns the text of a document with the current outputs of its commands.
 fn with_real_outputs(text: &str) -> String {
     let folder = fresh_folder();
     let mut real = text.to_owned();
@@ -139,7 +143,7 @@ fn relative_links_lead_to_files() {
     .to_vec();
     let (mut followed, mut missing) = (0, Vec::new());
     while let Some(path) = paths.pop() {
-        // Installed and built files are left out.
+        // Skip folders of installed and built files.
         let is_made = ["node_modules", "dist"]
             .iter()
             .any(|name| path.ends_with(name));
@@ -147,7 +151,7 @@ fn relative_links_lead_to_files() {
             paths.extend(names(&path).into_iter().map(|name| path.join(name)));
         } else if path.extension().is_some_and(|ending| ending == "md") {
             let text = fs::read_to_string(&path).unwrap();
-            // A fenced block is code without links.
+            // A fenced block is code and has no links, so skip every second part.
             let parts = text.split("```").step_by(2);
             let links = parts.flat_map(|part| part.split("](").skip(1));
             for link in links {

@@ -1,4 +1,4 @@
-//! Coarse pictures show the centres of their blocks, and become finer.
+//! Coarse pictures show the colours at the centres of their blocks, and become finer.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -30,8 +30,8 @@ fn coarse_steps_become_finer_and_show_the_centres_of_blocks() {
             assert_eq!(coarse.film.width(), 97_u32.div_ceil(coarse.side));
             assert_eq!(coarse.film.height(), 61_u32.div_ceil(coarse.side));
             for (pixel, block) in coarse.film.pixels().iter().zip(part.tiles(coarse.side)) {
-                // The block's centre, found in another way: from its middle pixel and an offset of
-                // half a pixel.
+                // Find the block's centre in a different way: from its middle pixel and an offset
+                // of 0 or 1/2 pixel.
                 let (right, down) = (block.width - 1, block.height - 1);
                 let offset = dvec2(f64::from(right % 2), f64::from(down % 2)) / 2.0;
                 let (x, y) = (block.x + right / 2, block.y + down / 2);

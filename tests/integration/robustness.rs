@@ -1,7 +1,7 @@
-//! Reading any text ends soon, reports an error if there is no scene, and points into the text.
+//! Reading any text ends soon. If there is no scene, an error is reported. All labels lie within
+//! the text.
 //!
-//! Exhaustive runs try texts of a megabyte and more; every other run tries a sample of shorter
-//! texts.
+//! Exhaustive runs read texts of a megabyte and more; normal runs read a sample of shorter texts.
 
 use std::time::{Duration, Instant};
 
@@ -25,14 +25,14 @@ const MEGABYTE: usize = 1 << 20;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
-/// Reads a text and reports its diagnostics. Returns whether there is a scene.
+/// Reads a text, and renders its diagnostics in every form. Returns whether there is a scene.
 #[track_caller]
 pub fn read(bytes: impl Into<Vec<u8>>) -> bool {
     read_with_sets(bytes, &[])
 }
 
-/// Reads a text with `--set` arguments and reports its diagnostics. Returns whether there is a
-/// scene.
+/// Reads a text with `--set` arguments, and renders its diagnostics in every form. Returns whether
+/// there is a scene.
 #[track_caller]
 fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let bytes = bytes.into();
@@ -41,13 +41,13 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let sources = Sources::new(Source::from_bytes("test.scn", bytes)).with_sets(sets);
     let reading = scene::read(&sources);
     let found = &reading.diagnostics;
-    // `check` writes at most as many diagnostics of a file.
+    // `check` writes at most 1000 diagnostics of a file.
     let written = &found[..found.len().min(1000)];
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // It takes a second on an idle machine, twice as long on a busy one, and up to four seconds
-    // without optimization.
+    // Reading takes a second on an idle machine and two on a busy one. Without optimization, it
+    // takes up to four seconds.
     let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
     assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
@@ -65,8 +65,8 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     reading.scene.is_some()
 }
 
-/// Asserts that labels and edits begin and end between characters of the text, and that the edits
-/// of a fix do not overlap.
+/// Asserts that labels and edits lie in the text and between its characters, and that the edits of
+/// a fix do not overlap.
 #[track_caller]
 fn assert_places(found: &[Diagnostic], sources: &Sources) {
     for diagnostic in found {
@@ -104,7 +104,7 @@ fn random_bytes_are_read_soon_and_refused(effort: Effort) {
 
 sampled_and_exhaustive!(every_short_sequence_of_words_is_parsed_to_its_end);
 
-/// All sequences of a few words, alone and within a block: the parser always advances.
+/// Parses all short sequences of some words, alone and within a block: the parser always advances.
 fn every_short_sequence_of_words_is_parsed_to_its_end(effort: Effort) {
     let words = "{ } ( ) , = < - for let sphere e 8 # radius // \n";
     let words: Vec<&str> = words.split(' ').collect();
@@ -121,7 +121,7 @@ fn every_short_sequence_of_words_is_parsed_to_its_end(effort: Effort) {
             let word = |place| words[number / words.len().pow(place) % words.len()];
             let most: Vec<&str> = (0..length - 1).map(word).collect();
             let most = format!("{before} {}", most.join(" "));
-            // One watchdog for a few texts, as each watchdog is a thread.
+            // Each watchdog is a thread, so one watches several texts.
             ends_soon(
                 || format!("{most} and one of {words:?}"),
                 || (words.iter()).for_each(|last| try_one(&format!("{most} {last}"))),
@@ -141,7 +141,7 @@ fn a_token_repeated_many_times_is_read_soon(effort: Effort) {
         read(format!("{CAMERA} sphere {{ center {within}"));
     }
     assert!(!read(""));
-    // Each field, misspelled, in its block.
+    // Misspell each field in its block.
     for block in BLOCKS {
         for field in block.field_names() {
             let piece = format!("x{field} 1\n");
@@ -151,8 +151,8 @@ fn a_token_repeated_many_times_is_read_soon(effort: Effort) {
     }
 }
 
-/// The first ten thousand of many mistakes are reported, and that others are left out, wherever
-/// they stand.
+/// If a text has too many mistakes, the first ten thousand are reported, and a message says that
+/// others are left out, wherever they are.
 #[test]
 fn reports_stop_at_the_maximum_number_of_problems() {
     let many = |piece: &str| piece.repeat(20_000);
@@ -178,7 +178,7 @@ fn reports_stop_at_the_maximum_number_of_problems() {
         let is_told = |it: &Diagnostic| it.message.contains("the others are left out");
         assert!(found.iter().any(is_told), "{text:.40}");
     }
-    // Correct text before the omitted mistakes is no mistake.
+    // Correct text that stands before the omitted mistakes is not reported.
     let signs = format!(
         "{CAMERA}sphere {{ center (0, 1, 0) {} radius 1 }}",
         many(", ")
@@ -189,7 +189,7 @@ fn reports_stop_at_the_maximum_number_of_problems() {
         codes,
         ["pinhole::needless_separator", "pinhole::unexpected"]
     );
-    // Needless separators are reported together, up to the limit.
+    // Needless separators are reported in one diagnostic, up to the limit.
     let spheres = many("sphere { center (0, 1, 0) };\n");
     let found = scene::read(&sources(&format!("{CAMERA}{spheres}"))).diagnostics;
     let signs = found
@@ -206,14 +206,14 @@ fn deeply_nested_values_are_refused_and_long_sums_accepted() {
         };
         open.repeat(100_000) + inner + &close.repeat(100_000)
     });
-    // Quoted delimiters close nothing.
+    // A delimiter within quotes does not close anything.
     let quotes = ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "];
     let quotes = quotes.map(|piece| piece.repeat(100_000)).into_iter();
     let few_quotes = "( \")\" ".repeat(300);
     for value in deep.into_iter().chain(quotes).chain([few_quotes]) {
         assert!(!read(format!("{CAMERA} let a = {value}")));
     }
-    // A long sum is not deep, nor is a long product.
+    // Long sums and long products do not count as deep nesting.
     for sign in [" + ", " * "] {
         let long = vec!["1"; 100_000].join(sign);
         assert!(read(format!("{CAMERA} let a = {long}")), "{sign}");
@@ -238,8 +238,8 @@ fn a_line_of_ten_megabytes_is_read_soon(effort: Effort) {
 
 sampled_and_exhaustive!(many_mistakes_and_many_names_are_read_soon);
 
-/// Returns a number of lines; `N` stands for the number of a line, and `M` for that of the next
-/// one.
+/// Returns `count` copies of `line`, in which `N` is replaced by the number of the copy, and `M` by
+/// the next number.
 fn numbered(line: &str, count: usize) -> Vec<String> {
     let of = |n: usize| {
         let line = line.replace('N', &n.to_string());
@@ -259,7 +259,7 @@ fn many_mistakes_and_many_names_are_read_soon(effort: Effort) {
     ] {
         assert!(!read(format!("{CAMERA}{}", lines(wrong))));
     }
-    // Each mistake examines the text around it, and all of them are on one line.
+    // Each mistake examines the text around it. The mistakes are all on one line.
     let wrong_order = lines("let aN = bN /* N */ ") + &lines("/* N */ let bN = N ");
     assert!(!read(wrong_order));
     let chain = lines("let aM = aN + 1\n");
@@ -302,7 +302,7 @@ fn windows_line_ends_and_a_byte_order_mark_are_accepted() {
 
 sampled_and_exhaustive!(scenes_with_random_slips_are_read_soon_and_alike_in_parts);
 
-/// A text that cannot be formatted has an error, and a text read in parts means the same.
+/// If formatting a text fails, the text has an error. A text read in parts means the same.
 fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
     let mut scenes = all_scenes();
     scenes.retain(|text| (1..1000).contains(&text.len()));
@@ -340,7 +340,7 @@ fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
 
 sampled_and_exhaustive!(reading_time_grows_linearly_with_the_text);
 
-/// Eight times as many lines take about eight times as long, and not 64 times, for any line.
+/// For any kind of line, reading 8 times as many lines takes about 8 times as long, not 64 times.
 fn reading_time_grows_linearly_with_the_text(effort: Effort) {
     let few = match effort {
         Effort::Sample => 1_000,
@@ -358,7 +358,7 @@ fn reading_time_grows_linearly_with_the_text(effort: Effort) {
         "let name = 1 + 2\n".to_owned(),
         "spere {}\n".to_owned(),
     ];
-    // Distinct names of fields in one block, of blocks and of colours.
+    // `%` is replaced by a number, so that the names of fields, blocks and colours are distinct.
     let numbered = [
         "eyf% (0, 0, 1)\n",
         "blok% { x 1 }\n",

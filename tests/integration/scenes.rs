@@ -1,4 +1,4 @@
-//! Scenes of the repository, scenes of a text, and their pictures.
+//! Helpers for scenes: those of the repository, those read from a text, and their pictures.
 
 use std::{
     fs,
@@ -28,13 +28,13 @@ pub fn scenes(folder: impl AsRef<Path>) -> Vec<PathBuf> {
     scenes
 }
 
-/// Returns the texts of the examples.
+/// Returns the texts of the example scenes.
 pub fn examples() -> Vec<String> {
     let names = example_names().into_iter();
     names.map(|name| example_text(&name)).collect()
 }
 
-/// Returns the names of the examples.
+/// Returns the names of the example scenes.
 pub fn example_names() -> Vec<String> {
     let paths = scenes("examples").into_iter();
     let name = |path: PathBuf| path.file_stem().unwrap().to_str().unwrap().to_owned();
@@ -46,7 +46,7 @@ pub fn example_text(name: &str) -> String {
     fs::read_to_string(path).unwrap()
 }
 
-/// Returns an example with another size.
+/// Returns an example scene with another width and height.
 pub fn example(name: &str, width: u32, height: u32) -> Scene {
     resized(read(&example_text(name)), width, height)
 }
@@ -72,7 +72,7 @@ pub fn whole(scene: &Scene) -> Area {
     Area::whole(scene.image.width, scene.image.height)
 }
 
-/// Returns the control that renders a picture by the calling thread alone.
+/// Returns a control with which only the calling thread renders.
 pub fn one_thread() -> Control<'static> {
     Control {
         threads: NonZero::new(1),
@@ -84,12 +84,12 @@ pub fn sources(text: &str) -> Sources {
     Sources::new(Source::from_text("test.scn", text))
 }
 
-/// Reads a scene without errors. It may have warnings.
+/// Reads a scene. Panics if it has errors; warnings are allowed.
 pub fn read(text: &str) -> Scene {
     read_with(text, [])
 }
 
-/// Reads a scene with overrides, without errors.
+/// Reads a scene with `--set` arguments. Panics if there are errors; warnings are allowed.
 pub fn read_with<'s>(text: &str, sets: impl IntoIterator<Item = &'s str>) -> Scene {
     let reading = scene::read(&sources(text).with_sets(sets));
     let found = &reading.diagnostics;
@@ -98,27 +98,27 @@ pub fn read_with<'s>(text: &str, sets: impl IntoIterator<Item = &'s str>) -> Sce
         .unwrap_or_else(|| panic!("{text}\n{found:#?}"))
 }
 
-/// Returns a scene's picture by its own sampler.
+/// Returns the picture of a scene, sampled as the scene says.
 pub fn sampled(scene: &Scene) -> Film {
     rendered(scene, whole(scene), &Control::default()).into_film()
 }
 
-/// Renders an area of a scene's picture by its own sampler.
+/// Renders an area of a scene's picture by the method that the scene selects.
 pub fn rendered<P: Pixel>(scene: &Scene, part: Area, control: &Control<'_>) -> Rendered<P> {
     render_as_asked(&World::new(scene), &sampling(scene), part, control).unwrap()
 }
 
-/// Returns the samples that a scene asks for.
+/// Returns the sampling that a scene specifies.
 pub fn sampling(scene: &Scene) -> Sampling {
     Sampling::new(&scene.sampler, scene.image.width, scene.image.height)
 }
 
-/// Returns a scene's exact picture.
+/// Returns the exact picture of a scene.
 pub fn exact(scene: &Scene) -> Exact {
     render_exact(&World::new(scene), whole(scene), &Control::default()).unwrap()
 }
 
-/// Returns the contents of a document's fenced blocks of a kind.
+/// Returns the contents of those fenced blocks of a document whose info string is `kind`.
 pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
     let start = format!("```{kind}\n");
     let parts = text.split(&start).skip(1);
@@ -127,7 +127,7 @@ pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
         .collect()
 }
 
-/// Returns an inspection in its JSON form.
+/// Returns an inspection as JSON.
 pub fn json_of(inspection: &Inspection) -> serde_json::Value {
     let mut text = Vec::new();
     inspection.write_json(&mut text).unwrap();

@@ -1,4 +1,4 @@
-//! Expected outputs in files; `PINHOLE_BLESS=1 cargo test` writes them anew.
+//! Expected outputs in files. `PINHOLE_BLESS=1 cargo test` rewrites the files.
 
 use std::{fs, path::Path};
 
@@ -7,7 +7,7 @@ use crate::{
     table::{escaped, unescaped},
 };
 
-/// Asserts that a file has this content, or writes it.
+/// Asserts that a file has this content. With `PINHOLE_BLESS`, writes the file instead.
 #[track_caller]
 pub fn assert_file(path: &Path, content: &str) {
     if std::env::var_os("PINHOLE_BLESS").is_some() {
@@ -20,11 +20,11 @@ pub fn assert_file(path: &Path, content: &str) {
     assert_eq!(content, expected, "{}", path.display());
 }
 
-/// Asserts the answers in the text files of a folder, which have a question in each line, and below
-/// it its answer, `<`.
+/// Asserts the answers in the text files of a folder. Each line is a query, and the lines below it
+/// that begin with `<` are its answer.
 ///
-/// The first word is the question about the text behind it. A further argument stands behind an
-/// arrow. `--` begins a remark.
+/// The first word of a line is the kind of query; the rest is the text that it is about. A second
+/// argument follows an arrow. `--` begins a comment.
 #[track_caller]
 pub fn assert_answers(folder: &str, answer: impl Fn(&str, &str, &str) -> String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);

@@ -1,4 +1,4 @@
-//! Texts and their trees: beside each `.scn` of `tests/syntax` stands its tree in `.txt`.
+//! Compares syntax trees with `tests/syntax`, where `NAME.txt` is the tree of `NAME.scn`.
 
 use std::{sync::mpsc, thread, time::Duration};
 
@@ -13,8 +13,8 @@ use pinhole::{
 
 use crate::{diagnostics::fixtures, scenes::scenes, snapshot::assert_file};
 
-/// Prints a tree with an item or a field per line and chains in brackets, then comments and
-/// problems.
+/// Prints a tree with one item or field per line and with operator chains in brackets. Then prints
+/// comments and problems.
 fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
     let under = |span: Span| {
         let words = source.slice(span.range()).split_whitespace();
@@ -89,7 +89,7 @@ fn syntax_trees_match_the_files_in_tests_syntax() {
     }
 }
 
-/// Returns the tokens and comments of a text.
+/// Returns the tokens and comments of a text, in order.
 pub fn tokens(text: &str) -> Vec<&str> {
     let mut lexer = Lexer::new(text, 0);
     let tokens = std::iter::from_fn(|| {
@@ -99,8 +99,8 @@ pub fn tokens(text: &str) -> Vec<&str> {
     tokens.collect()
 }
 
-/// An operator of two characters with an invisible one in between, such as `*` and `/` with a
-/// no-break space, is two tokens. The rest of the text is read, and the parser ends.
+/// If an invisible character, such as a no-break space, splits an operator of two characters, the
+/// parser reads two tokens. It reads the rest of the text, and does not hang.
 #[test]
 fn operators_split_by_an_invisible_character_do_not_hang_the_parser() {
     let mut torn = 0;
@@ -122,7 +122,7 @@ fn operators_split_by_an_invisible_character_do_not_hang_the_parser() {
         let mut start = 0;
         for line in text.split_inclusive('\n') {
             let is_sign = |at: usize| line.as_bytes()[at].is_ascii_punctuation();
-            // Lines that begin with `//` are expectations.
+            // Skip lines that begin with `//`: they are expectations.
             let places = (1..line.len()).filter(|_| !line.starts_with("//"));
             for at in places.filter(|at| is_sign(at - 1) && is_sign(*at)) {
                 is_read(text, start + at);

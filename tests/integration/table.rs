@@ -1,18 +1,18 @@
-//! Tables of cases in one text, with a row per line and its cells separated by arrows.
+//! Tables of test cases in a text: one row per line, with cells separated by `->`.
 
-/// Returns the cells of each line, without the white space around them. `\n`, `\r`, `\t` and
-/// `\u{feff}` in a cell are escapes as in a Rust string. Empty lines and those that begin with `--`
-/// are not rows.
+/// Returns the cells of each line, without the white space around them. In a cell, `\n`, `\r`, `\t`
+/// and `\u{feff}` are escapes as in a Rust string. Empty lines and lines that begin with `--` are
+/// skipped.
 pub fn lines(table: &'static str) -> Vec<Vec<&'static str>> {
     let lines = table.lines().map(str::trim);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("--"));
-    // The leaked cells live until the tests end.
+    // Cells are leaked, so that they live until the test process ends.
     let cell = |cell: &'static str| -> &'static str { unescaped(cell).leak() };
     let cells = |line: &'static str| line.split("->").map(move |text| cell(text.trim()));
     lines.map(|line| cells(line).collect()).collect()
 }
 
-/// Returns the rows of a table, which all have the same number of cells.
+/// Returns the rows of a table. Panics if a row does not have `CELLS` cells.
 pub fn rows<const CELLS: usize>(table: &'static str) -> Vec<[&'static str; CELLS]> {
     let rows = lines(table).into_iter();
     let row = |cells: Vec<_>| {
@@ -23,12 +23,12 @@ pub fn rows<const CELLS: usize>(table: &'static str) -> Vec<[&'static str; CELLS
     rows.map(row).collect()
 }
 
-/// Returns the lines of a table with one cell each.
+/// Returns the lines of a table that has one cell per line.
 pub fn list(table: &'static str) -> Vec<&'static str> {
     rows(table).into_iter().map(|[cell]| cell).collect()
 }
 
-/// Escapes of characters in a cell.
+/// Escapes in a cell, each with the character that it stands for.
 const ESCAPES: [(&str, &str); 4] = [
     ("\\n", "\n"),
     ("\\r", "\r"),

@@ -1,4 +1,4 @@
-//! Positions in texts, their form on a terminal, and names of colours.
+//! Positions in texts, texts as a terminal shows them, and names of colours.
 
 use pinhole::{
     diagnostic::visible,

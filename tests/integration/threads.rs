@@ -1,4 +1,4 @@
-//! Number of threads that the program starts.
+//! The number of threads that the program starts.
 
 use std::{
     fs,
@@ -9,8 +9,8 @@ use std::{
 
 use crate::{cancel::spheres, program::Folder};
 
-/// Runs a process to its end and returns the largest number of threads seen. It may have had more,
-/// as they are counted only now and then.
+/// Runs a command to its end. Returns the largest number of threads observed. The real maximum may
+/// be higher, because threads are counted only at intervals.
 fn peak_threads(command: &mut Command) -> usize {
     let command = command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut process = command.spawn().expect("the program");
@@ -23,14 +23,14 @@ fn peak_threads(command: &mut Command) -> usize {
     most
 }
 
-/// Asserts that the program uses one thread, and six when six are requested, besides the main
-/// thread and those that wait for Ctrl-C.
+/// Asserts that the program renders with one thread, or with six if six are requested. The main
+/// thread and the threads that wait for Ctrl-C come on top.
 fn assert_thread_limit(folder: &Folder, line: &str) {
     let most =
         |threads: u32| peak_threads(&mut folder.command(&format!("{line} --threads {threads}")));
     let one = most(1);
     assert!(one <= 4, "{one}");
-    // On a busy machine the program may end before all its threads are seen.
+    // On a busy machine, the program may end before all its threads are observed.
     assert!((0..20).any(|_| most(6) >= 6));
 }
 

@@ -1,7 +1,8 @@
-//! `watch` from outside: an editor's ways to save, broken texts, bursts of saves, and Ctrl-C.
+//! Tests of `pinhole watch` from outside: the ways in which editors save, texts with errors, bursts
+//! of saves, and Ctrl-C.
 //!
-//! Every step waits for its effect, with a timeout that a busy machine does not exceed. Fixed times
-//! pass only if nothing should happen.
+//! Each step waits for its effect. The timeout is long enough for a busy machine. A test waits for
+//! a fixed time only if nothing should happen.
 
 use std::{
     cell::RefCell,
@@ -24,7 +25,7 @@ use crate::{
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Returns a scene whose picture has one colour.
+/// Returns a scene whose picture has the single colour `color`.
 fn scene(color: &str) -> String {
     format!(
         "image {{ width 8  height 6  background {color} }}\ncamera {{ eye (0, 2, 8)  lookat (0, 1, 0) }}\n\
@@ -32,12 +33,12 @@ fn scene(color: &str) -> String {
     )
 }
 
-/// Returns a folder with a red scene in `a.scn`.
+/// Returns a folder with a scene in `a.scn` whose picture is red.
 fn red() -> Folder {
     Folder::with([("a.scn", scene("red").as_str())])
 }
 
-/// Running `watch` in a folder of its own.
+/// Running `pinhole watch` with its own folder.
 struct Watch {
     folder: Folder,
     child: RefCell<Child>,
@@ -45,7 +46,7 @@ struct Watch {
 }
 
 impl Watch {
-    /// Starts watching a red scene, and waits for its picture.
+    /// Starts watching a scene whose picture is red, and waits for the picture.
     fn of_red() -> Self {
         let watch = Self::start(red(), "a.scn");
         watch.shows("red");
@@ -71,13 +72,13 @@ impl Watch {
         self.folder.write("a.scn", text);
     }
 
-    /// Replaces the scene by a new file, which is renamed to it.
+    /// Replaces the scene by renaming a new file to it.
     fn replace(&self, text: &str) {
         self.folder.write("new", text);
         fs::rename(self.path("new"), self.path("a.scn")).unwrap();
     }
 
-    /// Saves a scene of one colour, and waits for its picture.
+    /// Saves a scene whose picture has the colour `color`, and waits for the picture.
     #[track_caller]
     fn becomes(&self, color: &str) {
         self.save(&scene(color));
@@ -89,7 +90,7 @@ impl Watch {
         String::from_utf8_lossy(&said).into_owned()
     }
 
-    /// Returns how often some words were printed.
+    /// Returns how many times the program has printed `words`.
     fn count(&self, words: &str) -> usize {
         self.said().matches(words).count()
     }
@@ -104,19 +105,20 @@ impl Watch {
         }
     }
 
-    /// Waits until some words have been printed a number of times.
+    /// Waits until the program has printed `words` exactly `times` times.
     #[track_caller]
     fn says(&self, words: &str, times: usize) {
         self.wait(words, || self.count(words) == times);
     }
 
-    /// Waits until the picture has a colour.
+    /// Waits until the picture has the colour `color`.
     #[track_caller]
     fn shows(&self, color: &str) {
         self.wait(color, || self.has("a.png", color));
     }
 
-    /// Returns whether a picture, which is complete if it exists, has a colour in its first pixel.
+    /// Returns whether a picture exists and its first pixel has the colour `color`. Panics if the
+    /// file is not a complete picture.
     fn has(&self, name: &str, color: &str) -> bool {
         fs::read(self.path(name)).is_ok_and(|bytes| {
             let picture = image::load_from_memory(&bytes).expect("a picture is always whole");
@@ -124,8 +126,8 @@ impl Watch {
         })
     }
 
-    /// Interrupts the program, which ends with the status of an interrupted program and leaves only
-    /// the picture.
+    /// Interrupts the program. Asserts that it ends with the status of an interrupted program and
+    /// leaves only the picture.
     fn end(&self) {
         send_signal("INT", &self.child.borrow());
         let ended = || self.child.borrow_mut().try_wait().unwrap();
@@ -161,16 +163,16 @@ fn a_picture_follows_every_save_and_ctrl_c_ends_it() {
 #[test]
 fn saves_by_renaming_and_a_pipe_in_between_are_noticed() {
     let watch = Watch::of_red();
-    // A new file is written and replaces the old one.
+    // Save as some editors do: write a new file, which then replaces the old one.
     watch.replace(&scene("blue"));
     watch.shows("blue");
-    // The old file is renamed to a backup, and a new one is written.
+    // Save as other editors do: rename the old file to a backup, then write a new one.
     fs::rename(watch.path("a.scn"), watch.path("a.scn~")).unwrap();
     watch.becomes("lime");
-    // Once more, as the watched file may be the backup now.
+    // Save again, because the program may be watching the backup by mistake now.
     watch.becomes("red");
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
-    // A pipe in place of the file is reported and waited out.
+    // If a pipe takes the file's place, the program reports it and waits for a file.
     watch.folder.make_pipe("pipe");
     fs::rename(watch.path("pipe"), watch.path("a.scn")).unwrap();
     watch.wait("it says so", || watch.count("it is a pipe, not a file") > 0);
@@ -208,8 +210,8 @@ fn links_and_the_file_at_their_end_are_watched() {
     watch.shows("red");
     far.write("a.scn", scene("gold"));
     watch.shows("gold");
-    // The folder of the middle link is not watched: its change gives no event and is noticed
-    // nevertheless, whatever other events occur.
+    // The folder of the middle link is not watched, so changing the link causes no event. The
+    // program notices the change nevertheless, whatever other events occur.
     symlink(far.path("blue"), middle.path("other")).unwrap();
     fs::rename(middle.path("other"), middle.path("middle")).unwrap();
     watch.wait("the picture is blue", || {
@@ -245,7 +247,7 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
         watch.save(&scene(["navy", "teal", "gold", "plum"][round % 4]));
     }
     watch.becomes("lime");
-    // No older picture follows.
+    // No picture of an older save appears afterwards.
     let said = watch.count("wrote");
     watch.becomes("blue");
     watch.wait("it is written", || watch.count("wrote") > said);
@@ -255,7 +257,7 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
 
 #[test]
 fn a_new_save_or_ctrl_c_cancels_the_picture_in_progress() {
-    // The text takes seconds to read, and has an error.
+    // This text takes seconds to read, and has an error at its end.
     let long = format!("{}sphere {{ radus 2 }}", spheres(400_000));
     for slow in [long_pixel(), long] {
         let watch = Watch::start(red(), "a.scn --threads 1");
@@ -278,11 +280,11 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let watch = Watch::of_red();
     watch.says("wrote", 1);
     watch.folder.write("other.txt", "not a scene");
-    // Editors set permissions after a save, and other programs read the file.
+    // Editors set permissions after a save, and other programs read the file: neither is a change.
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // This is longer than the pause that ends a burst of events.
+    // Wait longer than the pause that ends a burst of events.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);
@@ -296,7 +298,7 @@ fn saving_an_unchanged_text_renders_it_again() {
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.becomes("red");
     watch.says("after the save", 1);
-    // The save is another file in its place.
+    // This save replaces the file by another file.
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.replace(&scene("red"));
     watch.shows("red");

@@ -12,7 +12,11 @@ use clap::{
 use clap_complete::Shell;
 
 use super::{help, sweep::Sweep};
-use crate::{area::Area, scene::Method};
+use crate::{
+    area::Area,
+    figure::{KINDS, Kind},
+    scene::Method,
+};
 
 pub use self::judging::{DiffArgs, GradeArgs, GradeFormat, LargeArgs};
 
@@ -59,6 +63,9 @@ pub enum Command {
     /// Make a contact sheet: the pictures of scenes side by side, each with its name
     #[command(after_help = help::SHEET_EXAMPLES)]
     Sheet(SheetArgs),
+    /// Draw a figure of a scene for a page of a course, as SVG
+    #[command(after_help = help::FIGURE_EXAMPLES)]
+    Figure(FigureArgs),
     /// Explain a kind of mistake, or a word of the language
     #[command(after_help = help::EXPLAIN_EXAMPLES)]
     Explain(ExplainArgs),
@@ -263,6 +270,29 @@ pub struct SheetArgs {
     pub threads: ThreadArgs,
 }
 
+/// Arguments of `figure`.
+#[derive(Debug, clap::Args)]
+pub struct FigureArgs {
+    /// What it shows: the camera from outside, a pixel with its samples, a triangle with its
+    /// measures, the frame before and after the roll, or the patterns of all methods
+    #[arg(value_parser = kind())]
+    pub kind: Kind,
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input
+    pub scene: PathBuf,
+    /// Where the figure goes: a file that ends in .svg, or `-` [default: standard output]
+    #[arg(short, long = "output", value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// The pixel, by its column and row from 0 [default: of `pixel` one with an edge of several
+    /// colours, of `camera` one that shows the largest object, of `methods` 0,0]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixel)]
+    pub pixel: Option<[u32; 2]>,
+    /// The triangle, by its name [default: the first one]
+    #[arg(long, value_name = "NAME")]
+    pub object: Option<String>,
+    #[command(flatten)]
+    pub overrides: Overrides,
+}
+
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 #[command(override_usage = help::REPORT_USAGE)]
@@ -354,6 +384,24 @@ fn finite(text: &str) -> Result<f64, String> {
         }
         Err(_) => Err("not a number".to_owned()),
     }
+}
+
+/// Parses a column and a row.
+fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let parts = text.split_once(',');
+    let parts = parts.map(|(x, y)| [x, y].map(|part| part.trim().parse().ok()));
+    match parts {
+        Some([Some(x), Some(y)]) => Ok([x, y]),
+        _ => Err("a pixel is its column and its row, as in `200,150`".to_owned()),
+    }
+}
+
+/// Returns the parser of a kind of figure.
+fn kind() -> impl TypedValueParser<Value = Kind> {
+    PossibleValuesParser::new(KINDS.map(|(name, _)| name)).map(|name| {
+        let kind = KINDS.into_iter().find(|(known, _)| *known == name);
+        kind.map_or(Kind::Camera, |(_, kind)| kind)
+    })
 }
 
 /// Returns the parser of a method's name.

@@ -1,5 +1,5 @@
-//! Zip files of submissions. They are read in place, and nothing is unpacked to disk: the names in
-//! them are shown, but never used as paths.
+//! Reads zip files of submissions. Nothing is unpacked to disk: the names in a zip file are shown,
+//! but never used as paths.
 
 use std::{
     fs::File,
@@ -15,21 +15,21 @@ use zip::{DateTime, ZipArchive, result::ZipError};
 
 use crate::{files, lock::lock};
 
-/// Maximum length of a submitted file, in a zip file or beside it, in bytes.
+/// Maximum length of a submitted file, inside or outside of a zip file, in bytes.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
 /// Maximum number of entries of a zip file.
 const MOST_ENTRIES: usize = 10_000;
 
 /// Maximum number of bytes that are read to list the entries. An entry takes 46 bytes and its name,
-/// so this allows the maximum number of entries with names of a thousand letters.
+/// so this suffices for [`MOST_ENTRIES`] entries with names of a thousand letters.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// Maximum number of bytes that all zip files of a class may unpack to.
+/// Maximum number of bytes that all zip files of a class together may unpack to.
 const WHOLE_LIMIT: u64 = 4 << 30;
 
-/// Number of bytes that may still be unpacked of a class's zip files. Unpacked bytes are counted,
-/// not the lengths in headers.
+/// Number of bytes that may still be unpacked from the zip files of a class. The bytes themselves
+/// are counted, not the lengths in the headers.
 #[derive(Debug)]
 pub struct UnpackBudget(AtomicU64);
 
@@ -55,8 +55,8 @@ impl UnpackBudget {
     }
 }
 
-/// A file of which at most `left` bytes are read. It bounds the list of a zip file's entries, which
-/// the library reads into memory as a whole.
+/// A file of which at most `left` bytes are read. This limits the list of a zip file's entries,
+/// which the library reads into memory as a whole.
 #[derive(Debug)]
 struct Bounded {
     file: BufReader<File>,
@@ -95,18 +95,18 @@ pub struct ArchiveEntry {
     /// The name, with `/` between folders.
     pub name: String,
     pub is_folder: bool,
-    /// Time of change in seconds since 1970; zip files store even ones only.
+    /// Modification time in seconds since 1970. Zip files store only even seconds.
     pub time: Option<i64>,
-    /// The unpacked length according to the header.
+    /// The unpacked length in bytes, according to the header.
     pub length: u64,
-    /// The CRC-32 of the unpacked bytes, which is verified when they are unpacked.
+    /// The CRC-32 of the unpacked bytes. It is verified when they are unpacked.
     pub sum: u32,
-    /// Why the entry is not read, if it is encrypted or a link.
+    /// Why the entry is not read, such as that it is encrypted or a link; otherwise `None`.
     pub refused: Option<&'static str>,
 }
 
 impl Archive {
-    /// Opens a zip file, and lists its entries.
+    /// Opens a zip file and lists its entries.
     ///
     /// # Errors
     ///
@@ -122,7 +122,7 @@ impl Archive {
             0 => format!("it is no zip file, or lists more than {MOST_ENTRIES} entries, and at most that many are read"),
             _ => in_words(&error),
         })?;
-        // From here on, the budget counts the unpacked bytes instead.
+        // The list has been read; from here on, the budget counts the unpacked bytes instead.
         left.store(u64::MAX, Ordering::Relaxed);
         if zip.len() > MOST_ENTRIES {
             let count = zip.len();
@@ -152,7 +152,7 @@ impl Archive {
         Ok((Self(Mutex::new(zip)), entries))
     }
 
-    /// Unpacks an entry.
+    /// Unpacks an entry and returns its bytes.
     ///
     /// # Errors
     ///
@@ -176,7 +176,7 @@ impl Archive {
     }
 }
 
-/// Decodes an entry's name: as UTF-8 if it is valid, even if the UTF-8 flag is not set, and
+/// Returns an entry's name: decoded as UTF-8 if it is valid, even if the UTF-8 flag is not set, and
 /// otherwise as code page 437.
 fn name(raw: &[u8], decoded: Option<&str>) -> String {
     let name = match (str::from_utf8(raw), decoded) {
@@ -189,8 +189,8 @@ fn name(raw: &[u8], decoded: Option<&str>) -> String {
 
 /// Converts a time in a zip file, which has no time zone, to seconds since 1970.
 fn seconds(time: DateTime) -> i64 {
-    // Years begin in March here, so that a leap day is the last day of its year: Hinnant,
-    // "chrono-compatible low-level date algorithms", days_from_civil.
+    // Years begin in March in this calculation, so that a leap day is the last day of its year:
+    // Hinnant, "chrono-compatible low-level date algorithms", days_from_civil.
     let month = (i64::from(time.month()) + 9) % 12;
     let year = i64::from(time.year()) - i64::from(month >= 10);
     let leaps = year / 4 - year / 100 + year / 400;

@@ -1,8 +1,8 @@
-//! Turns submissions (single pictures, folders and zip files) into students with files.
+//! Converts submissions (single pictures, folders and zip files) to students with files.
 //!
-//! In a folder or zip file on the command line, each folder and each file beside the folders is a
-//! student. Moodle writes the students' names into file names, and Gradescope into a file beside
-//! the folders. No student is left out.
+//! In a folder or zip file on the command line, each folder and each file beside the folders is one
+//! student's submission. Moodle writes the students' names into file names, and Gradescope writes
+//! them into a file beside the folders. No student is left out.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -29,27 +29,27 @@ use crate::{
     files,
 };
 
-/// Reason for not comparing a picture that all students have.
+/// Reason for not comparing a picture that is the same in every submission.
 const TEMPLATE: &str = "equal in every folder: --picture chooses it";
 
-/// A class.
+/// The students of a class, with their files.
 #[derive(Debug, Default)]
 pub struct Class {
     pub students: Vec<Student>,
     /// Whether a picture on the command line is missing or not a file.
     pub is_one_missing: bool,
-    /// The number of bytes that may still be unpacked.
+    /// The number of bytes that may still be unpacked from zip files.
     pub budget: UnpackBudget,
 }
 
 impl Class {
     /// Reads the submissions on the command line, except the teacher's own files, `own`. `chosen`
-    /// says which files are pictures.
+    /// is the pattern of pictures in `--picture`.
     ///
     /// # Errors
     ///
-    /// A folder or zip file on the command line cannot be read. A missing picture is reported
-    /// later, when it is read.
+    /// A folder or zip file on the command line cannot be read. A missing picture is not an error
+    /// here; it is reported when it is read.
     pub fn read(paths: &[PathBuf], own: &[&Path], chosen: Option<&Glob>) -> Result<Self, Trouble> {
         let mut class = Self::default();
         let mut rest: Vec<&PathBuf> = paths.iter().collect();
@@ -76,7 +76,7 @@ impl Class {
         Ok(class)
     }
 
-    /// Adds the students of a folder or zip file, and those of each class in it.
+    /// Adds the students of a folder or zip file, and those of each class that it contains.
     fn add(&mut self, folder: Option<String>, mut tree: FileTree, chosen: Option<&Glob>) {
         for (name, inner) in tree.take_classes() {
             self.add(Some(name), inner, chosen);
@@ -155,9 +155,9 @@ impl Class {
         self.students.extend(students);
     }
 
-    /// Removes the files that are equal in every folder, as they were there before anybody began.
-    /// Pictures among them are listed as not compared. If no student would have a picture left,
-    /// they are kept: then all students made the same one.
+    /// Removes the files that are equal in every submission, since they come from the assignment's
+    /// template. Pictures among them are listed as not compared. If no student would have a picture
+    /// left, all files are kept, because all students then made the same picture.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -199,7 +199,7 @@ impl Class {
         let Some(same) = same.collect::<Option<Vec<_>>>() else {
             return false;
         };
-        // The check sums in zip files are enough, without unpacking.
+        // The CRC-32 sums in zip files are compared without unpacking.
         if file.sum.is_some() && same.iter().all(|other| other.sum.is_some()) {
             return same.iter().all(|other| other.sum == file.sum);
         }
@@ -215,7 +215,7 @@ impl Class {
     }
 }
 
-/// Reads a file of a folder or zip file.
+/// Reads a file from disk or from a zip file.
 fn bytes(file: &SubmittedFile, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
     match &file.content {
         ContentSource::File(path) => {
@@ -226,7 +226,7 @@ fn bytes(file: &SubmittedFile, budget: &UnpackBudget) -> Result<Vec<u8>, String>
     }
 }
 
-/// Returns the student of a picture on the command line.
+/// Makes the student of a picture on the command line.
 fn student_of_picture(path: &Path) -> Student {
     let place = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -251,8 +251,8 @@ fn student_of_picture(path: &Path) -> Student {
     }
 }
 
-/// Assigns each file beside pictures to the student whose picture has its name, except for the
-/// ending. A file without such a picture stays a student of its own.
+/// Moves each file beside pictures to the student whose picture has the same name except for the
+/// extension. A file without such a picture remains a student of its own.
 fn with_companions(students: Vec<Student>) -> Vec<Student> {
     let stem = |student: &Student| {
         let [file] = &student.files[..] else {
@@ -285,10 +285,10 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Recognises arguments that a shell expanded from `class/*`: returns the parent folders with the
-/// names in them that are on the command line, each of which is a student. The signs are a
-/// repository in one of them, Moodle's names, Gradescope's metadata, or two folders with a picture
-/// of the same name.
+/// Finds arguments that a shell expanded from a pattern such as `class/*`. Returns the parent
+/// folders, each with the names in it that are on the command line; each name is a student. A
+/// parent is recognised by a repository in one of the folders, by Moodle's names, by Gradescope's
+/// metadata, or by two folders with a picture of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
@@ -325,13 +325,14 @@ fn parent_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// Returns the name of a folder, even of `.`.
+/// Returns the name of a folder, even if the path is `.`.
 fn folder_name(path: &Path) -> Option<String> {
     let path = fs::canonicalize(tree::or_here(path)).ok()?;
     Some(path.file_name()?.to_string_lossy().into_owned())
 }
 
-/// Adds the number or the place to the names of students with equal names.
+/// Distinguishes students with equal names: adds the number of the submission or its place to the
+/// names.
 fn tell_apart(students: &mut [Student]) {
     let mut counts = BTreeMap::<String, usize>::new();
     for student in &*students {
@@ -345,7 +346,7 @@ fn tell_apart(students: &mut [Student]) {
     }
 }
 
-/// Returns the error that there are no students.
+/// Makes the error that there are no students.
 pub fn no_students(paths: &[PathBuf]) -> Trouble {
     let names: Vec<_> = paths.iter().map(|path| shown(path)).collect();
     Trouble(format!(

@@ -1,4 +1,4 @@
-//! Criteria of grading: assigns each mistake to the camera, an object, the board, colours,
+//! Criteria of grading. Each mistake belongs to the camera, an object, the board, colours,
 //! sampling, or hits.
 
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use crate::{
     schema,
 };
 
-/// Subject of a mistake.
+/// Criterion that a mistake belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
     /// The camera and the window.
@@ -23,12 +23,12 @@ pub enum Criterion {
     Colours,
     /// The positions of samples, and their average.
     Sampling,
-    /// The choice of visible hits, and everything else.
+    /// Which hit of a ray is visible, and everything that belongs to no other criterion.
     Hits,
 }
 
-/// Prefixes of the ids of mistakes, with their criteria. Ids without a prefix here are about a
-/// field of the camera.
+/// Criteria of mistakes by prefixes of their ids. A mistake whose id has none of these prefixes is
+/// about a field of the camera or about hits.
 const BEGINNINGS: &[(&str, Criterion)] = &[
     ("board_", Criterion::Board),
     ("half_pixel", Criterion::Sampling),
@@ -50,7 +50,6 @@ const BEGINNINGS: &[(&str, Criterion)] = &[
     ("cut_off", Criterion::Colours),
     ("not_decoded", Criterion::Colours),
     ("decoded_twice", Criterion::Colours),
-    ("six_levels", Criterion::Colours),
     ("inverted", Criterion::Colours),
     ("not_divided", Criterion::Colours),
     ("black", Criterion::Colours),
@@ -79,7 +78,7 @@ const BEGINNINGS: &[(&str, Criterion)] = &[
     ("triangle_", Criterion::Hits),
 ];
 
-/// Returns the criterion of a mistake.
+/// Returns the criterion that a mistake belongs to.
 pub fn criterion(finding: &Finding, scene: &Scene) -> Criterion {
     if let Some(index) = object(finding, scene) {
         return match scene.objects[index].shape {
@@ -105,8 +104,8 @@ fn of_id(id: &str) -> Option<Criterion> {
     }
 }
 
-/// Returns the index of the object that a mistake is about: its message begins with the object's
-/// title.
+/// Returns the index of the object that a mistake is about, which is the object whose title begins
+/// the message. Returns `None` if there is no such object.
 pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
     let title = |index: usize| {
         let object = &scene.objects[index];
@@ -118,8 +117,8 @@ pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
     (0..scene.objects.len()).find(|&index| finding.message.starts_with(&title(index)))
 }
 
-/// Returns the ids of all mistakes: those of the table, and the fields that may have another value,
-/// in alphabetical order.
+/// Returns the ids of all mistakes in alphabetical order: those of the table, and the names of
+/// fields whose values may be wrong.
 pub fn ids() -> impl Iterator<Item = &'static str> {
     let blocks = schema::block_names().filter(|name| *name != "sampler");
     let fields = blocks
@@ -133,7 +132,7 @@ pub fn ids() -> impl Iterator<Item = &'static str> {
     all.into_iter()
 }
 
-/// Whether a mistake has this id.
+/// Returns whether `id` is the id of a mistake.
 pub fn is_id(id: &str) -> bool {
     ids().any(|own| own == id)
 }

@@ -1,23 +1,24 @@
-//! Patterns of file names: `*` stands for any characters except `/`, `?` for one of them, and `**`
-//! for any characters.
+//! Patterns of file names: `*` stands for any number of characters except `/`, `?` for one
+//! character except `/`, and `**` for any number of characters.
 
-/// A pattern of file names, in lower case.
+/// A pattern of file names, stored in lower case.
 #[derive(Clone, Debug)]
 pub struct Glob(Vec<char>);
 
 impl Glob {
-    /// Parses a pattern, which ignores case.
+    /// Makes a pattern that ignores case.
     pub fn new(text: &str) -> Self {
         Self(text.to_lowercase().chars().collect())
     }
 
-    /// Whether the pattern matches a path or, if the pattern has no `/`, the last name of the path.
+    /// Returns whether the pattern matches a path. If the pattern has no `/`, only the last name of
+    /// the path is compared.
     pub fn matches(&self, path: &str) -> bool {
         let path = path.to_lowercase();
         let name = path.rsplit('/').next().unwrap_or_default();
         let text = if self.0.contains(&'/') { &path } else { name };
         let text: Vec<char> = text.chars().collect();
-        // ends[n]: whether the pattern so far matches the first n characters.
+        // ends[n] says whether the pattern up to `at` matches the first n characters.
         let mut ends = vec![false; text.len() + 1];
         ends[0] = true;
         let mut at = 0;

@@ -1,37 +1,37 @@
 //! The result of grading a student's submission.
 //!
-//! The verdict is kept as the JSON that programs get. All other formats take their words from it,
-//! so that all formats agree.
+//! The verdict is stored as the JSON that programs get. All other formats take their values from
+//! it, so that all formats agree.
 
 use serde_json::{Map, Value, json};
 
 use super::thumbnails::Pictures;
 use crate::cli::Status;
 
-/// A student, with the results of the pictures.
+/// A student, with the results of the submitted pictures.
 pub struct GradedStudent {
     pub name: String,
     /// The number of the submission in Moodle.
     pub number: Option<String>,
-    /// The folder or file, to be shown.
+    /// Path of the folder or file, for output.
     pub place: String,
     /// The pictures that were compared, the best one first.
     pub compared: Vec<ComparedPicture>,
-    /// The argument of `--picture`.
+    /// The pattern of `--picture`.
     pub chosen: Option<String>,
-    /// The other files, with the reasons why they were not compared.
+    /// The other files, each with the reason why it was not compared.
     pub not_compared: Vec<String>,
-    /// Names of other students whose picture is equal in every pixel.
+    /// Names of other students whose best picture is equal in every pixel.
     pub equal_to: Vec<String>,
-    /// The points, if they are known.
+    /// The points; `None` if there are no points, or the picture is wrong for unknown reasons.
     pub score: Option<f64>,
 }
 
 /// A picture that was compared.
 pub struct ComparedPicture {
-    /// Path in the student's submission.
+    /// Path within the student's submission.
     pub path: String,
-    /// Path from the argument on the command line.
+    /// Path that starts with the argument on the command line.
     pub shown: String,
     pub result: Result<JudgedPicture, String>,
 }
@@ -42,9 +42,9 @@ pub struct JudgedPicture {
     pub fields: Map<String, Value>,
     /// A warning if the file's format changes colours.
     pub warning: Option<&'static str>,
-    /// SHA-256 of the pixels.
+    /// SHA-256 of the picture's width and pixels.
     pub hash: [u8; 32],
-    /// The pictures for the page; `None` if no page is written.
+    /// The pictures for the HTML page; `None` if no page is written.
     pub pictures: Option<Pictures>,
 }
 
@@ -66,7 +66,7 @@ impl JudgedPicture {
             .unwrap_or_default()
     }
 
-    /// Returns the word for the verdict.
+    /// Returns the verdict as a word.
     pub fn word(&self) -> &str {
         self.text("verdict")
     }
@@ -76,7 +76,7 @@ impl JudgedPicture {
         self.text("line")
     }
 
-    /// Whether the picture is right, except for noise.
+    /// Returns whether the picture is right, except for sampling noise.
     pub fn is_right(&self) -> bool {
         matches!(self.word(), "right" | "noise")
     }
@@ -90,17 +90,17 @@ impl JudgedPicture {
         self.fields.get("samples_per_pixel")?.as_f64()
     }
 
-    /// Returns the share of the difference that the findings leave unexplained.
+    /// Returns the share of the difference that the mistakes and guesses do not explain.
     pub fn rest(&self) -> Option<f64> {
         self.fields.get("rest")?.as_f64()
     }
 
-    /// Whether the picture carries the scene text that Pinhole writes into its own pictures.
+    /// Returns whether the picture carries a scene's text, as the pictures that Pinhole writes do.
     pub fn is_ours(&self) -> bool {
         self.fields.get("rendered_by_pinhole") == Some(&Value::Bool(true))
     }
 
-    /// Whether the search for mistakes ended at its limit of work.
+    /// Returns whether the search for mistakes ended at its limit of work.
     pub fn is_limited(&self) -> bool {
         self.fields.get("limited") == Some(&Value::Bool(true))
     }
@@ -139,7 +139,7 @@ fn finding(one: &Value) -> Finding<'_> {
 }
 
 impl ComparedPicture {
-    /// Returns a rank by which pictures are sorted, smaller for better ones: a student's best
+    /// Returns the key by which a student's pictures are sorted, smaller for better ones. The best
     /// picture counts.
     pub fn rank(&self) -> (u8, f64) {
         let Ok(judged) = &self.result else {
@@ -156,7 +156,7 @@ impl ComparedPicture {
 }
 
 impl GradedStudent {
-    /// Returns the result of the best picture, or why there is none.
+    /// Returns the result of the best picture, or the reason why there is none.
     pub fn best(&self) -> Result<&JudgedPicture, String> {
         match self.compared.first() {
             Some(best) => best.result.as_ref().map_err(Clone::clone),
@@ -167,14 +167,14 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the file of the best picture; the student's place if there is no picture.
+    /// Returns the path of the best picture, or that of the submission if there is no picture.
     pub fn file(&self) -> &str {
         self.compared
             .first()
             .map_or(&self.place, |best| &best.shown)
     }
 
-    /// Returns the word for the verdict.
+    /// Returns the verdict as a word; `error` if no picture was judged.
     pub fn word(&self) -> &str {
         match self.compared.first().map(|best| &best.result) {
             Some(Ok(judged)) => judged.word(),
@@ -191,8 +191,8 @@ impl GradedStudent {
         line + &self.note()
     }
 
-    /// Returns which of several pictures the verdict is about, in parentheses; an empty text if
-    /// there is only one.
+    /// Returns a note in parentheses that says which of several pictures the verdict is about;
+    /// empty if there is only one.
     pub fn note(&self) -> String {
         match &self.compared[..] {
             [] | [_] => String::new(),
@@ -252,7 +252,7 @@ impl GradedStudent {
         Value::Object(fields)
     }
 
-    /// Returns the comment for the student.
+    /// Returns the comment that the student gets to read.
     pub fn comment(&self) -> String {
         let judged = match self.best() {
             Ok(judged) => judged,
@@ -290,7 +290,7 @@ impl GradedStudent {
     }
 }
 
-/// Formats a share in per cent.
+/// Formats a share in whole per cent; shares below 1 % as `less than 1 %`.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
         few if few < 1.0 => "less than 1 %".to_owned(),

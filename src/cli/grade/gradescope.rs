@@ -1,4 +1,4 @@
-//! A student's `results.json`, as Gradescope's harness reads it:
+//! Writes a student's `results.json`, as Gradescope's harness reads it:
 //! <https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format>.
 
 use serde_json::{Value, json};
@@ -13,8 +13,8 @@ use crate::{
     scene::{Scene, Shape},
 };
 
-/// Returns the file's content. Without points, each test counts 1. If the verdict is unknown, there
-/// are no scores, so that nobody gets one by mistake.
+/// Returns the content of the file for a student. Without a scheme of points, each test counts 1.
+/// If the verdict is unknown, no scores are written, so that nobody gets a score by mistake.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
@@ -73,7 +73,7 @@ fn whole(one: &GradedStudent, score: Option<f64>, tests: Vec<Value>) -> Value {
     results
 }
 
-/// Returns the criteria of the tests and their names.
+/// Returns the criteria that are tests, with the tests' names.
 fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     let objects = scene.objects.iter().enumerate();
     let is_board = |shape: &Shape| shape.checkerboard().is_some();
@@ -99,8 +99,8 @@ fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     all
 }
 
-/// Returns the maximum score of each test: that of an object is `object` of the points, and the
-/// other tests share the rest equally.
+/// Returns the maximum score of each test. The test of an object gets the `object` points of the
+/// scheme, and the other tests share the rest equally.
 fn shares(criteria: &[(Criterion, String)], points: Option<&PointScheme>) -> Vec<f64> {
     let Some(points) = points else {
         return vec![1.0; criteria.len()];
@@ -117,8 +117,8 @@ fn shares(criteria: &[(Criterion, String)], points: Option<&PointScheme>) -> Vec
     criteria.iter().map(share).collect()
 }
 
-/// Returns a folder name for each student, made from the student's name. The names differ even
-/// without regard to case, and are valid on all systems.
+/// Returns a folder name for each student, made from the student's name. The names differ even if
+/// case is ignored, and are valid on all systems.
 pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
     let mut taken = std::collections::BTreeSet::new();
     let name = |one: &GradedStudent| {
@@ -131,7 +131,7 @@ pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
         };
         let name: String = one.name.chars().map(plain).take(60).collect();
         let name = name.trim_matches('.');
-        // Windows reserves names such as `con`, whatever follows after a dot.
+        // Windows reserves names such as `con`, even with a dot and more text after them.
         let base = match name {
             "" => "student".to_owned(),
             name if is_reserved(name) => format!("_{name}"),
@@ -153,7 +153,7 @@ fn is_reserved(name: &str) -> bool {
         let rest = stem.strip_prefix(word);
         rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
     };
-    // The other names are those of the page's own files.
+    // The names after `nul` are those of the page's own files.
     matches!(
         &*stem,
         "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"

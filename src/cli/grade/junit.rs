@@ -1,11 +1,11 @@
-//! A class as JUnit XML for systems of continuous integration, in the form that Ant's junitreport
-//! and Jenkins read. Each student is a test case.
+//! Writes the results of a class as JUnit XML for continuous integration, in the form that Ant's
+//! junitreport and Jenkins read. Each student is a test case.
 
 use super::graded::GradedStudent;
 use crate::diagnostic::escaped;
 
-/// Returns the file's content. A wrong picture is a `failure`, one that is wrong for unknown
-/// reasons is `skipped`, and one that is missing or cannot be read is an `error`.
+/// Returns the content of the file. A wrong picture is a `failure`, a picture that is wrong for
+/// unknown reasons is `skipped`, and a picture that is missing or cannot be read is an `error`.
 pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
     let count = |word: &str| graded.iter().filter(|one| one.word() == word).count();
     let counts = format!(
@@ -33,7 +33,7 @@ pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
         };
         let message = attribute(&one.line());
         let word = match kind {
-            // `skipped` has no type.
+            // `skipped` has no attribute `type`.
             "skipped" => String::new(),
             _ => format!(" type=\"{}\"", one.word()),
         };
@@ -46,8 +46,8 @@ pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
     xml + "  </testsuite>\n</testsuites>\n"
 }
 
-/// Escapes a line for XML, which does not allow two of Unicode's characters, not even as
-/// references.
+/// Escapes a line for XML, and replaces U+FFFE and U+FFFF, which XML does not allow even as
+/// character references.
 fn attribute(text: &str) -> String {
     escaped(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

@@ -1,12 +1,12 @@
-//! `grade`: grades a class's submissions against one scene.
+//! `grade`: grades the submissions of a class for one scene.
 //!
 //! 1. The arguments become a `class` of students with files (`submission`), from the `tree` of a
 //!    folder or of a zip file (`archive`). `names` reads the naming schemes of submission systems,
-//!    and `glob` chooses pictures.
-//! 2. Each student's pictures are compared and judged (`graded`), and `points` makes a score of the
-//!    verdict by `criteria`.
-//! 3. The result is written by `table` for people and as CSV, `page` with `thumbnails`, `junit`,
-//!    `gradescope` and `moodle`.
+//!    and `glob` selects pictures.
+//! 2. Each student's pictures are compared and judged (`graded`), and `points` computes a score
+//!    from the verdict by `criteria`.
+//! 3. The result is written by `table` for people and as CSV, by `page` with `thumbnails` as HTML,
+//!    and by `junit`, `gradescope` and `moodle`.
 
 mod archive;
 mod class;
@@ -65,7 +65,7 @@ use crate::{
 /// Files of the output folder, apart from pictures.
 const FILES: [&str; 3] = ["index.html", "grade.csv", "grade.jsonl"];
 
-/// Grades the submissions that the arguments name.
+/// Grades the submissions that the arguments name, and writes the results.
 pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let Some(scene) = input.scene().scene else {
@@ -110,7 +110,7 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status.unwrap_or(Status::Done))
 }
 
-/// Reads the students, without the teacher's own files.
+/// Reads the students, leaving out the teacher's own files.
 fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     let own = [
         Some(&args.scene),
@@ -143,7 +143,8 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     Ok(class)
 }
 
-/// Returns the names of all files of the output folder, which is checked before the work.
+/// Returns the names of all files that may be written into the output folder, which is checked
+/// before the work.
 fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
     let pictures = (0..class.students.len()).flat_map(page::names);
     let own = FILES.map(str::to_owned).into_iter().chain(pictures);
@@ -162,8 +163,8 @@ fn worksheet_name(args: &GradeArgs) -> Option<String> {
     })
 }
 
-/// Prints the result in the format that is asked for, and returns the files of that format for the
-/// output folder.
+/// Prints the result in the format of `--format`. Returns the files of that format for the output
+/// folder.
 fn print_results(
     args: &GradeArgs,
     scene: &Scene,
@@ -213,7 +214,7 @@ fn lines(graded: &[GradedStudent]) -> String {
         .collect()
 }
 
-/// Returns the page, the pictures beside it, and the CSV and JSON files.
+/// Returns the HTML page, the pictures beside it, and the CSV and JSON files, each with its name.
 fn page_files(
     args: &GradeArgs,
     graded: &[GradedStudent],
@@ -240,8 +241,8 @@ fn page_files(
     files
 }
 
-/// Marks students with equal pictures. Right pictures without noise are left out, as they are all
-/// equal.
+/// Records which students have equal pictures. Pictures that are right without noise are skipped,
+/// since all of them are equal.
 fn mark_equal(graded: &mut [GradedStudent]) {
     let mut same = BTreeMap::<[u8; 32], Vec<usize>>::new();
     for (index, one) in graded.iter().enumerate() {
@@ -259,10 +260,12 @@ fn mark_equal(graded: &mut [GradedStudent]) {
     }
 }
 
-/// The results of all students, and the exact picture as a PNG if a page is written.
+/// The results of all students, and the exact picture as a PNG, which is empty if no page is
+/// written.
 type Answers = (Vec<GradedStudent>, Vec<u8>);
 
-/// Grades the students in parallel, by default on as many threads as there are processors.
+/// Grades the students in parallel, by default on as many threads as there are processors. The
+/// outer error is about starting threads, the inner one about rendering.
 fn graded(
     args: &GradeArgs,
     scene: &Scene,
@@ -329,7 +332,8 @@ fn graded(
     Ok(graded.map(|graded| (graded, exact)))
 }
 
-/// Judges a picture; the inner error says why it cannot be judged.
+/// Judges a picture. The inner error says why it cannot be judged; the outer one is about
+/// rendering.
 fn grade(
     file: &SubmittedFile,
     class: &Class,

@@ -1,9 +1,9 @@
-//! Moodle's worksheet of grades, filled in.
+//! Fills in Moodle's worksheet of grades.
 //!
 //! Rows are found by the number at the end of the identifier, as Moodle's importer does it
-//! (`mod/assign/feedback/offline/importgradeslib.php`), and columns by their headings; the importer
-//! needs the identifier, the grade and the time of the grade. Only the cells of grades and comments
-//! change: other rows are copied byte for byte.
+//! (`mod/assign/feedback/offline/importgradeslib.php`), and columns by their headings. The importer
+//! needs the identifier, the grade and the time of the grade. Only cells of grades and comments
+//! change; all other rows are copied byte for byte.
 
 use std::path::Path;
 
@@ -25,7 +25,8 @@ use crate::{
 /// Maximum length of a worksheet, in bytes.
 const LIMIT: u64 = 64 << 20;
 
-/// The English headings, which `--columns` may replace. The last two columns are optional.
+/// The English headings of the columns, which `--columns` may replace. The last two columns are
+/// optional.
 const HEADINGS: [&str; 5] = [
     "Identifier",
     "Grade",
@@ -34,7 +35,8 @@ const HEADINGS: [&str; 5] = [
     "Grade can be changed",
 ];
 
-/// Returns a worksheet with the grades and comments filled in.
+/// Returns the worksheet at `path` with the grades and comments filled in. `total` is the maximum
+/// number of points.
 ///
 /// # Errors
 ///
@@ -67,7 +69,8 @@ pub fn filled(
     {
         rows.push(row.clone());
     }
-    // The reader reports a record after a CRLF as beginning at the line feed.
+    // The CSV reader reports that a record after a CRLF begins at the line feed, so that is
+    // skipped.
     let start = |row: &ByteRecord| {
         let at = row.position().map_or(0, |at| at.byte() as usize);
         at + usize::from(at > 0 && text.get(at) == Some(&b'\n'))
@@ -129,7 +132,7 @@ pub fn filled(
             )));
         }
         let cells = row.iter().enumerate().map(|(at, cell)| match at {
-            // Without points, grades are left as they are.
+            // Without points, the grades are not changed.
             _ if at == grade && total.is_some() => {
                 one.score.map_or_else(String::new, short).into_bytes()
             }
@@ -153,7 +156,7 @@ pub fn filled(
     Ok(out)
 }
 
-/// Parses an argument of `--columns`: the English heading and the one in the worksheet.
+/// Parses an argument of `--columns`: the English heading, and the heading in the worksheet.
 fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
     let (name, heading) = text.split_once('=').unwrap_or((text, ""));
     let mut headings = HEADINGS.into_iter();
@@ -166,7 +169,8 @@ fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
     }
 }
 
-/// Returns the number at the end of an identifier such as `Participant 12345`, in any language.
+/// Returns the number at the end of an identifier such as `Participant 12345`, in any language;
+/// empty if there is none.
 fn number_at_end(cell: &[u8]) -> &str {
     let digits = cell
         .iter()

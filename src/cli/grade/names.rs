@@ -1,9 +1,10 @@
-//! Names of students: from file names by Moodle, from a metadata file by Gradescope, and from
-//! folder names by GitHub Classroom.
+//! Reads the names of students: from Moodle's file names, from Gradescope's metadata file, and from
+//! GitHub Classroom's folder names.
 
 use std::collections::BTreeMap;
 
-/// Suffix, after the assignment's name, of the folder that GitHub Classroom makes for all clones.
+/// Suffix of the folder in which GitHub Classroom puts all clones; the assignment's name precedes
+/// it.
 pub const CLONES: &str = "-submissions";
 
 /// Moodle's name of a file or folder: `Name_12345_assignsubmission_file_` and, for a file, the
@@ -16,7 +17,7 @@ pub struct MoodleName<'n> {
 }
 
 impl MoodleName<'_> {
-    /// Returns the student's name; `Participant` and the number if Moodle hides names.
+    /// Returns the student's name, or `Participant` and the number if Moodle hides names.
     pub fn shown(&self) -> String {
         match self.name {
             "" | "Participant" => format!("Participant {}", self.number),
@@ -25,30 +26,32 @@ impl MoodleName<'_> {
     }
 }
 
-/// Splits a name by Moodle into its parts. Returns `None` for any other name.
+/// Splits a name of Moodle's form into its parts. Returns `None` for any other name.
 pub fn moodle(text: &str) -> Option<MoodleName<'_>> {
     let (who, what) = text.split_once("_assignsubmission_")?;
     let (name, number) = who.rsplit_once('_')?;
-    // The word after `assignsubmission_` names the plug-in of Moodle that took the submission.
+    // The word after `assignsubmission_` is the name of the Moodle plug-in that took the
+    // submission.
     let (_, file) = what.split_once('_').unwrap_or((what, ""));
     let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
     is_number.then_some(MoodleName { name, number, file })
 }
 
-/// Returns the name of a student by the folder, without the prefix `assignment-` that GitHub
-/// Classroom adds.
+/// Returns the name of the student to whom a folder belongs. Removes the prefix `assignment-` that
+/// GitHub Classroom adds, where `slug` is the assignment's name, and the extension `.zip`.
 pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
     let own = slug.and_then(|slug| folder.strip_prefix(slug)?.strip_prefix('-'));
     let own = own.filter(|own| !own.is_empty()).unwrap_or(folder);
     own.strip_suffix(".zip").unwrap_or(own).to_owned()
 }
 
-/// Students in an export of Gradescope, by folder.
+/// Names of the students in an export of Gradescope, by folder.
 #[derive(Debug, Default)]
 pub struct Submitters(BTreeMap<String, Vec<String>>);
 
 impl Submitters {
-    /// Returns the name of the student of a folder, or of the group.
+    /// Returns the names of the students to whom a folder belongs, separated by commas; `None` if
+    /// the folder is unknown.
     pub fn name(&self, folder: &str) -> Option<String> {
         let names = self.0.get(folder)?;
         Some(match &names[..] {
@@ -64,7 +67,7 @@ impl Submitters {
     }
 }
 
-/// Reads `submission_metadata.yml`: only the subset of YAML that Ruby writes there.
+/// Reads `submission_metadata.yml`. Only the subset of YAML that Ruby writes there is supported.
 ///
 /// ```yaml
 /// submission_409194023:
@@ -113,7 +116,7 @@ pub fn submitters(text: &str) -> Submitters {
     Submitters(named.collect())
 }
 
-/// Name, e-mail address and student number; an empty text where one is missing.
+/// Name, e-mail address and student number; empty where one is missing.
 #[derive(Debug, Default)]
 struct Submitter([String; 3]);
 
@@ -130,7 +133,7 @@ impl Submitter {
     }
 }
 
-/// Returns a value without its quotation marks.
+/// Returns the value of a YAML scalar, without its quotation marks.
 fn scalar(text: &str) -> String {
     let inner = |mark: char| text.strip_prefix(mark)?.strip_suffix(mark);
     if let Some(inner) = inner('\'') {
@@ -142,8 +145,9 @@ fn scalar(text: &str) -> String {
     }
 }
 
-/// Decodes a double-quoted text by the escapes of YAML 1.2.2 (5.7). Ruby's library escapes what it
-/// considers not printable, such as all characters above U+FFFF.
+/// Decodes a double-quoted text with the escapes of YAML 1.2.2 (5.7); returns `None` if it has an
+/// invalid one. Ruby's library escapes what it considers not printable, such as all characters
+/// above U+FFFF.
 fn unescaped(text: &str) -> Option<String> {
     let mut chars = text.chars();
     let mut plain = String::new();
@@ -156,7 +160,7 @@ fn unescaped(text: &str) -> Option<String> {
             'x' => 2,
             'u' => 4,
             'U' => 8,
-            // A name has no control characters: they become blanks.
+            // A name has no control characters, so they become blanks.
             '0' | 'a' | 'b' | 't' | '\t' | 'n' | 'v' | 'f' | 'r' | 'e' | 'N' | '_' | 'L' | 'P' => {
                 plain.push(' ');
                 continue;

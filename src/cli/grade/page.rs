@@ -1,4 +1,4 @@
-//! The results of a class as a page of HTML. Thumbnails are embedded in the page, and the full
+//! Writes the results of a class as an HTML page. Thumbnails are embedded in the page, and the full
 //! pictures are files beside it.
 
 use std::collections::BTreeMap;
@@ -12,15 +12,15 @@ use crate::{cli::judge::quoted, diagnostic::escaped, film::HEAT_LEGEND, numbers:
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// Path of the exact picture of the whole scene.
+/// Path of the exact picture of the whole scene, relative to the page.
 pub const EXACT: &str = "pictures/exact.png";
 
-/// Returns the paths of a student's picture, of its heat map, and of its own exact picture.
+/// Returns the paths of a student's picture, of its heat map, and of the exact picture of its part.
 pub fn names(index: usize) -> [String; 3] {
     ["", "-difference", "-exact"].map(|what| format!("pictures/{}{what}.png", index + 1))
 }
 
-/// Returns the page.
+/// Returns the page as HTML.
 pub fn page(scene: &str, graded: &[GradedStudent], total: Option<f64>) -> String {
     let scene = escaped(scene);
     let mut html = format!(
@@ -43,7 +43,7 @@ pub fn page(scene: &str, graded: &[GradedStudent], total: Option<f64>) -> String
         + "</script>\n</body>\n</html>\n"
 }
 
-/// Returns the number of students with each verdict.
+/// Returns the number of students with each verdict, as HTML.
 fn summary(graded: &[GradedStudent]) -> String {
     let kinds = [
         ("right", "right"),
@@ -67,7 +67,7 @@ fn students(count: usize) -> String {
     }
 }
 
-/// Lists how many students made each mistake, the most frequent mistake first.
+/// Lists how many students made each mistake, as HTML, the most frequent mistake first.
 fn mistakes(graded: &[GradedStudent]) -> String {
     let mut by_id = BTreeMap::<String, Vec<usize>>::new();
     for (index, one) in graded.iter().enumerate() {
@@ -103,7 +103,7 @@ fn mistakes(graded: &[GradedStudent]) -> String {
     format!("<h2>Mistakes</h2>\n<ul class=\"mistakes\">\n{lines}</ul>\n")
 }
 
-/// Lists the groups of students with equal pictures.
+/// Lists the groups of students with equal pictures, as HTML.
 fn equal(graded: &[GradedStudent]) -> String {
     let is_first = |(index, one): &(usize, &GradedStudent)| {
         let mut before = graded[..*index].iter();
@@ -165,7 +165,7 @@ fn row(index: usize, one: &GradedStudent, has_points: bool) -> String {
     )
 }
 
-/// Returns a thumbnail that opens the full picture.
+/// Returns the HTML of a thumbnail that opens the full picture.
 fn thumbnail(index: usize, name: &str, judged: &JudgedPicture) -> String {
     let Some(pictures) = &judged.pictures else {
         return String::new();
@@ -182,7 +182,7 @@ fn thumbnail(index: usize, name: &str, judged: &JudgedPicture) -> String {
     )
 }
 
-/// Returns the verdict on a student's submission, with all details.
+/// Returns the verdict on a student's submission with all details, as HTML.
 fn verdict(one: &GradedStudent) -> String {
     let is_explained = one.best().is_ok_and(|judged| !judged.mistakes().is_empty());
     let line = if is_explained {
@@ -261,7 +261,7 @@ fn findings(before: &str, all: &[Finding]) -> String {
     format!("<ul>{}</ul>", all.iter().map(item).collect::<String>())
 }
 
-/// Returns the objects that are not right, and how many are right.
+/// Returns the objects that are not right, and the number of right ones, as HTML.
 fn objects(judged: &JudgedPicture) -> String {
     let all = judged.fields.get("objects").and_then(|all| all.as_array());
     let all: Vec<_> = all.into_iter().flatten().collect();

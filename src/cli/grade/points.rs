@@ -1,4 +1,4 @@
-//! Points for pictures: the total for a right one, and the deduction for each mistake.
+//! Points for pictures: the total for a right picture, and the deduction for each mistake.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -11,7 +11,7 @@ use crate::{
     scene::Scene,
 };
 
-/// Maximum length of a file of points, in bytes.
+/// Maximum length of the file of points, in bytes.
 const LIMIT: u64 = 1 << 20;
 
 /// Key of the deduction for every mistake that is not listed.
@@ -22,14 +22,16 @@ const OTHERS: &str = "*";
 pub struct PointScheme {
     /// Points for a right picture.
     pub total: f64,
-    /// Deduction once for each object that mistakes are about, unless their ids are listed.
+    /// Deduction for each object with mistakes, once per object; mistakes whose ids are listed are
+    /// not included.
     pub object: Option<f64>,
-    /// Deduction for each mistake, by its id.
+    /// Deduction for each mistake, by the mistake's id.
     mistakes: BTreeMap<String, f64>,
 }
 
 impl PointScheme {
-    /// Reads `{"total": 20, "object": 2, "mistakes": {"roll_sign": 3, "*": 2}}`.
+    /// Reads a scheme from a JSON file such as `{"total": 20, "object": 2, "mistakes":
+    /// {"roll_sign": 3, "*": 2}}`.
     ///
     /// # Errors
     ///
@@ -88,7 +90,7 @@ impl PointScheme {
         })
     }
 
-    /// Returns the points of a picture; `None` if it is wrong for unknown reasons.
+    /// Returns the points of a picture; `None` if the picture is wrong for unknown reasons.
     pub fn score(&self, judged: &JudgedPicture, scene: &Scene) -> Option<f64> {
         match judged.word() {
             "right" | "noise" => Some(self.total),
@@ -100,7 +102,7 @@ impl PointScheme {
         }
     }
 
-    /// Returns the deduction for each mistake, in the mistakes' order.
+    /// Returns the deduction for each mistake, in the order of the mistakes.
     pub fn taken_off(&self, judged: &JudgedPicture, scene: &Scene) -> Vec<f64> {
         let mut objects = Vec::new();
         let mistakes = judged.mistakes();

@@ -12,8 +12,8 @@ use crate::cli::{
     judge,
 };
 
-/// Difference of times, in seconds, up to which they count as equal: zip files store even seconds,
-/// and checking out a repository takes a while.
+/// Maximum difference, in seconds, between times that count as equal. Zip files store only even
+/// seconds, and checking out a repository takes a while.
 const SAME_TIME: i64 = 2;
 
 /// Maximum number of pictures of the same time that are compared.
@@ -22,32 +22,33 @@ const MOST_PICTURES: usize = 12;
 /// A student's submission.
 #[derive(Debug)]
 pub struct Student {
-    /// The name in the submission system, or that of the folder or file.
+    /// The name in the submission system, or the name of the folder or file.
     pub name: String,
     /// The number of the submission in Moodle.
     pub number: Option<String>,
-    /// The folder or file, to be shown.
+    /// Path of the folder or file, for output.
     pub place: String,
     pub files: Vec<SubmittedFile>,
-    /// Whether the submission is a clone of a repository, where the files' times mean nothing.
+    /// Whether the submission is a clone of a repository, in which the files' times have no
+    /// meaning.
     pub is_clone: bool,
 }
 
 /// A submitted file.
 #[derive(Debug)]
 pub struct SubmittedFile {
-    /// Path in the student's submission, with `/` between folders.
+    /// Path within the student's submission, with `/` between folders.
     pub path: String,
-    /// Path from the argument on the command line, to be shown.
+    /// Path that starts with the argument on the command line, for output.
     pub shown: String,
-    /// Time of change in seconds since 1970, if known.
+    /// Modification time in seconds since 1970, if known.
     pub time: Option<i64>,
     /// Length according to the folder or the zip file, in bytes.
     pub length: u64,
-    /// The CRC-32 that a zip file has for the file.
+    /// The CRC-32 of the file, if it is in a zip file.
     pub sum: Option<u32>,
     pub content: ContentSource,
-    /// Whether the file itself is on the command line: it is a picture, whatever its name.
+    /// Whether the file itself is on the command line. It is then a picture, whatever its name is.
     pub is_named: bool,
 }
 
@@ -63,8 +64,8 @@ pub enum ContentSource {
 }
 
 impl SubmittedFile {
-    /// Reads the file as a picture. The first bytes decide whether it is one, before the rest is
-    /// read.
+    /// Reads the file, which should be a picture. If the first bytes of a file on disk show that it
+    /// is none, the rest is not read.
     ///
     /// # Errors
     ///
@@ -82,7 +83,8 @@ impl SubmittedFile {
         }
     }
 
-    /// Whether the file may be a picture by its name, or matches the pattern of `--picture`.
+    /// Returns whether the file may be a picture: it is on the command line, or its name matches
+    /// `chosen`, the pattern of `--picture`, or else has the extension of a picture.
     pub fn is_picture(&self, chosen: Option<&Glob>) -> bool {
         let is_read = !matches!(self.content, ContentSource::Refused(_));
         self.is_named
@@ -94,16 +96,16 @@ impl SubmittedFile {
     }
 }
 
-/// The choice of a student's files that are compared.
+/// The files of a student that are compared, and those that are not.
 #[derive(Debug, Default)]
 pub struct PictureChoice<'s> {
     pub pictures: Vec<&'s SubmittedFile>,
-    /// The other files, with the reasons why they are not compared.
+    /// The other files, with reasons why some of them are not compared.
     pub others: Vec<String>,
 }
 
 impl Student {
-    /// Returns the newest of the pictures, or several if the times do not tell which one is the
+    /// Returns the newest picture, or several pictures if the times do not tell which is the
     /// newest.
     pub fn choice(&self, chosen: Option<&Glob>) -> PictureChoice<'_> {
         let is_picture = |file: &&SubmittedFile| file.is_picture(chosen);

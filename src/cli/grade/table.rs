@@ -1,11 +1,11 @@
-//! The results of a class as a table, for people and as CSV.
+//! Writes the results of a class as a table, for people and as CSV.
 
 use std::iter;
 
 use super::graded::{Finding, GradedStudent, JudgedPicture, percent};
 use crate::{cli::judge::quoted, diagnostic::visible_line, numbers::short};
 
-/// Returns the cells of the error and of the samples per pixel.
+/// Returns the cells of the RMSE and of the samples per pixel; empty if no picture was judged.
 pub fn figures(one: &GradedStudent) -> [String; 2] {
     match one.best() {
         Err(_) => [String::new(), String::new()],
@@ -18,7 +18,7 @@ pub fn figures(one: &GradedStudent) -> [String; 2] {
     }
 }
 
-/// Returns a table for people, with further details below a student's line.
+/// Returns a table for people, with further details below a student's row.
 pub fn table(graded: &[GradedStudent]) -> String {
     let widest = graded
         .iter()
@@ -69,7 +69,7 @@ pub fn table(graded: &[GradedStudent]) -> String {
     iter::once(head).chain(graded.iter().map(row)).collect()
 }
 
-/// Joins the first few items of a list, and says how many more there are.
+/// Joins at most six items of a list, and adds how many more there are.
 pub fn some(list: &[String]) -> String {
     /// Maximum number of items that are listed.
     const MOST: usize = 6;
@@ -144,7 +144,7 @@ pub fn csv(graded: &[GradedStudent]) -> String {
 const HEAD: &str = "file,verdict,rmse,samples_per_pixel,line,set,student,number,mistakes,explains,help,guesses,rest,limited,not_compared,equal_to,score\n";
 
 /// Quotes a text as a cell of a CSV file. A text that a spreadsheet would take for a formula gets a
-/// `'` in front, which makes it a text there.
+/// `'` in front, so that it remains a text there.
 fn text_cell(text: &str) -> String {
     let guard = if text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r', '\n'])
     {

@@ -1,4 +1,5 @@
-//! A picture and its heat map for a page: embedded thumbnails, and full pictures beside it.
+//! The pictures of a student for the HTML page: embedded thumbnails, and full pictures beside the
+//! page.
 
 use std::io;
 
@@ -7,18 +8,19 @@ use crate::film::{self, Film, Tolerance};
 /// Maximum side of a thumbnail, in pixels.
 const LONGEST: u32 = 320;
 
-/// The pictures that a page shows of a student.
+/// The pictures that the page shows of a student.
 pub struct Pictures {
     /// Thumbnails of the picture and its heat map, as `data:` URIs.
     pub thumbnails: [String; 2],
     /// The picture and its heat map, as PNG files.
     pub whole: [Vec<u8>; 2],
-    /// The exact picture of the part, as a PNG file; `None` if the picture shows the whole scene.
+    /// The exact picture of the part that is shown, as a PNG file; `None` if the picture shows the
+    /// whole scene.
     pub exact: Option<Vec<u8>>,
 }
 
 impl Pictures {
-    /// Makes the pictures of a film and the exact film of the same part.
+    /// Makes the pictures from a film and the exact film of the same part.
     pub fn new(
         film: &Film,
         exact: &Film,
@@ -34,7 +36,8 @@ impl Pictures {
     }
 }
 
-/// Encodes a picture as a `data:` URI; a large one is reduced to the means of blocks of pixels.
+/// Encodes a picture as a `data:` URI. A large picture is first reduced to the means of blocks of
+/// pixels.
 fn data(film: &Film) -> io::Result<String> {
     let small = film::reduced(film, [LONGEST; 2]).map_err(io::Error::other)?;
     film::data_uri(&small)

@@ -1,5 +1,5 @@
-//! The files in a folder or zip file, with the names of the folders around them. Links are not
-//! followed, and files that systems leave behind are skipped.
+//! Lists the files in a folder or zip file, with the names of the folders around them. Links are
+//! not followed, and files that operating systems create are skipped.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -27,10 +27,10 @@ const MOST_FILES: usize = 200_000;
 /// Maximum depth of nested folders.
 const DEEPEST: usize = 40;
 
-/// Maximum depth of the folders that are recorded: those of classes and of students.
+/// Maximum depth of the folders that are recorded: those of a class, and those of its students.
 const NAMED: usize = 2;
 
-/// A file, after the names of its folders and its own name.
+/// A file, with the names of its folders and its own name in order.
 pub type FoundFile = (Vec<String>, SubmittedFile);
 
 /// The files in a folder and its subfolders, or in a zip file.
@@ -39,14 +39,14 @@ pub struct FileTree {
     /// The argument on the command line, with a `/` at its end.
     pub place: String,
     pub found: Vec<FoundFile>,
-    /// Folders by their names, including empty ones.
+    /// The folders, including empty ones, each as the names from the argument down to it.
     pub folders: BTreeSet<Vec<String>>,
-    /// Folders that are repositories.
+    /// The folders that are repositories, in the same form.
     pub clones: BTreeSet<Vec<String>>,
 }
 
 impl FileTree {
-    /// Reads a folder, except the teacher's own files and folders, `own`.
+    /// Lists a folder, except the teacher's own files and folders, `own`.
     ///
     /// # Errors
     ///
@@ -57,7 +57,7 @@ impl FileTree {
         Ok(tree)
     }
 
-    /// Reads some entries of a folder.
+    /// Lists those entries of a folder whose names are in `names`, except `own`.
     ///
     /// # Errors
     ///
@@ -70,7 +70,8 @@ impl FileTree {
         Ok(tree)
     }
 
-    /// Lists a zip file.
+    /// Lists a zip file. If all entries are in a single folder that looks like a class, lists that
+    /// folder's content.
     ///
     /// # Errors
     ///
@@ -95,7 +96,7 @@ impl FileTree {
         }
     }
 
-    /// Reads a subfolder; `before` has the names of the folders from the argument down to it.
+    /// Lists a subfolder. `before` has the names of the folders from the argument down to it.
     fn walk(&mut self, folder: &Path, before: &[String], own: &[&Path]) -> io::Result<()> {
         let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
         self.walk_entries(entries, before, own)
@@ -128,8 +129,8 @@ impl FileTree {
                 } else {
                     Err(io::Error::other("folders are nested too deeply"))
                 };
-                // The argument itself must be readable; a subfolder that is not is listed with the
-                // error.
+                // The argument itself must be readable. A subfolder that cannot be read is listed
+                // with the error.
                 if let Err(error) = inner {
                     self.push(names, ContentSource::Refused(error.to_string()), None, 0)?;
                 }
@@ -178,7 +179,7 @@ impl FileTree {
         Ok(())
     }
 
-    /// Records a folder and those around it.
+    /// Records a folder and the folders around it, up to depth [`NAMED`].
     fn add_folder(&mut self, names: &[String]) {
         for depth in 1..=names.len().min(NAMED) {
             self.folders.insert(names[..depth].to_vec());
@@ -196,10 +197,10 @@ impl FileTree {
     fn unpack(&mut self, path: &Path, before: &[String]) -> Result<(), String> {
         let (archive, entries) = Archive::open(path)?;
         let archive = Arc::new(archive);
-        // The zip file is a student's, even if it is empty.
+        // The zip file belongs to a student, even if it is empty.
         self.add_folder(before);
         for entry in entries {
-            // Names of entries are never used as paths, so `..` is simply dropped.
+            // Names of entries are never used as paths, so `..` can be dropped.
             let parts = entry.name.split('/').map(str::to_owned);
             let parts: Vec<_> = parts
                 .filter(|part| !matches!(&**part, "" | "." | ".."))
@@ -234,8 +235,8 @@ impl FileTree {
         Ok(())
     }
 
-    /// Returns the single folder around all entries of a zip file, if its content looks like a
-    /// class.
+    /// Returns the single folder around all entries of a zip file if its content looks like a
+    /// class, and otherwise `None`.
     fn only_folder(&self) -> Option<String> {
         let files = self.found.iter().map(|(names, _)| &names[..]);
         let all: Vec<_> = files
@@ -251,9 +252,9 @@ impl FileTree {
         (is_alone && inner.len() > 1 && is_in_folders && !is_somebodys).then(|| root.clone())
     }
 
-    /// Removes and returns each folder that a submission system made for a whole class, with its
-    /// name: one with Gradescope's metadata or Moodle's names in it, or with GitHub Classroom's
-    /// suffix.
+    /// Removes each folder that a submission system made for a whole class, and returns the folders
+    /// with their names. Such a folder contains Gradescope's metadata or Moodle's names, or has
+    /// GitHub Classroom's suffix.
     pub fn take_classes(&mut self) -> Vec<(String, Self)> {
         let files = self.found.iter().map(|(names, _)| names);
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
@@ -303,7 +304,7 @@ impl FileTree {
     }
 }
 
-/// Returns the path, or `.` if it is empty.
+/// Returns the path, or `.` if the path is empty.
 pub fn or_here(path: &Path) -> &Path {
     if path.as_os_str().is_empty() {
         Path::new(".")
@@ -312,13 +313,13 @@ pub fn or_here(path: &Path) -> &Path {
     }
 }
 
-/// Whether a path names a zip file.
+/// Returns whether a path is a file whose extension is `zip`, ignoring case.
 pub fn is_zip(path: &Path) -> bool {
     let ending = path.extension();
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("zip")) && path.is_file()
 }
 
-/// Whether a name is hidden or that of a file which systems leave behind.
+/// Returns whether a name is hidden, or is that of a file that operating systems create.
 fn is_passed_over(name: &str) -> bool {
     const NAMES: [&str; 3] = ["__MACOSX", "Thumbs.db", "desktop.ini"];
     name.starts_with('.') || NAMES.iter().any(|own| name.eq_ignore_ascii_case(own))

@@ -87,7 +87,9 @@ const SAME: f64 = 1e-6;
 pub struct DecimalRounding {
     /// Number of decimals, which may be negative.
     decimals: i32,
-    /// Absolute amounts that are rounded already: a sum with one of them keeps all of its digits.
+    /// Absolute values of the amounts that `together` has rounded. When one of them is added to a
+    /// number, the sum keeps all decimals of both and is not rounded to `decimals`, so that points
+    /// which are not held stay in place.
     exact: Vec<f64>,
 }
 

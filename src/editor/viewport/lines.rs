@@ -52,21 +52,10 @@ impl Projection {
         lines
     }
 
-    /// Clips a segment to the picture grown by a number of its sizes on each side (algorithm of
-    /// Liang and Barsky). Returns `None` if nothing of it is left.
-    pub(super) fn clip(&self, [from, to]: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
-        let along = to - from;
-        let (mut first, mut last): (f64, f64) = (0.0, 1.0);
-        for axis in 0..2 {
-            let ends = [-grown, 1.0 + grown].map(|end| end * self.size[axis] - from[axis]);
-            if along[axis] != 0.0 {
-                let [a, b] = ends.map(|end| end / along[axis]);
-                (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
-            } else if ends[0] > 0.0 || ends[1] < 0.0 {
-                return None;
-            }
-        }
-        (first < last).then(|| [first, last].map(|part| from.lerp(to, part)))
+    /// Clips a segment to the picture, enlarged on each side by `grown` times its width or height.
+    /// Returns `None` if nothing of the segment is left.
+    pub(super) fn clip(&self, segment: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
+        clip(segment, [-grown * self.size, (1.0 + grown) * self.size])
     }
 
     /// Returns the image of all directions whose y is `height` at a depth of 1: a line from one
@@ -84,4 +73,21 @@ impl Projection {
         let is_somewhere = far.is_finite() && along != DVec2::ZERO;
         is_somewhere.then(|| self.clip([foot - far, foot + far], 1.0))?
     }
+}
+
+/// Clips a segment to a rectangle, given by its least and its greatest coordinates (algorithm of
+/// Liang and Barsky). Returns `None` if nothing of it is left.
+pub fn clip([from, to]: [DVec2; 2], rectangle: [DVec2; 2]) -> Option<[DVec2; 2]> {
+    let along = to - from;
+    let (mut first, mut last): (f64, f64) = (0.0, 1.0);
+    for axis in 0..2 {
+        let ends = rectangle.map(|corner| corner[axis] - from[axis]);
+        if along[axis] != 0.0 {
+            let [a, b] = ends.map(|end| end / along[axis]);
+            (first, last) = (first.max(a.min(b)), last.min(a.max(b)));
+        } else if ends[0] > 0.0 || ends[1] < 0.0 {
+            return None;
+        }
+    }
+    (first < last).then(|| [first, last].map(|part| from.lerp(to, part)))
 }

@@ -27,6 +27,7 @@ use crate::{
 pub use add::{Added, add, duplicate};
 pub use drag::{Drag, Dragged, alone, drag};
 pub use handles::Along;
+pub use lines::clip;
 pub use overlays::{
     MOST_OBJECTS, ObjectOverlay, Overlays, ShownObjects, Vanishing, hide, overlays,
 };

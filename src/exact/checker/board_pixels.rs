@@ -1,11 +1,12 @@
-//! Pixels that show only a checkerboard and few of its lines, which are most pixels of more than
-//! one colour. They are computed in batches of eight.
+//! Batches of eight pixels that show only a checkerboard and are crossed by few of its lines. Most
+//! pixels of more than one colour are of this kind.
 //!
-//! In: such pixels one by one, in any order, with the squares at their corners. Out: the integral
-//! of the board's sign over each. Pixels are sorted by how many lines of either family cross them;
-//! eight with the same two numbers are computed at once by `strips_simd`, which bounds the errors.
-//! The operations on a pixel's numbers are the same whichever others share its batch, so that the
-//! result depends neither on their order nor on which part of a picture is wanted.
+//! In: such pixels one by one, in any order, with the board's squares at their corners. Out: the
+//! integral of the board's sign over each pixel. Pixels are sorted by the numbers of lines of both
+//! families that cross them. Eight pixels with the same two numbers are computed at once by
+//! `strips_simd`, which bounds the errors. The arithmetic for a pixel does not depend on the other
+//! pixels of its batch. The result therefore depends neither on the order of the pixels nor on the
+//! part of the picture that is rendered.
 
 use super::{
     homography::BoundedSum,
@@ -13,39 +14,40 @@ use super::{
 };
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
-/// Maximum number of lines of a family that cross the strips. There is a batch for each pair of
-/// numbers of lines, and pixels with more lines are few. (Measured: with 8 or 128, times differ by
-/// about a tenth at most.)
+/// Maximum number of lines of the family that has more lines in the pixel; a pixel with more is
+/// returned without an integral. There is a batch for each pair of numbers of lines, and pixels
+/// with more lines are few. Measured: with 8 or 128, the running time changes by at most about a
+/// tenth.
 const MAX_LINES: usize = 32;
 
 /// A pixel that shows only a checkerboard.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::exact) struct BoardPixel {
-    /// Column.
+    /// Column of the pixel.
     pub x: u32,
-    /// Row.
+    /// Row of the pixel.
     pub y: u32,
-    /// The checkerboard.
+    /// The surface with the checkerboard.
     pub candidate: VisibilityCandidate,
 }
 
-/// Queued pixels, by the numbers of lines that cross them.
+/// Queues of pixels, one for each pair of numbers of lines that cross them.
 #[derive(Debug)]
 pub(in crate::exact) struct BoardBatches {
     batches: Vec<Batch>,
     buffer: StripBuffer,
 }
 
-/// Queued pixels that the same numbers of lines cross.
+/// A queue of pixels that are crossed by the same numbers of lines.
 #[derive(Debug, Default)]
 struct Batch {
-    /// The pixels, no more than are computed at once.
+    /// The pixels, fewer than [`PIXELS`] between calls.
     pixels: Vec<BoardPixel>,
     lines: BoardLanes,
 }
 
 impl BoardBatches {
-    /// Starts without pixels.
+    /// Creates empty queues.
     pub fn new() -> Self {
         let batches = (0..=MAX_STRIP_LINES).flat_map(|_| (0..=MAX_LINES).map(|_| Batch::default()));
         Self {
@@ -54,9 +56,9 @@ impl BoardBatches {
         }
     }
 
-    /// Queues a pixel. Calls `emit` for each pixel of a batch that becomes full, with its integral,
-    /// which is positive for the first colour. Calls `emit` at once, without an integral, for a
-    /// pixel that too many lines cross.
+    /// Queues a pixel. If this fills its batch, computes the batch and calls `emit` for each of its
+    /// pixels with the integral, which is positive for the first colour. If too many lines cross
+    /// the pixel, calls `emit` at once without an integral.
     pub fn push(
         &mut self,
         pixel: BoardPixel,
@@ -81,7 +83,7 @@ impl BoardBatches {
         }
     }
 
-    /// Computes all pixels that are still queued.
+    /// Computes all pixels that are still queued, and calls `emit` for each.
     pub fn finish(mut self, emit: &mut impl FnMut(BoardPixel, Option<BoundedSum>)) {
         for (i, batch) in self.batches.iter_mut().enumerate() {
             let crossing = [i / (MAX_LINES + 1), i % (MAX_LINES + 1)];
@@ -91,7 +93,7 @@ impl BoardBatches {
 }
 
 impl Batch {
-    /// Computes the integrals of the queued pixels and removes these.
+    /// Computes the queued pixels, calls `emit` for each with its integral, and empties the queue.
     fn compute(
         &mut self,
         crossing: [usize; 2],
@@ -131,7 +133,8 @@ mod tests {
         World::new(&scene)
     }
 
-    /// The integrals of all pixels with known squares at their corners.
+    /// Returns the integrals of all pixels that show only the board, with known squares at their
+    /// corners.
     fn sums(world: &World) -> Vec<(BoardPixel, Option<BoundedSum>)> {
         let [width, height] = SIZE;
         let mut batches = BoardBatches::new();
@@ -176,7 +179,7 @@ mod tests {
         fn it_is_what_clipping_square_by_square_gives(
             place in prop::array::uniform2(-9.0..9.0_f64),
             offset in prop::sample::select(vec![0.0, 1e6, -1e12]),
-            // As powers of ten.
+            // `height` and `square` are exponents of ten.
             height in -1.0..2.0_f64,
             square in -1.0..3.0_f64,
             yaw in 0.0..360.0_f64,
@@ -197,8 +200,8 @@ mod tests {
             let (sums, mut compared) = (sums(&world), 0);
             let are_all_flat = sums.is_empty();
             for (BoardPixel { x, y, .. }, sum) in sums {
-                // There is no sum if too many lines cross; it is NaN if squares are as large as
-                // numbers can be.
+                // There is no sum if too many lines cross the pixel. The sum is NaN if squares are
+                // about as large as the largest `f64`.
                 let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
                     continue;
                 };

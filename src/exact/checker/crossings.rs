@@ -1,8 +1,8 @@
 //! The lines that one edge of a polygon crosses, and the direct sum over them.
 //!
-//! In: the series X of [`green`](super::green) along an edge, and where its first line is crossed.
-//! Out: Σ (−1)^j X over crossings, in lanes that the compiler vectorises, with a bound on
-//! truncation and rounding errors.
+//! In: the series X of [`green`](super::green) along an edge, and the point where the edge crosses
+//! its first line. Out: Σ (−1)^j·X over the crossings j, computed in lanes that the compiler
+//! vectorises, with a bound on truncation and rounding errors.
 
 use super::homography::{BoundedSum, UNIT};
 use super::special::{reduce_double, waves};
@@ -11,25 +11,29 @@ use std::f64::consts::PI;
 
 use multiversion::multiversion;
 
-/// Maximum number of terms of the asymptotic series.
+/// Maximum number of terms of the series X.
 pub(super) const MAX_TERMS: usize = 20;
-/// Upper limit on the number of blocks of a sum. m grows by half in each block until, after 15,
-/// they have `MAX_BLOCK` crossings, and 300,000 crossings are 74 such blocks.
+/// Upper limit on the number of blocks of a sum, which share the tolerance. Over each block, m
+/// grows by half. After 15 blocks, a block has `MAX_BLOCK` crossings, and 300,000 crossings are 74
+/// such blocks.
 const MAX_BLOCKS: f64 = 128.0;
 
-/// Minimum number of crossings of a block: enough that choosing its number of terms is a small part
-/// of the work. (Measured: a quarter and four times as many change times by about a tenth at most.)
+/// Minimum number of crossings of a block. With this many, choosing the block's number of terms is
+/// a small part of the work. Measured: with 4 or 64, the running time changes by at most about a
+/// tenth.
 const MIN_BLOCK: f64 = 16.0;
-/// Maximum number of crossings of a block: few enough for the rounding error of a sum. (Measured: a
-/// quarter and four times as many change times by about a tenth at most.)
+/// Maximum number of crossings of a block, which limits the rounding error of the block's sum.
+/// Measured: with 1024 or 16,384, the running time changes by at most about a tenth.
 const MAX_BLOCK: f64 = 4096.0;
 
-/// Number of running sums; it is even because the signs of the terms alternate.
+/// Number of running sums. It is even, so that all terms in a running sum have the same sign.
 const LANES: usize = 8;
-/// Number of crossings after which t is computed in double-double again.
+/// Number of crossings after which t is computed anew in double-double.
 const CHUNK: usize = 64;
 
-/// X on an edge: Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … terms.
+/// The series X of an edge, with the depth m and the periodic Euler polynomials A_k ([`waves`]):
+///
+/// X = Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … `terms`.
 pub(super) struct EdgeSeries {
     pub terms: usize,
     pub factors: [f64; MAX_TERMS + 1],
@@ -55,7 +59,7 @@ impl EdgeSeries {
         sum * u * u
     }
 
-    /// Bounds the k-th term, by |A_k+1| ≤ ½π^(−k).
+    /// Bounds the absolute value of the `k`-th term of X at a depth, by |A_k+1| ≤ ½π^(−k).
     pub(super) fn size(&self, k: usize, depth: f64) -> f64 {
         let u = 1.0 / depth;
         let mut size = 0.5 * self.factors[k].abs() * u * u;
@@ -65,8 +69,8 @@ impl EdgeSeries {
         size
     }
 
-    /// Returns how many terms a sum over `lines` crossings from a depth on needs for a truncation
-    /// error below `limit`, and that error.
+    /// Returns the number of terms that a sum over `lines` crossings needs if its nearest has depth
+    /// `depth`, and the truncation error. The error is at most `limit`.
     fn terms_for(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
         let (mut terms, mut left) = (self.terms, 0.0);
         while terms > 1 {
@@ -83,22 +87,22 @@ impl EdgeSeries {
 
 /// The lines of one family that an edge crosses.
 pub(super) struct LineCrossings {
-    /// t at the first line, and its step from line to line, both in half turns and reduced by
-    /// whole turns.
+    /// Value of t at the first line, and its step from line to line, in double-double and reduced
+    /// by whole turns. One square is half a turn.
     pub reduced: [Double; 2],
-    /// m at the first line.
+    /// Depth m at the first line.
     pub depth: f64,
-    /// m's step from line to line.
+    /// Step of the depth m from line to line.
     pub rise: f64,
     /// Number of lines, an integer; infinite if the edge ends at the horizon.
     pub count: Double,
 }
 
 impl LineCrossings {
-    /// Returns Σ (−1)^j X over the first `lines` crossings, term by term.
+    /// Computes Σ (−1)^j·X over the first `lines` crossings, crossing by crossing.
     ///
-    /// The sum consists of blocks over which m grows by half, each with as many terms as it needs
-    /// for `tolerance`.
+    /// The sum consists of blocks. Over each block m grows by half, within the limits on the number
+    /// of crossings. Each block uses as few terms of the series as `tolerance` allows.
     pub(super) fn one_by_one(&self, series: &EdgeSeries, lines: f64, tolerance: f64) -> BoundedSum {
         let limit = tolerance / MAX_BLOCKS;
         let mut sum = BoundedSum::default();
@@ -112,11 +116,11 @@ impl LineCrossings {
             let (terms, left) = series.terms_for(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // t is off by two roundings, and by three roundings of the distance it has covered
-            // within a chunk. X′, which is at most π times X's bound, translates this to X. That
-            // distance is half as long on average; four times all this is certainly enough. A term
-            // has 14 roundings of its own, counted as in `green`; the sum of the block has as many
-            // as are added in a lane.
+            // t is off by two roundings, and by three roundings of the distance from the start of
+            // its chunk, which is half a chunk on average. The slope of X is at most π times the
+            // bound on X, so that π turns errors of t into errors of X. Four times all this is
+            // certainly enough. A term has 14 roundings of its own, counted as in `green`. The sum
+            // in a lane has as many roundings as numbers are added to it.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
@@ -138,8 +142,8 @@ impl LineCrossings {
         let mut j = done;
         while left > 0 {
             let now = left.min(CHUNK);
-            // The compiler vectorises this loop to the end of the last vector; superfluous values
-            // are not added.
+            // The compiler vectorises this loop up to a whole number of vectors. The values beyond
+            // `now` are superfluous and set to 0 below.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
             let t = self.reduced_at(&Double::from_f64(j)).hi;
@@ -158,18 +162,19 @@ impl LineCrossings {
         ((sums[0] - sums[1]) + (sums[2] - sums[3])) + ((sums[4] - sums[5]) + (sums[6] - sums[7]))
     }
 
-    /// Returns t at crossing j, reduced by whole turns.
+    /// Returns t at crossing `j`, in half turns, reduced by whole turns.
     pub(super) fn reduced_at(&self, j: &Double) -> Double {
         let [t, stride] = &self.reduced;
         reduce_double(&t.plus(&stride.times(j)))
     }
 
-    /// Returns t's step plus the half turn by which s changes, reduced by whole turns.
+    /// Returns the step of t from line to line plus half a turn, reduced by whole turns. The half
+    /// turn accounts for the change of sign from crossing to crossing.
     pub(super) fn alternating_step(&self) -> Double {
         reduce_double(&self.reduced[1].plus(&Double::from_f64(1.0)))
     }
 
-    /// Computes X at crossing j + i, where t is that of crossing j.
+    /// Computes X at crossing `j` + `i`. `t` is the value at crossing `j`.
     #[inline(always)]
     fn at<const TERMS: usize, const ROWS: usize>(
         &self,
@@ -189,8 +194,8 @@ impl LineCrossings {
     }
 }
 
-/// Returns Σ (−1)^j X over the `count` crossings after the `done` first ones, with `terms` terms of
-/// the series.
+/// Computes Σ (−1)^j·X over the `count` crossings after the first `done` ones, with at least
+/// `terms` terms of the series. The first of these crossings has j = 0.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

@@ -1,22 +1,42 @@
-//! The board's integral over a polygon of many squares, along its boundary, by Green's theorem with
-//! periodic Euler polynomials. The symbols are those of [`Homography`].
+//! The board's integral over a polygon of many squares, as a sum along its boundary, by Green's
+//! theorem with periodic Euler polynomials. The symbols a, b, m, K, s are those of [`Homography`].
 //!
-//! In: a convex polygon in which m changes little from square to square, and which may reach the
-//! horizon. Out: the integral of the board's sign, with a bound: the truncation of the series and
-//! of sums over crossings, roundings, and displacements by roundings of the forms.
+//! In: a convex polygon in which the depth m changes little from square to square, and which may
+//! reach the horizon. Out: the integral of the board's sign, with an error bound. The bound covers
+//! the truncation of the series and of sums over crossings, roundings, and the displacement of
+//! squares by rounding errors of the forms.
 //!
-//! With the waves A_k of `special` and J = K/m³, P = Σ_j (−1)^j A_j+1(a) ∂_a^j J, of n terms,
-//! satisfies ∂_a P = s(a)·J up to ±A_n(a) ∂_a^n J. By Green's theorem ∬ s(a) s(b) J da db = ∮ s(b)
-//! P db. Likewise Q = Σ_k (−1)^k A_k+1(b) ∂_b^k J, and Ψ = ΣΣ (−1)^(j+k) A_j+1(a) A_k+1(b) ∂_a^j
-//! ∂_b^k J, j + k < n, satisfies dΨ = s(a) Q da + s(b) P db up to terms of order n. On an edge,
-//! where m grows by γ per unit of b, X = −K Σ_k (k+1)!/2 · S_k A_k+1(b) m^(−2−k), k = 1 … n, with
-//! S_1 = 1 and S_k+1 = γ·S_k + (∂m/∂b)^k, satisfies dX/db = −Q up to order n. Hence with ρ = da/db
+//! With the periodic Euler polynomials A_k of [`waves`] and J = K/m³, the sum
 //!
-//! ∫ s(b) P db = ΔΨ − ∫ s(a) Q da = ΔΨ + ρ ∫ s(a) dX, and with the roles exchanged = −(db/da) ∫
-//! s(b) dX′(a),
+//! P = Σ_j (−1)^j·A_j+1(a)·∂_a^j J, j < n,
 //!
-//! and ∫ s(a) dX is [s(a)·X] minus the jumps of s(a) times X. An edge therefore costs as many terms
-//! as it crosses lines of one family, and the family with fewer crossings is chosen.
+//! satisfies ∂_a P = s(a)·J up to ±A_n(a)·∂_a^n J. By Green's theorem,
+//!
+//! ∬ s(a)·s(b)·J da db = ∮ s(b)·P db.
+//!
+//! Likewise let Q = Σ_k (−1)^k·A_k+1(b)·∂_b^k J for k < n, and
+//!
+//! Ψ = ΣΣ (−1)^(j+k)·A_j+1(a)·A_k+1(b)·∂_a^j ∂_b^k J, j + k < n.
+//!
+//! Then dΨ = s(a)·Q da + s(b)·P db up to terms of order n.
+//!
+//! Let m grow by γ per unit of b along an edge. There, the series
+//!
+//! X = −K·Σ_k (k+1)!/2·S_k·A_k+1(b)·m^(−2−k), k = 1 … n,
+//!
+//! with S_1 = 1 and S_k+1 = γ·S_k + (∂m/∂b)^k, satisfies dX/db = −Q up to order n. With ρ = da/db,
+//! it follows that
+//!
+//! ∫ s(b)·P db = ΔΨ − ∫ s(a)·Q da = ΔΨ + ρ·∫ s(a) dX.
+//!
+//! With the roles of a and b exchanged, and X′ the series in a, it is also
+//!
+//! ∫ s(b)·P db = −(db/da)·∫ s(b) dX′.
+//!
+//! Partial summation gives ∫ s(a) dX: it is the difference of s(a)·X between the edge's ends, minus
+//! the sum of X times the jump of s(a) at each line that the edge crosses. An edge therefore costs
+//! as many evaluations of X as it crosses lines of one family, and the family with fewer crossings
+//! is chosen.
 
 use super::super::{budget::PixelBudget, clip::measure};
 use super::crossings::{EdgeSeries, LineCrossings, MAX_TERMS};
@@ -27,24 +47,26 @@ use crate::math::{Double, Real};
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Truncation error of the series, as a fraction of the tolerance.
+/// Truncation error that the series of a polygon may have, as a fraction of the tolerance.
 const TRUNCATION: f64 = 1e-3;
 
-/// Truncation error of the sum over an edge that ends, as a fraction of the tolerance, in a polygon
-/// that reaches the horizon. There are at most two such edges that matter, and as many that run
-/// into the horizon. Half of the total of all edges counts, since these are sums of signs.
+/// Truncation error that the sum over an edge may have, as a fraction of the tolerance, if the edge
+/// ends before the horizon but the polygon reaches it. At most two such edges matter, and at most
+/// two run into the horizon. Only half of the total error counts, because the mean colour is half
+/// of the integral of signs.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
-/// Truncation error of the sum over an edge that runs into the horizon, as a fraction of the
-/// tolerance.
+/// Truncation error that the sum over an edge that runs into the horizon may have, as a fraction of
+/// the tolerance.
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
-/// Truncation error of the sum over an edge, as a fraction of the tolerance, in a polygon whose
-/// edges all end: two recede, and the other two hardly contribute (`tail::level`).
+/// Truncation error that the sum over an edge may have, as a fraction of the tolerance, if no edge
+/// of the polygon reaches the horizon. Two edges then recede, and the other two hardly contribute
+/// (`tail::level`).
 const ONLY_FINITE_TAIL: f64 = 1.0;
-/// Minimum fraction of the tolerance for a polygon; a larger one gets the fraction that its area is
-/// of the pixel's.
+/// Minimum share of a polygon in the tolerance. A larger polygon's share is its area as a fraction
+/// of the pixel.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
-/// (k + 1)!/2.
+/// Table of (k + 1)!/2, by k.
 pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
     let mut k = 1;
@@ -55,8 +77,8 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     all
 };
 
-/// Integrates over a convex polygon in which every square is far away, and which may reach the
-/// horizon.
+/// Integrates the board's sign over a convex polygon in which every square is far away. The polygon
+/// lies in `visible` and may reach the horizon.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -66,8 +88,9 @@ pub(super) fn sum(
     let (area, _) = measure(polygon);
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
-    // Polygons that make up a pixel may neglect no more together than a single one, except for
-    // those below `MIN_SHARE`; and many edges no more than four.
+    // All polygons of a pixel together may neglect as much as a single one; therefore their shares
+    // are their areas, except below `MIN_SHARE`. Likewise, more than four edges may neglect as much
+    // as four.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
@@ -100,8 +123,8 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // The k-th term has at most 3k + 4 roundings and is less than 2^−k of the first one,
-            // and Σ (3k + 4)/2^k = 14; K's product has two.
+            // The k-th term has at most 3k + 4 roundings and is less than 2^−k of the first one; Σ
+            // (3k + 4)/2^k = 14. The product with K has two more.
             sum.bound += (16.0 * UNIT + 2.0 * board.density_error) * size;
         }
     }
@@ -109,12 +132,20 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns how many terms the series needs for a truncation error below `limit`, and that error.
+/// Returns the number of terms that the series needs for a truncation error of at most `limit`, and
+/// a bound on the error. If no number of terms is enough, returns the one with the smallest bound.
 ///
-/// By |A_k| ≤ ½π^(1−k), the truncation error of P integrates to at most ½π^(1−n)·(n+2)!/2·(|p|/m)^n
-/// times the area in the picture. Those of Ψ and X on an edge integrate to at most
-/// n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|, where g is the largest of m's slopes along the edge and
-/// along its parameter t, and ∫ J |dt| ≤ J·min(|Δt|, m/2γ) at the near end.
+/// The truncation error of P follows from |A_k| ≤ ½π^(1−k). Its integral is at most the area in the
+/// picture times
+///
+/// ½π^(1−n)·(n+2)!/2·(|p|/m)^n.
+///
+/// The truncation errors of Ψ and X on an edge have an integral of at most
+///
+/// n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|.
+///
+/// Here g is the larger of two slopes of m, the one along the edge and the one along its parameter
+/// t, and ∫ J |dt| ≤ J·min(|Δt|, m/2γ) with J at the near end.
 fn terms(
     board: &Homography,
     nearest: f64,
@@ -148,7 +179,8 @@ fn terms(
     best
 }
 
-/// Returns Ψ at a corner, and its size before cancellation.
+/// Returns Ψ at a corner with `terms` orders, and J = K/m³ there, to which the rounding error of Ψ
+/// is proportional.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),
@@ -186,40 +218,42 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
-/// An edge from its near end to its far end. c counts the lines of the family that it crosses less
-/// often, t those of the other family.
+/// An edge from its near end to its far end. Of the floor's two coordinates, c is the one whose
+/// lines the edge crosses less often, and t is the other one.
 struct Edge {
-    /// Sign of the boundary's direction, +1 from near to far, times the sign before ρ ∫ s dX.
+    /// Sign of the integral ρ·∫ s(c) dX in the sum: +1 if the boundary runs from the near to the
+    /// far end and t is b; each exception changes the sign.
     sign: f64,
-    /// Weight of Ψ at the edge's end, in the boundary's direction: 1 if t is b, or else 0.
+    /// Weight of Ψ at the end of the edge, in the boundary's direction: 1 if t is b, otherwise 0.
     potential: f64,
     c: f64,
     t: f64,
     depth: f64,
-    /// c, t and m at the far end; `None` if that is on the horizon.
+    /// Values of c, t and m at the far end; `None` if the far end is on the horizon.
     end: Option<(f64, f64, f64)>,
-    /// Number of lines of family c that the edge crosses, infinite if it ends at the horizon.
+    /// Number of lines of constant c that the edge crosses; infinite if the edge ends at the
+    /// horizon.
     count: Double,
-    /// Change of t to the far end, infinite at the horizon.
+    /// Change of t from the near to the far end; infinite if the far end is on the horizon.
     length: f64,
-    /// dc/dt.
+    /// The slope dc/dt of the edge, ρ.
     rho: f64,
-    /// dm/dt along the edge.
+    /// The change dm/dt of the depth m along the edge.
     climb: f64,
-    /// ∂m/∂t on the floor.
+    /// The slope ∂m/∂t of the depth m on the floor.
     slope: f64,
-    /// Step of t from line to line.
+    /// Change of t from one crossed line to the next.
     stride: Double,
-    /// Step of m from line to line.
+    /// Change of the depth m from one crossed line to the next.
     rise: f64,
-    /// Direction in which lines are crossed, +1 or −1.
+    /// Direction of c in which lines are crossed, +1 or −1.
     sense: f64,
 }
 
 impl Edge {
-    /// Returns an edge of the boundary, summed along the axis t of the board that it follows more
-    /// closely over its crossings with lines of the other axis, c. Returns `None` if there is
-    /// nothing to sum.
+    /// Returns the edge of the boundary between two corners. As the coordinate t it takes the one
+    /// that changes more along the edge. Returns `None` if the edge contributes nothing: it lies on
+    /// the horizon or has no length.
     fn new(board: &Homography, from: &Corner, to: &Corner) -> Option<Self> {
         let is_forward = from.depth <= to.depth;
         let (near, far) = if is_forward { (from, to) } else { (to, from) };
@@ -250,7 +284,7 @@ impl Edge {
         } else {
             far.depth - near.depth
         };
-        // If no line is crossed, there is no next line.
+        // If no line is crossed, there is no next line, and the step is 0.
         let mut stride = lines;
         if !lines.is_zero() {
             stride = along.over(&across);
@@ -273,7 +307,8 @@ impl Edge {
         })
     }
 
-    /// Computes ρ ∫ s(c) dX from near to far; `tolerance` limits the truncation error.
+    /// Computes ρ·∫ s(c) dX from the near to the far end. `tolerance` limits the truncation error
+    /// of the sum over crossings.
     fn integral(
         &self,
         board: &Homography,
@@ -306,14 +341,15 @@ impl Edge {
                 rise: self.rise,
                 count: self.count,
             };
-            // s jumps by −2s where the first line is crossed, and alternates from there.
+            // At the first line that is crossed, s(c) changes by −2·s(c). From there, the changes
+            // alternate in sign.
             let tolerance = 0.5 * tolerance / self.rho.abs();
             let jumps = tail::sum(&crossings, &series, tolerance, budget);
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // X at either end: counted as for Ψ, its terms have 14 roundings of the first one's size.
-        // Every term is proportional to K, which is rounded, too.
+        // X at either end has 14 roundings of the size of its first term, counted as for Ψ. Every
+        // term is proportional to K, which is rounded, too.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

@@ -1,80 +1,91 @@
 //! The homography from a pixel to a checkerboard, and the effect of the rounding of its forms.
 //!
-//! In: a board's three linear forms as the tracer has them for a sub-pixel. Out: places and depths
-//! on the floor, the depth's slopes and the density of the floor in the picture, and a bound on how
-//! far roundings displace what a polygon shows (a first-order perturbation of the forms by four
-//! roundings each, mapped back to the picture by the inverse of their matrix).
+//! In: a board's three linear forms from the tracer, for a sub-pixel. Out: points of the floor and
+//! their depths; the slopes of the depth; the density of the floor in the picture; and a bound on
+//! how far rounding errors displace what a polygon shows. That bound is a first-order perturbation:
+//! each form is off by four roundings, and the inverse of the forms' matrix maps these errors to
+//! the picture.
 
 use glam::DVec2;
 
 use super::super::clip::{Chord, measure, split};
 use crate::math::{Double, Real, two_product};
 
-/// Unit roundoff of `f64`.
+/// Unit roundoff of `f64`, 2^−53.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// Determinant below which a matrix counts as singular, for forms whose largest factors are 1 to 2.
-/// It replaces the determinant, so that the inverse and its products are finite; the error bound
-/// then covers the whole polygon.
+/// Absolute value of the determinant up to which the matrix of the forms counts as singular; each
+/// form is scaled so that its largest factor is 1 to 2. A singular matrix gets this determinant, so
+/// that the inverse and its products are finite; the error bound then covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Displacement by rounding, in pixels, up to which a corner is set on the horizon if only rounding
-/// keeps it off. The change is counted in the bound, and is a hundredth of the usual tolerance.
+/// Maximum displacement by rounding, in pixels, for which corners are set on the horizon if only
+/// rounding keeps them off it. Above it, no corner is set on the horizon. The change is counted in
+/// the bound, and is a hundredth of the usual tolerance.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
-/// A number and a bound on its absolute error, in square pixels.
+/// An integral of the board's sign and a bound on its absolute error, both in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::exact) struct BoundedSum {
     pub value: f64,
     pub bound: f64,
 }
 
-/// The infinite board as a pixel sees it.
+/// The homography between a pixel and the infinite plane of its board, the floor.
 ///
-/// A point of the picture, (x, y) in pixels from the pixel's centre (at most ½ in each direction),
-/// shows the point (a, b) = (N_a/L, N_b/L) of the floor, in squares. N_a, N_b and L are linear
-/// forms c0·x + c1·y + c2, and L > 0 on the floor's side of the horizon. The sign of a square is
-/// s(a)·s(b), where s is the square wave.
+/// A point (x, y) of the picture, in pixels from the pixel's centre (at most ½ in each direction),
+/// shows the point (a, b) of the floor, in squares:
 ///
-/// With M the matrix of the three forms, 1/L = m(a, b) = p·a + q·b + r is the third row of M⁻¹: a
-/// depth, linear on the floor. A piece da·db of floor covers J = K/m³ square pixels, K = 1/|det M|.
+/// a = N_a/L, b = N_b/L.
+///
+/// N_a, N_b and L are linear forms c0·x + c1·y + c2, and L > 0 below the horizon. The square at (a,
+/// b) has the sign s(a)·s(b), where s is the square wave.
+///
+/// M is the matrix of the three forms. The depth m = 1/L is linear on the floor:
+///
+/// m(a, b) = p·a + q·b + r,
+///
+/// where (p, q, r) is the third row of M⁻¹. A piece da·db of the floor covers J = K/m³ square
+/// pixels, where K = 1/|det M|.
 #[derive(Clone, Debug)]
 pub(in crate::exact) struct Homography {
-    /// N_a and N_b.
+    /// The forms N_a and N_b.
     pub across: [[f64; 3]; 2],
-    /// L, scaled by a power of two so that its largest factor is between 1 and 2.
+    /// The form L, scaled by a power of two so that its largest factor is between 1 and 2.
     pub below: [f64; 3],
-    /// ∂m/∂a and ∂m/∂b.
+    /// Slopes of the depth m on the floor, ∂m/∂a and ∂m/∂b.
     pub slope: [f64; 2],
-    /// K.
+    /// The factor K of the density K/m³.
     pub density: f64,
-    /// Maximum relative difference of K from that of the rounded forms.
+    /// Maximum relative error of `density`, compared with the exact K of the rounded forms.
     pub density_error: f64,
-    /// Sign of det M, which tells whether the floor is seen mirrored.
+    /// Sign of det M, which depends on whether the floor is seen mirrored.
     pub orientation: f64,
-    /// Maximum displacement of a corner or a line of the board by rounding, in pixels (|dx| +
-    /// |dy|).
+    /// Maximum displacement by rounding, |dx| + |dy| in pixels, of a corner of a region or of a
+    /// line of the board.
     displacement: f64,
     /// Unit vector along the horizon.
     horizon: DVec2,
-    /// Maximum displacement by rounding across the horizon's direction, in pixels: where L is 0,
-    /// and its increase per unit of L.
+    /// Maximum displacement by rounding perpendicular to the horizon, in pixels. The first number
+    /// is the displacement at the horizon, the second one its increase per unit of L.
     across_horizon: [f64; 2],
-    /// L up to which a point counts as on the horizon because of rounding.
+    /// Value of L up to which a point is set on the horizon, because only rounding keeps it off.
     horizon_tolerance: f64,
 }
 
-/// A corner of a region: the floor that it shows, and m there.
+/// A corner of a region: the point (a, b) of the floor that it shows, in squares, and the depth m
+/// there.
 ///
-/// On the horizon m is infinite, and a and b are the direction (da, db)/dm in which edges approach
-/// it.
+/// On the horizon, `depth` is infinite, and `floor` is the direction (da, db)/dm in which edges
+/// approach it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub floor: [f64; 2],
     pub depth: f64,
 }
 
-/// The part of a convex polygon where L ≥ 0, with its segment on the horizon.
+/// The part of a convex polygon where L ≥ 0, which shows the floor, with its segment on the
+/// horizon.
 #[derive(Debug)]
 pub(super) struct VisiblePart {
     pub polygon: Vec<DVec2>,
@@ -82,18 +93,19 @@ pub(super) struct VisiblePart {
 }
 
 impl BoundedSum {
-    /// Returns 0 with a bound.
+    /// Returns 0 with the error bound `bound`.
     pub fn zero_within(bound: f64) -> Self {
         Self { value: 0.0, bound }
     }
 
-    /// Returns the sum of a polygon of which nothing is known: the mean of both colours.
+    /// Returns the sum over a polygon whose colours are unknown: 0, the mean of both colours, with
+    /// the polygon's area as the bound.
     pub fn unknown(polygon: &[DVec2]) -> Self {
         Self::zero_within(measure(polygon).0.abs())
     }
 
-    /// Returns the sum over an area, or the mean of both colours if it overflowed or its bound is
-    /// not less than the area.
+    /// Returns this sum, or 0 with the bound `area` if the value is not finite or the bound is not
+    /// less than `area`.
     pub fn or_unknown(self, area: f64) -> Self {
         if self.value.is_finite() && self.bound < area {
             return self;
@@ -101,7 +113,8 @@ impl BoundedSum {
         Self::zero_within(area)
     }
 
-    /// Returns the sum over a polygon, or the mean of both colours if that is no worse.
+    /// Returns this sum, or 0 with the polygon's area as the bound if the value is not finite or
+    /// the bound is no smaller.
     pub fn within(self, polygon: &[DVec2]) -> Self {
         self.or_unknown(measure(polygon).0.abs())
     }
@@ -112,18 +125,19 @@ impl BoundedSum {
     }
 }
 
-/// Evaluates a form at a point.
+/// Evaluates the linear form `c` at the point `p`.
 pub(in crate::exact) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
 }
 
-/// Bounds the sum of the absolute terms of a form.
+/// Bounds the sum of the absolute values of a form's terms in a pixel, where |x| and |y| are at
+/// most ½.
 pub(in crate::exact) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }
 
-/// Scales a form by a power of two so that its largest factor is between 1 and 2, and returns that
-/// power.
+/// Divides a form by a power of two so that its largest factor is between 1 and 2. Returns the form
+/// and the exponent of that power.
 fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
     let largest = form.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
     let exponent = libm::ilogb(largest);
@@ -131,14 +145,17 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Derives the homography of the forms N_a and N_b, and L, which may share any positive factor.
-    /// The closer the origin of a and b is to the pixel, the smaller the bounds.
+    /// Derives the homography from the forms N_a and N_b (`across`) and L (`below`), which may
+    /// share any positive factor. The closer the origin of (a, b) is to the floor that the pixel
+    /// shows, the smaller the bounds.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
-        // Squares may be of any size; the inverse is that of forms of about equal size.
+        // Squares may be of any size. N_a and N_b are therefore scaled like L, each by its own
+        // power of two, before the matrix is inverted.
         let [(a, of_a), (b, of_b)] = across.map(normalized);
-        // The columns of det M·M⁻¹, each component accurate to two roundings of itself.
+        // These are the columns of det M·M⁻¹. Each component is accurate to two roundings of its
+        // own value.
         let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
         let det = determinant(&a, &b, &below);
         let is_singular = det.abs() <= MIN_DETERMINANT;
@@ -149,9 +166,9 @@ impl Homography {
                 below[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
             })
             .sum();
-        // The maximum relative error of det M, if each of the three factors of a product has a
-        // relative error of one unit and each of its sums and products in double-double two; and of
-        // 1/det M by its own roundings.
+        // Returns the maximum relative error of 1/det M. Each of the three factors of a product has
+        // a relative error of one `unit`; the products and their sums, in double-double, have
+        // errors of two `unit`s each. The division adds roundings of its own.
         let det_off = |unit: f64| {
             if is_singular {
                 f64::INFINITY
@@ -159,12 +176,12 @@ impl Homography {
                 8.0 * unit * products / det.abs() + 4.0 * UNIT
             }
         };
-        // A form's value is off by at most three roundings of its largest terms; the fourth is that
+        // Three roundings of a form's largest terms bound the error of its value; a fourth is that
         // of the quotient.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
-        // v = M⁻¹·e is the displacement of a point by errors e of the forms; L(v) = e_L.
-        // Coordinates are rounded, too.
+        // Errors e of the forms displace a point by v = M⁻¹·e, so that L(v) = e_L. The first
+        // summand is the rounding of the point's own coordinates.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -175,7 +192,8 @@ impl Homography {
             across,
             below,
             slope: [(0, of_a), (1, of_b)].map(|(i, by)| libm::ldexp(columns[i][2] / det, -by)),
-            // Exponents beyond the range of f64 saturate; the density is then no number anyway.
+            // If a form has overflowed, its exponent is `i32::MAX`, and the subtraction saturates.
+            // The determinant is then not finite, so that the exponent does not matter.
             density: libm::ldexp(1.0 / det.abs(), (-of_a).saturating_sub(of_b)),
             density_error: det_off(Double::UNIT),
             orientation: det.signum(),
@@ -190,7 +208,7 @@ impl Homography {
         }
     }
 
-    /// Returns the part of a convex polygon that shows the floor.
+    /// Returns the part of a convex polygon that shows the floor, where L ≥ 0.
     pub(super) fn visible(&self, polygon: &[DVec2]) -> VisiblePart {
         let (mut above, mut visible) = (Vec::new(), Vec::with_capacity(polygon.len() + 1));
         let level = |at| form(&self.below, at);
@@ -201,7 +219,9 @@ impl Homography {
         }
     }
 
-    /// Returns what a point of the visible part shows.
+    /// Returns the floor and the depth at a point of the visible part. The point counts as on the
+    /// horizon if it is an end of the part's segment there, if L is within the rounding tolerance
+    /// of 0, or if the floor's coordinates overflow.
     pub(super) fn corner(&self, at: DVec2, visible: &VisiblePart) -> Corner {
         let is_on_horizon = |horizon: [DVec2; 2]| horizon.contains(&at);
         let level = if visible.horizon.is_some_and(is_on_horizon) {
@@ -215,7 +235,7 @@ impl Homography {
         } else {
             1.0 / level
         };
-        // If even the quotient overflows, the point counts as on the horizon.
+        // If the quotient overflows, the point counts as on the horizon.
         let places = floor.map(|n| n * depth);
         if depth.is_infinite() || !places.iter().all(|place| place.is_finite()) {
             let depth = f64::INFINITY;
@@ -225,27 +245,29 @@ impl Homography {
         Corner { floor, depth }
     }
 
-    /// Returns whether a point is set on the horizon only because of rounding.
+    /// Returns whether [`Self::corner`] sets a point on the horizon although L is positive there,
+    /// because only rounding keeps the point off it.
     pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
         let level = form(&self.below, at);
         level > 0.0 && level <= self.horizon_tolerance
     }
 
-    /// Returns the coordinate along an axis of the floor that a point shows, and its maximum
-    /// rounding error. `level` is the value of L there, greater than 0.
+    /// Returns one coordinate of the floor that a point shows, in squares, and its maximum rounding
+    /// error. `axis` is 0 for a and 1 for b; `level` is the value of L at the point and must be
+    /// greater than 0.
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
-        // Three roundings in the factors of either form, four in its value, and one in the
-        // quotient; twice all that, because L may be off by half of itself.
+        // There are three roundings in the factors of either form, four in its value, and one in
+        // the quotient. Their sum is doubled because L may be off by half of itself.
         (place, 16.0 * UNIT / level * terms)
     }
 
-    /// Bounds the change of a polygon's integral by rounding, in square pixels: the area that the
-    /// displacement of its boundary sweeps.
+    /// Bounds the change of a polygon's integral by rounding of the forms, in square pixels: the
+    /// area that the polygon's boundary sweeps if it is displaced.
     ///
-    /// A displacement v = M⁻¹e by errors e of the forms has L(v) = e_L. Near the horizon, points
-    /// therefore hardly move across it, however far they move along it.
+    /// Errors e of the forms displace a point by v = M⁻¹·e, and L(v) = e_L. Near the horizon,
+    /// points therefore move hardly at all perpendicular to it, even if they move far along it.
     pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
         let levels = polygon.iter().map(|&p| form(&self.below, p));
@@ -262,12 +284,14 @@ impl Homography {
     }
 }
 
-/// Returns a cross product, each component accurate to two roundings of itself.
+/// Returns the cross product `a` × `b`. Each component is accurate to two roundings of its own
+/// value.
 fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     minors(a, b).map(|[plus, minus]| (plus.hi - minus.hi) + (plus.lo - minus.lo))
 }
 
-/// Returns the determinant, whose products are added in double-double.
+/// Returns the determinant of the matrix with the rows `a`, `b` and `l`. Products are added in
+/// double-double.
 fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
     let products = minors(a, b)
         .map(|[plus, minus]| plus.minus(&minus))
@@ -281,7 +305,8 @@ fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
         .to_f64()
 }
 
-/// Returns the exact products whose differences are the components of a cross product.
+/// Returns the exact products of the cross product `a` × `b`. For each component, the second is to
+/// be subtracted from the first.
 fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
 }

@@ -1,17 +1,17 @@
 //! The integral of a checkerboard's sign over a convex polygon of the picture.
 //!
-//! In: a board's forms in a sub-pixel ([`homography`]) and a polygon. Out: the area of the first
-//! colour minus that of the second, with a bound.
+//! In: a board's linear forms in a sub-pixel ([`homography`]) and a polygon. Out: the area of the
+//! first colour minus that of the second, in square pixels, with an error bound.
 //!
 //! - Near squares are cut out of the picture one by one ([`near`]).
-//! - Beyond them, Green's theorem turns the integral into a sum over the lines that the polygon's
-//!   sides cross ([`green`]). [`tail`] evaluates that sum if the lines are very many or infinitely
-//!   many: towards the horizon, and along a side that hardly recedes.
+//! - Over all farther squares, Green's theorem turns the integral into a sum over the lines that
+//!   the polygon's sides cross ([`green`]). If the lines are very many or infinitely many, [`tail`]
+//!   evaluates the sum. This happens towards the horizon, and along a side that hardly recedes.
 //! - Pixels that show only a board, with few of its lines, are computed eight at a time
 //!   ([`board_pixels`], [`strips_simd`]).
 //!
-//! Every bound includes displacements by roundings of the forms. If a bound exceeds the polygon's
-//! area, the result is the mean of both colours.
+//! Every bound includes the effect of rounding errors of the forms, which displace the squares. If
+//! a bound exceeds the polygon's area, the result is 0, the mean of both colours.
 
 pub(super) mod board_pixels;
 mod crossings;
@@ -37,20 +37,20 @@ pub(super) use self::{
 };
 
 /// Distance, in squares, beyond which the board is summed along its boundary. From there on the
-/// n-th term of the series is at most n/18π of the one before, so that its 20 terms reach
-/// 20!/(18π)²⁰ = 2e-17.
+/// n-th term of the series is at most n/(18π) of the one before. 20 terms therefore reach
+/// 20!/(18π)²⁰, about 2e-17.
 const NEAR_SQUARES: f64 = 18.0;
-/// Maximum number of squares that are cut out one by one at any distance. (Measured: with 6 or 96,
-/// times differ by about a tenth at most.)
+/// Maximum number of squares of a polygon for which all are cut out one by one, however far away
+/// they are. Measured: with 6 or 96, the running time changes by at most about a tenth.
 const MAX_CUT_SQUARES: f64 = 24.0;
-/// Depth m beyond which no square is cut out. The horizon is then a thousand roundings away, and
-/// nothing is known of a board whose squares are so large that they are still near. (The largest
-/// factor of L is about 1.)
+/// Depth m = 1/L beyond which no square is cut out. At this depth, the distance to the horizon is
+/// only a thousand rounding errors, since the largest factor of L is about 1. If the squares are so
+/// large that they are still near there, the colours beyond are unknown.
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {
-    /// Integrates s(a)·s(b) over the floor that a convex polygon shows, in square pixels. The sign
-    /// does not depend on the polygon's orientation.
+    /// Integrates the board's sign s(a)·s(b) over the part of a convex polygon that shows the
+    /// floor, in square pixels. The result does not depend on the polygon's orientation.
     pub fn over(&self, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
         let visible = self.visible(polygon);
         if visible.polygon.len() < 3 {
@@ -59,7 +59,8 @@ impl Homography {
         if self.squares(&visible.polygon) <= MAX_CUT_SQUARES {
             return near::sum(self, &visible.polygon, budget).within(polygon);
         }
-        // Squares count as near up to a depth beyond which m changes little from square to square.
+        // Squares count as near up to this depth; beyond it, m changes little from square to
+        // square.
         let [p, q] = self.slope;
         let depth = NEAR_SQUARES * (p.abs() + q.abs());
         let nearness = |at: DVec2| depth.min(MAX_DEPTH) * form(&self.below, at) - 1.0;
@@ -77,16 +78,16 @@ impl Homography {
             });
         }
         if polygon.iter().any(|&at| self.is_set_on_horizon(at)) {
-            // Setting such corners on the horizon displaces what is seen once more as much as
-            // rounding does.
+            // `corner` sets these corners on the horizon. This displaces the squares at most as
+            // much as rounding does, so that the bound is added once more.
             sum.bound += self.displacement_error(&visible.polygon);
         }
         sum.within(polygon)
     }
 
-    /// Estimates the number of squares that a polygon shows: its area on the floor plus the rows
-    /// and columns of its bounding box there. (A slanted strip has many fewer squares than its
-    /// box.)
+    /// Estimates the number of squares that a polygon shows: its area on the floor, in squares,
+    /// plus the numbers of rows and columns of its bounding box there. The bounding box itself
+    /// would be a poor estimate, because a slanted strip has far fewer squares.
     fn squares(&self, polygon: &[DVec2]) -> f64 {
         let floor: Vec<DVec2> = polygon
             .iter()
@@ -99,7 +100,7 @@ impl Homography {
             (DVec2::INFINITY, DVec2::NEG_INFINITY),
             |(low, high), place| (low.min(*place), high.max(*place)),
         );
-        // Infinite or NaN at the horizon.
+        // The result is infinite or NaN if the polygon reaches the horizon.
         let spans = (high.floor() - low.floor() + 1.0).element_sum();
         spans + measure(&floor).0.abs()
     }

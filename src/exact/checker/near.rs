@@ -1,9 +1,9 @@
-//! The board's integral where its squares are near: each square is cut out of the picture.
+//! The board's integral over near squares: each square is cut out of the picture.
 //!
 //! In: a convex polygon of the picture on which L > 0. Out: the sum of the signed areas of the
-//! squares in it, with a bound. The lines of one family cut the polygon into rows, and those of the
-//! other cut each row into squares (`clip`). The bound adds the error of each cut times its length,
-//! and the roundings of the areas.
+//! squares in it, in square pixels, with an error bound. The lines of one family cut the polygon
+//! into rows, and the lines of the other family cut each row into squares (`clip`). The bound is
+//! the sum of each cut's error times the cut's length, plus the roundings of the areas.
 
 use glam::DVec2;
 
@@ -17,16 +17,19 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// Number of extra corners above which the rest of a polygon is given up. Each cut should add one
-/// corner, and all cuts of a family two; with many more, lines are closer to each other than
-/// roundings.
+/// Maximum number of corners that cuts may add to the rest of a polygon; above it, the rest's area
+/// is added to the bound instead of being cut. Exact cuts of a family add two corners in all, and
+/// each cut one. If there are many more, the lines are closer to each other than rounding errors.
 const MAX_EXTRA_CORNERS: usize = 32;
 
-/// Number of a square beyond which it and its neighbours are not exact in `f64`.
+/// Coordinate, in squares, from which a polygon is not cut. Below it, the numbers of a square and
+/// of its neighbours are exact in `f64`.
 const MAX_SQUARE: f64 = 1e15;
 
-/// Integrates over a convex polygon that does not reach the horizon. Returns 0 with the polygon's
-/// area as the bound if there are more squares than the budget affords.
+/// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
+/// pixels. Returns 0 with the polygon's area as the bound if the budget does not afford the rows or
+/// is cancelled. A row whose squares the budget does not afford contributes 0, and its area to the
+/// bound.
 pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
     let mut tally = CompensatedSum::default();
     let [mut rows, mut squares] = [0, 1].map(|family| Cutter::new(board, family));
@@ -52,8 +55,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
                 return BoundedSum::unknown(polygon);
             }
             let (area, perimeter) = measure(&squares.piece);
-            // Three roundings per corner of products of two distances, each at most half the
-            // perimeter, and one of the sum.
+            // At each corner there are three roundings of products of two distances, and one of the
+            // sum. Each distance is at most half the perimeter.
             let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;
             tally.add(
                 square_wave(row) * square_wave(square) * area.abs(),
@@ -64,17 +67,18 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
     tally.sum()
 }
 
-/// Cuts a convex polygon into the strips between neighbouring lines of one family, one after the
-/// other.
+/// Cuts a convex polygon into the strips between neighbouring lines of one family, one after
+/// another.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],
     rest: Vec<DVec2>,
     piece: Vec<DVec2>,
     spare: Vec<DVec2>,
-    /// The next strip and the last one; `None` if they are out of the range of numbers.
+    /// Numbers of the next strip and of the last one; `None` if the polygon is empty or a
+    /// coordinate is not below [`MAX_SQUARE`].
     strips: Option<(i64, i64)>,
-    /// Number of corners above which the rest is given up.
+    /// Number of corners above which the rest is no longer cut.
     too_many: usize,
 }
 
@@ -91,7 +95,7 @@ impl Cutter {
         }
     }
 
-    /// Starts with a polygon.
+    /// Starts cutting `polygon`: makes it the rest, and finds its first and last strip.
     fn start(&mut self, polygon: &[DVec2]) {
         self.rest.clear();
         self.rest.extend(polygon);
@@ -107,13 +111,15 @@ impl Cutter {
             });
     }
 
-    /// Returns the number of strips that are left.
+    /// Returns the number of strips that are left, or infinity if the strips are unknown.
     fn count(&self) -> f64 {
         self.strips
             .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
     }
 
-    /// Cuts the part between the lines i and i + 1 off the rest into `piece`, and returns i.
+    /// Cuts the next strip, between the lines i and i + 1, off the rest into `piece`, and returns
+    /// i. Adds the cut's error to `tally`. Returns `None` if nothing is left or the strips are
+    /// unknown.
     fn next(&mut self, tally: &mut CompensatedSum) -> Option<f64> {
         let (i, last) = self.strips?;
         if self.rest.len() < 3 {
@@ -129,7 +135,8 @@ impl Cutter {
         Some(i as f64)
     }
 
-    /// Cuts the part before line n off the rest into `piece`.
+    /// Cuts the part before line `n` off the rest into `piece`, and adds the cut's error to
+    /// `tally`. If the rest then has too many corners, adds its area to the bound and drops it.
     fn cut(&mut self, n: f64, tally: &mut CompensatedSum) {
         let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
         self.piece.clear();
@@ -149,16 +156,16 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The factors are off by three roundings of these sizes, the form's value by four, and the
-        // point by four of its own.
+        // The form's factors are off by three roundings of these sizes, and its value by four. Four
+        // roundings of the point itself are added below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);
     }
 }
 
-/// A sum of many numbers with an error bound. The rounding errors of the additions are added at the
-/// end.
+/// A compensated sum of many numbers with an error bound. The rounding errors of the additions are
+/// collected in `rest` and added at the end.
 #[derive(Default)]
 struct CompensatedSum {
     value: f64,
@@ -177,7 +184,8 @@ impl CompensatedSum {
     fn sum(&self) -> BoundedSum {
         BoundedSum {
             value: self.value + self.rest,
-            // The last sum is at most 1, and the rounding errors are far smaller.
+            // The absolute value of the final sum is at most 1, and the collected rounding errors
+            // are far smaller.
             bound: self.bound + 2.0 * UNIT,
         }
     }

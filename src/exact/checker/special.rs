@@ -2,36 +2,40 @@
 //! with the complex numbers they need.
 //!
 //! The periodic Euler polynomials A_k are the repeated antiderivatives of the square wave (DLMF
-//! 24.2; Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). They are accurate to
-//! a few roundings of their greatest value.
+//! 24.2; Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). Each is computed with
+//! an error of a few roundings of its greatest value.
 //!
-//! The integrals are F_s(y) = e^z E_s(z) = ∫_0^∞ e^(iyv) (1 + v)^(−s) dv, z = −iy (DLMF 8.19).
-//! F_s(−y) is the conjugate of F_s(y), and F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). Their relative
-//! error is about 1e-14.
+//! The exponential integrals, with z = −iy (DLMF 8.19), are
+//!
+//! F_s(y) = e^z·E_s(z) = ∫_0^∞ e^(iyv)·(1 + v)^(−s) dv.
+//!
+//! F_s(−y) is the conjugate of F_s(y), and F_s+1 = (1 − z·F_s)/s (DLMF 8.19.12). The relative error
+//! of the computed values is about 1e-14.
 
 use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
-/// Relative size below which a term of a series is dropped: a tenth of a rounding.
+/// Relative size below which the terms of a series are dropped: about a tenth of the unit roundoff.
 const VANISHING: f64 = 1e-17;
 
-/// Real and imaginary part.
+/// A complex number: real and imaginary part.
 pub(super) type Complex = [f64; 2];
 
-/// Reduces a number of half turns by whole turns, to between −1 and 1.
+/// Reduces a number of half turns by whole turns. The result is between −1 and 1.
 pub(super) fn reduce(x: f64) -> f64 {
     x - 2.0 * (0.5 * x).round_ties_even()
 }
 
-/// Reduces a double-double number of half turns by whole turns. The sum of both reduced parts may
-/// exceed 1 by a rounding.
+/// Reduces a double-double number of half turns by whole turns. The result may exceed 1 in absolute
+/// value by a rounding, because the parts are reduced one by one.
 pub(super) fn reduce_double(x: &Double) -> Double {
     Double::from_f64(reduce(x.hi)).plus(&Double::from_f64(reduce(x.lo)))
 }
 
-/// Returns n times a reduced angle, reduced by whole turns. The relative error is one rounding,
-/// however small the result, within double-double. n is below 2^51.
+/// Returns `n`·`angle` in half turns, reduced by whole turns. `angle` is reduced, and `n` is below
+/// 2^51. The relative error is one rounding even if the result is small, except for the error of
+/// the double-double product.
 pub(super) fn reduced_multiple(n: f64, angle: &Double) -> f64 {
     let Double { hi, lo } = two_product(n, angle.hi);
     let turns = (0.5 * hi + ROUND) - ROUND;
@@ -50,20 +54,21 @@ pub(super) fn cis(x: f64) -> Complex {
     [libm::cos(x), libm::sin(x)]
 }
 
-/// Bounds the absolute value by |x| + |y|.
+/// Bounds the absolute value of a complex number by the sum of the absolute values of its parts.
 fn size(z: Complex) -> f64 {
     z[0].abs() + z[1].abs()
 }
 
-/// Number of orders of the waves, from 0.
+/// Number of orders k of the periodic Euler polynomials A_k: 0 to 21.
 const ORDERS: usize = 22;
 
-/// Number of even powers of η in the waves of the highest order.
+/// Maximum number of coefficients of a polynomial A_k, which has either only even or only odd
+/// powers.
 const POWERS: usize = ORDERS / 2;
 
-/// Coefficients of 1/cosh(x/2) in even powers of x. They follow from those of cosh(x/2),
-/// 1/(4^i·(2i)!), because the product is 1. Errors do not grow: all terms of a coefficient are
-/// about as large as the coefficient.
+/// Coefficients of the Taylor series of 1/cosh(x/2) in even powers of x. They follow from the
+/// coefficients 1/(4^i·(2i)!) of cosh(x/2), because the product of both series is 1. Rounding
+/// errors do not grow: all terms of a coefficient are about as large as the coefficient.
 const SECH: [f64; POWERS] = {
     let mut all = [0.0; POWERS];
     all[0] = 1.0;
@@ -80,8 +85,9 @@ const SECH: [f64; POWERS] = {
     all
 };
 
-/// Coefficients of A_k on a square in powers of η. Row k has the coefficient of η^2j at j if k is
-/// even, and that of η^(2j+1) if k is odd.
+/// Coefficients of the polynomials A_k in powers of η, the signed distance from the middle of a
+/// square (−½ to ½). In row k, column j has the coefficient of η^2j if k is even, and of η^(2j+1)
+/// if k is odd.
 const FACTORS: [[f64; POWERS]; ORDERS] = {
     let mut factorials = [1.0; ORDERS];
     let mut k = 1;
@@ -103,16 +109,16 @@ const FACTORS: [[f64; POWERS]; ORDERS] = {
     all
 };
 
-/// The square wave: +1 where floor(t) is even, −1 where it is odd.
+/// Returns the square wave s(t): +1 if floor(t) is even, −1 if it is odd.
 #[inline(always)]
 pub(in crate::exact) fn square_wave(t: f64) -> f64 {
     let half = t.floor() * 0.5;
     if half == half.floor() { 1.0 } else { -1.0 }
 }
 
-/// Returns the distance of t from the middle of its square, and the square wave there. At a tie
-/// either neighbour is right, because the waves are continuous. t is below 2^51, the limit of
-/// [`ROUND`].
+/// Returns η, the signed distance of `t` from the middle of its square, and the square wave there.
+/// On the border between two squares, either may be used, because A_k is continuous from k = 1 on.
+/// `t` is below 2^51 in absolute value, the limit of [`ROUND`].
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;
@@ -121,14 +127,20 @@ fn from_middle(t: f64) -> (f64, f64) {
     (middle - (shifted - ROUND), sign)
 }
 
-/// Returns A_1(t) … A_TERMS+1(t), each at its own index; other entries are meaningless.
+/// Returns the periodic Euler polynomials A_1(t) … A_TERMS+1(t), each at its own index; the entry
+/// at 0 is meaningless.
 ///
 /// A_0 is the square wave, A_k+1′ = A_k and A_k(t + 1) = −A_k(t). On a square, with η = t −
-/// floor(t) − ½, Σ A_k x^k = ±e^(ηx)/cosh(x/2), so that A_k(t) is ±E_k(t − floor t)/k! (DLMF 24.2;
-/// Borwein, Calkin and Manna, "Euler–Boole summation revisited", 2009). They are continuous from k
-/// = 1 on, and |A_k| ≤ ½π^(1−k).
+/// floor(t) − ½,
 ///
-/// TERMS is a constant so that the compiler can vectorise over many t. ROWS must be TERMS + 2.
+/// Σ A_k·x^k = ±e^(ηx)/cosh(x/2),
+///
+/// so that A_k(t) is ±E_k(t − floor t)/k! with the Euler polynomials E_k (DLMF 24.2; Borwein,
+/// Calkin and Manna, "Euler–Boole summation revisited", 2009). From k = 1 on, A_k is continuous and
+/// |A_k| ≤ ½π^(1−k).
+///
+/// `TERMS` is a constant so that the compiler can vectorise over many t. `ROWS` must be `TERMS` +
+/// 2.
 #[inline(always)]
 pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS] {
     let (eta, sign) = from_middle(t);
@@ -169,30 +181,31 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
     all
 }
 
-/// Order of the first exponential integral.
+/// Order s of the first exponential integral that is computed, F_3.
 const ORDER: u32 = 3;
 
-/// Argument |y| below which the power series is used.
+/// Value of |y| below which the power series is used.
 const SMALL: f64 = 3.0;
-/// Argument |y| from which on the asymptotic series is used.
+/// Value of |y| from which on the asymptotic series is used.
 const LARGE: f64 = 64.0;
 
-/// Distance between the expansion points of Taylor's series, which are used from `SMALL` to
+/// Distance in y between the expansion points of the Taylor series, which are used from `SMALL` to
 /// `LARGE`.
 const STEP: f64 = 0.5;
-/// Number of terms of a Taylor series. The first omitted term is at most (¼/3)^16 = 5e-18.
+/// Number of terms of a Taylor series. Steps are at most a quarter and y is at least 3, so that the
+/// first omitted term is at most (¼/3)^16 = 5e-18.
 const EXPANSION_TERMS: usize = 16;
 type Expansion = [Complex; EXPANSION_TERMS];
 static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
 
-/// Returns F_3, F_4 and F_5.
+/// Returns F_3(y), F_4(y) and F_5(y), where F_s(y) = ∫_0^∞ e^(iyv)·(1 + v)^(−s) dv.
 pub(super) fn integrals(y: f64) -> [Complex; 3] {
     let third = third(y);
     let fourth = next(y, third, 3.0);
     [third, fourth, next(y, fourth, 4.0)]
 }
 
-/// Returns F_3.
+/// Returns F_3(y), by the series that suits |y|.
 fn third(y: f64) -> Complex {
     let size = y.abs();
     let integral = if size >= LARGE {
@@ -209,15 +222,19 @@ fn third(y: f64) -> Complex {
     }
 }
 
-/// Returns the integral of the next order, by the recurrence.
+/// Returns F_(s+1)(y) = (1 + iy·F_s(y))/s (DLMF 8.19.12), where `integral` is F_s(y) and `order` is
+/// s.
 fn next(y: f64, integral: Complex, order: f64) -> Complex {
     [(1.0 - y * integral[1]) / order, y * integral[0] / order]
 }
 
-/// Evaluates (1/z)·Σ (−1)^k (s)_k z^−k (DLMF 8.20.2) until the terms are negligible.
+/// Evaluates the asymptotic series of F_3(y) for y ≥ `LARGE` until the terms are negligible (DLMF
+/// 8.20.2, with s = 3 and z = −iy):
+///
+/// (1/z)·Σ (−1)^k·(s)_k·z^−k.
 fn asymptotic(y: f64) -> Complex {
     let u = 1.0 / y;
-    // 1/z = i/y, so that each term is the one before times −i(k + s)/y.
+    // 1/z = i/y, so that each term is the previous one times −i·(k + s)/y.
     let (mut term, mut sum) = (u, [0.0; 2]);
     for k in 0..40 {
         match k % 4 {
@@ -234,25 +251,34 @@ fn asymptotic(y: f64) -> Complex {
     sum
 }
 
-/// Evaluates the Taylor series for y from 3 to 64.
+/// Evaluates F_3(y) for y from 3 to 64 by the Taylor series about the nearest expansion point.
 fn expanded(expansions: &[Expansion], y: f64) -> Complex {
     let middle = f64::from((y / STEP + 0.5) as u32);
     let step = y - middle * STEP;
     at_step(&expansions[(middle - SMALL / STEP) as usize], step)
 }
 
-/// Evaluates a Taylor series at a step from its expansion point.
+/// Evaluates a Taylor series at the distance `step` from its expansion point.
 fn at_step(terms: &Expansion, step: f64) -> Complex {
     terms.iter().rev().fold([0.0; 2], |sum, term| {
         [sum[0] * step + term[0], sum[1] * step + term[1]]
     })
 }
 
-/// Computes the Taylor series from 3 to 64, from the last to the first: each starts with the value
-/// of the one above, half a step down. (F_s is 1/y times a number near 1, while a solution of the
-/// equation without its −1 falls as y^(s−1) downwards, so that errors decay on the way.) By (s −
-/// 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s), y·F_s′ = (s − 1 − iy)·F_s − 1,
-/// so that (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1, minus 1 if k is 0.
+/// Computes the Taylor series of F_3 about points from 3 to 64, and returns them in ascending
+/// order. They are computed in descending order: the value at each point comes from the series of
+/// the next greater point, a `STEP` above. Errors decay on the way down: F_s is 1/y times a number
+/// near 1, while a solution of the differential equation below without its −1 falls as y^(s−1).
+///
+/// (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) give the differential
+/// equation
+///
+/// y·F_s′ = (s − 1 − iy)·F_s − 1.
+///
+/// The coefficients c_k about y therefore satisfy the recurrence below, from which 1 is subtracted
+/// if k = 0:
+///
+/// (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1.
 fn expansions() -> Vec<Expansion> {
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
     let mut value = asymptotic(LARGE);
@@ -280,16 +306,20 @@ fn expansions() -> Vec<Expansion> {
     all
 }
 
-/// Computes F_3 near 0, by two steps of the recurrence.
+/// Computes F_3(y) for |y| < `SMALL`, from F_1 by two steps of the recurrence.
 fn power_series(y: f64) -> Complex {
     let first = first(y);
-    // 1 − z·h with −z = iy.
+    // F_2 = 1 − z·F_1, with −z = iy.
     let second = [1.0 - y * first[1], y * first[0]];
     [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
 }
 
-/// Computes F_1 near 0 by E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!) (DLMF 6.6.2). At 0, where F_1 has a
-/// logarithmic pole, it returns the limit 0 of y·F_1.
+/// Computes F_1(y) for |y| < `SMALL` (DLMF 6.6.2) from
+///
+/// E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!).
+///
+/// At 0, F_1 has a logarithmic pole. There the function returns 0, because the caller needs only
+/// y·F_1, whose limit is 0.
 fn first(y: f64) -> Complex {
     const EULER: f64 = 0.577_215_664_901_532_9;
     if y == 0.0 {
@@ -299,7 +329,7 @@ fn first(y: f64) -> Complex {
     let mut term = [1.0, 0.0];
     for k in 1..40 {
         let k = f64::from(k);
-        // −z/k = iy/k.
+        // The factor from term to term is −z/k = iy/k.
         term = [-term[1] * y / k, term[0] * y / k];
         first = [first[0] - term[0] / k, first[1] - term[1] / k];
         if size(term) < VANISHING {
@@ -349,7 +379,8 @@ mod tests {
 
     #[test]
     fn they_are_the_integrals() {
-        // By the midpoint rule in x, v = x/(1 − x), where the integrand is (1 − x)·e^(iyv).
+        // The integral is summed by the midpoint rule in x, where v = x/(1 − x) and the integrand
+        // is (1 − x)·e^(iyv).
         const STEPS: u32 = 400_000;
         for y in [0.0, 0.01, 0.7, 3.5, 12.0] {
             let mut sum = [0.0; 2];
@@ -358,7 +389,8 @@ mod tests {
                 let wave = cis(y * x / (1.0 - x));
                 sum = [sum[0] + (1.0 - x) * wave[0], sum[1] + (1.0 - x) * wave[1]];
             }
-            // Near x = 1, waves are too fast for the rule, and the error is of order (1 − x)².
+            // Near x = 1 the integrand oscillates too fast for the rule, and the error is of order
+            // (1 − x)².
             close(third(y), sum.map(|x| x / f64::from(STEPS)), 1e-4);
         }
     }

@@ -2,19 +2,27 @@
 //! vectorises.
 //!
 //! In: eight pixels that show only a checkerboard and are crossed by the same numbers of lines of
-//! both families. Out: their integrals, each with a bound on the roundings of areas and on the
-//! distance of each line from the computed one.
+//! both families. Out: the integral over each pixel, with a bound on the roundings of areas and on
+//! the displacement of lines by rounding.
 //!
-//! The lines of the family with fewer lines cut the pixel into strips; in strip i the sign of their
-//! squares is σ_i. Beyond line k of the other family lies the signed area W_k = Σ σ_i·|strip i ∩
-//! H_k|, where W_0 is the whole area, and the sign changes from line to line:
+//! The lines of the family with fewer lines cut the pixel into strips; σ_i is the sign of the
+//! squares in strip i. Let H_k be the side of line k of the other family on which squares have
+//! greater numbers, and W_k the signed area of the strips there:
 //!
-//! ∬ s(a) s(b) dx dy = s_0·(W_0 + 2 Σ_k (−1)^k W_k).
+//! W_k = Σ_i σ_i·|strip i ∩ H_k|.
 //!
-//! A strip's area beyond a line is ½ Σ (p − O) × (q − p)·f over the strip's sides from p to q,
-//! where f is the fraction of the side that lies beyond, if O is on the line: then the line itself
-//! contributes 0. A side of the pixel has a part, which may be empty, in each strip. An empty part
-//! starts and ends at the same number, so that it adds exactly 0.
+//! W_0 is the signed area of all strips. The sign of squares changes at each line, so that
+//!
+//! ∬ s(a)·s(b) dx dy = s_0·(W_0 + 2·Σ_k (−1)^k·W_k).
+//!
+//! A strip's area beyond a line is a sum over the strip's sides, each from a point p to a point q:
+//!
+//! ½·Σ f·(p − O) × (q − p).
+//!
+//! Here f is the fraction of the side that lies beyond the line, and O is a point on the line, so
+//! that the part of the outline along the line contributes 0. Each side of the pixel has a part in
+//! each strip. A part may be empty; it then starts and ends at the same number, so that it adds
+//! exactly 0.
 
 use std::array;
 
@@ -28,8 +36,8 @@ use super::{
 };
 use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
-/// Maximum number of lines that cut the pixels into strips. The sides of the strips, 34 of 320
-/// bytes, then stay in the first-level cache.
+/// Maximum number of lines that cut a pixel into strips. The sides of the strips, 34 of 320 bytes
+/// each, then stay in the first-level cache.
 pub(super) const MAX_STRIP_LINES: usize = 6;
 
 /// Number of pixels that are computed at once, as many as the widest vectors have lanes.
@@ -41,20 +49,21 @@ type Lanes = [f64; PIXELS];
 /// Number of sides of strips: parts of the pixel's four sides, and a chord for each line.
 const SIDES: usize = 4 * (MAX_STRIP_LINES + 1) + MAX_STRIP_LINES;
 
-/// The boards of eight pixels, the family with fewer lines first.
+/// The linear forms of eight pixels' boards, with the family that has fewer lines first.
 #[derive(Debug, Default)]
 pub(super) struct BoardLanes {
     few: FormRows,
     many: FormRows,
     below: FormRows,
-    /// Sign of each pixel: −1 if the square where its first strips of both families meet has the
-    /// second colour.
+    /// Sign for each pixel: 1 if the first square of the pixel, the one with the smallest number in
+    /// both families of lines, has the first colour, −1 if it has the second.
     sign: Lanes,
-    /// Squares of the first family at the corners, counted from the first square.
+    /// Number of the square at each corner of the pixel in the family with fewer lines, relative
+    /// to the smallest one.
     squares: [Lanes; 4],
 }
 
-/// A linear form per pixel: the factors of x, y and 1, and the maximum error of its values.
+/// A linear form per pixel: the factors of x, y and 1, and the maximum error of the form's values.
 #[derive(Debug, Default)]
 struct FormRows {
     factors: [Lanes; 3],
@@ -70,7 +79,8 @@ impl FormRows {
     }
 }
 
-/// One directed side of a strip per pixel: its start, its extent, and the sign of the strip.
+/// One directed side of a strip per pixel: its start and its vector in pixels, and the sign of the
+/// strip.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sides {
     start: [Lanes; 2],
@@ -78,7 +88,7 @@ struct Sides {
     sign: Lanes,
 }
 
-/// Buffer for the sides of strips, which is reused.
+/// Reusable buffer for the sides of the strips.
 #[derive(Debug)]
 pub(super) struct StripBuffer([Sides; SIDES]);
 
@@ -88,7 +98,8 @@ impl Default for StripBuffer {
     }
 }
 
-/// The integral over each pixel, positive for the first colour.
+/// The integral over each of eight pixels, positive for the first colour, and its error bound, in
+/// square pixels.
 pub(super) struct LaneSums {
     values: Lanes,
     bounds: Lanes,
@@ -99,15 +110,16 @@ impl LaneSums {
         let (value, bound) = (self.values[pixel], self.bounds[pixel]);
         BoundedSum {
             value,
-            // For extremely large squares, products overflow.
+            // If squares are extremely large, products overflow to NaN.
             bound: if value.is_nan() { f64::INFINITY } else { bound },
         }
     }
 }
 
 impl BoardLanes {
-    /// Sets one of the pixels. `families` names the family with fewer lines first, and `first` is
-    /// the first square of each family.
+    /// Sets the board of the pixel with the index `place`. `families` are the indices of the two
+    /// families, the one with fewer lines first. `first` is the smallest number of a square in the
+    /// pixel, for each family in the order of the forms.
     pub fn set(
         &mut self,
         place: usize,
@@ -129,7 +141,8 @@ impl BoardLanes {
         self.sign[place] = if *odd { -wave } else { wave };
     }
 
-    /// Computes the integrals over the pixels, all of which the given numbers of lines cross.
+    /// Computes the integral of the board's sign over each pixel. `lines` is the number of lines of
+    /// each family that cross every pixel, the smaller number first.
     pub fn sums(&self, lines: [usize; 2], buffer: &mut StripBuffer) -> LaneSums {
         sums_simd(self, lines, buffer)
     }
@@ -160,11 +173,11 @@ impl BoardLanes {
                 sums[i] += sign * beyond[i];
             }
         }
-        // For every line, a side's part has eight operations, on its length and a distance of at
-        // most √2; each of its 5 sums per strip is rounded, and the sum over lines twice. Each line
-        // that cuts, and its two neighbours, may also be off by 4 roundings of a point. A displaced
-        // line sweeps at most the pixel's diagonal, √2, and the sign changes there: 2√2 is less
-        // than 3.
+        // For every line, the part of a side has eight operations, on its length and a distance of
+        // at most √2. Each of the 5 sums per strip is rounded, and the sum over lines twice. Each
+        // line that cuts, and its two neighbours, may also be off by 4 roundings of a point. A
+        // displaced line sweeps at most the pixel's diagonal, √2, times its displacement, and the
+        // sign changes there: the factor 2√2 is less than 3.
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
         LaneSums {
@@ -177,8 +190,9 @@ impl BoardLanes {
         }
     }
 
-    /// Adds the maximum distance of line n of a family from the computed one. The forms have
-    /// errors, their factors have three roundings, and their values four.
+    /// Adds to `out` the maximum distance, in pixels, between line `n` of a family and the computed
+    /// line. Errors come from the forms, from three roundings of their factors, and from four of
+    /// their values.
     #[inline(always)]
     fn add_off(&self, across: &FormRows, n: f64, out: &mut Lanes) {
         let below = &self.below;
@@ -191,13 +205,14 @@ impl BoardLanes {
         }
     }
 
-    /// Cuts the pixels into strips, of which the first has the sign 1. Returns 0 for each pixel
-    /// that could be cut, or else infinity.
+    /// Cuts each pixel into `few` + 1 strips and writes their sides to `sides`. The first strip has
+    /// the sign 1. Returns 0 for each pixel that could be cut, and infinity for the others.
     #[inline(always)]
     fn strips(&self, few: usize, sides: &mut [Sides]) -> Lanes {
         let mut failed = [0.0; PIXELS];
         let (parts, chords) = sides.split_at_mut(4 * (few + 1));
-        // The fraction of each side that the part in the next strip reaches.
+        // For each side, the fraction that the strips so far have reached, from the end with the
+        // smaller square number.
         let mut reached = [[0.0; PIXELS]; 4];
         for (corner, reached) in reached.iter_mut().enumerate() {
             let [here, next] = [corner, (corner + 1) % 4].map(|corner| &self.squares[corner]);
@@ -225,7 +240,8 @@ impl BoardLanes {
                     let place = start / (start - end);
                     let place = if place > 0.0 { place } else { 0.0 };
                     let place = if place < 1.0 { place } else { 1.0 };
-                    // There is nothing beyond the last line.
+                    // In the last strip, both ends count as before the line, so that all parts
+                    // reach to the ends of their sides.
                     let (starts_below, ends_below) =
                         (is_last | (here[i] < n), is_last | (next[i] < n));
                     let is_up = next[i] >= here[i];
@@ -235,7 +251,8 @@ impl BoardLanes {
                     } else {
                         whole
                     };
-                    // If both ends are on the line, the crossing is undetermined.
+                    // If the form has the same value at both ends, the crossing is undetermined,
+                    // and the cut fails.
                     let known = if start == end { f64::INFINITY } else { 1.0 };
                     crossed[0][i] = if starts_below & !ends_below {
                         known
@@ -274,8 +291,10 @@ impl BoardLanes {
             let Some(chord) = chords.get_mut(strip) else {
                 break;
             };
-            // The strip above runs along its chord from where the boundary leaves it to where it
-            // enters.
+            // The chord is stored from the point where the pixel's boundary enters the strips
+            // before the line to the point where it leaves them. The strip before the line has this
+            // chord backwards, and the next strip, whose sign is the opposite, has it forwards:
+            // together −2 times the sign.
             let [up, down] = ends;
             for i in 0..PIXELS {
                 let is_one = (crossings[0][i] == 1.0) & (crossings[1][i] == 1.0);
@@ -290,8 +309,8 @@ impl BoardLanes {
         failed
     }
 
-    /// Returns twice the signed area of the strips beyond a line of the second family, counted from
-    /// its first square.
+    /// Returns twice the signed area of the strips beyond a line of the family with more lines.
+    /// `line` counts from the first square of that family.
     #[inline(always)]
     fn beyond(&self, line: f64, sides: &[Sides]) -> Lanes {
         let mut area = [0.0; PIXELS];
@@ -312,7 +331,8 @@ impl BoardLanes {
                 let value = |x: f64, y: f64| (form[0][i] * x + form[1][i] * y) + form[2][i];
                 let (here, there) = (value(x, y), value(x + across, y + down));
                 let beyond = here.max(0.0) + there.max(0.0);
-                // A side that lies entirely on the line contributes nothing either way.
+                // If a side lies entirely on the line, both values are 0, and the side contributes
+                // 0.
                 let all = here.abs() + there.abs() + f64::MIN_POSITIVE;
                 let twice = (x - origin[0][i]) * down - (y - origin[1][i]) * across;
                 area[i] += sign[i] * twice * (beyond / all);

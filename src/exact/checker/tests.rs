@@ -1,5 +1,5 @@
-//! The board's integral compared with an independent sum over squares, with itself in pieces, and
-//! at the horizon.
+//! Compares the board's integral with an independent sum over squares and with the sum over parts
+//! of the polygon, also at the horizon.
 
 use std::sync::atomic::AtomicBool;
 
@@ -18,15 +18,16 @@ fn budget() -> PixelBudget<'static> {
 }
 
 impl Homography {
-    /// Integrates over a polygon without cancellation.
+    /// Integrates the board's sign over a polygon, with the default tolerance and without
+    /// cancellation.
     pub(super) fn alone(&self, polygon: &[DVec2]) -> BoundedSum {
         self.over(polygon, &budget())
     }
 }
 
-/// The view of a level camera: its height in squares, its focal length in pixels, its direction in
-/// degrees, the pixel's place relative to the centre of the horizon (rightwards and downwards), and
-/// the point of the board below the eye.
+/// A pixel's view by a level camera: the camera's height in squares, its focal length in pixels,
+/// its direction in degrees, the pixel's place relative to the centre of the horizon (in pixels,
+/// rightwards and downwards), and the point of the board below the eye, in squares.
 #[derive(Clone, Copy, Debug)]
 struct PixelView {
     height: f64,
@@ -97,7 +98,8 @@ fn area(polygon: &[DVec2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Projects the corners of every square to the picture, and clips the square to the polygon.
+/// Returns the integral of the board's sign over a polygon, square by square: projects each
+/// square's corners to the picture and clips the square to the polygon.
 fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
     let m = DMat3::from_cols_array_2d(&forms).transpose();
     let inverse = m.inverse();
@@ -127,7 +129,7 @@ fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
         let mut j = first;
         while j <= last {
             let seen = |q: DVec2| inverse * q.extend(1.0);
-            // A square may reach behind the eye, where m is negative.
+            // A square may reach behind the eye, where m is negative; it is clipped well before.
             let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
                 .map(|(x, y)| DVec2::new(i + x, j + y));
             let before = clip(&corners, |q| seen(q).z - 0.5 * nearest);
@@ -165,8 +167,8 @@ fn agree(found: BoundedSum, expected: f64, most: f64, what: impl std::fmt::Debug
     agree_in_size(found, expected, 1.0, most, what);
 }
 
-/// Compares with an expected value that has rounding errors of its own, of products of coordinates
-/// up to half of `size`.
+/// Asserts that the error of `found` is within its bound and at most `most`. The expected value may
+/// be off by the roundings of products of coordinates up to half of `size`.
 fn agree_in_size(
     found: BoundedSum,
     expected: f64,
@@ -190,7 +192,7 @@ fn pixels_of_many_squares() {
             agree(
                 view.board().alone(&PIXEL),
                 brute(view.forms(), &PIXEL),
-                // The tolerance of a mean, which is half of the integral.
+                // The integral is twice the mean, and so is its tolerance.
                 2.0 * DEFAULT_TOLERANCE,
                 view,
             );
@@ -198,8 +200,8 @@ fn pixels_of_many_squares() {
     }
 }
 
-/// A view so wide that a pixel sees near squares far to the side: rows of hundreds, cut by sides of
-/// all slopes.
+/// In a very wide view, a pixel sees near squares far to the side: rows of hundreds of squares,
+/// which the pixel's sides cut at all slopes.
 #[test]
 fn wide_views() {
     for degrees in [0.0, 0.3, 2.0, 30.0, 45.0, 89.9, 90.0, 135.0, 200.0] {
@@ -212,7 +214,7 @@ fn wide_views() {
                 foot: DVec2::new(0.3, 0.45),
             };
             let found = view.board().alone(&PIXEL);
-            // The forms' terms are larger than the pixel's side by this factor.
+            // The terms of the forms are larger than the pixel's side by this factor.
             let size = view.place.length();
             agree_in_size(found, brute(view.forms(), &PIXEL), size, 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
@@ -220,8 +222,8 @@ fn wide_views() {
     }
 }
 
-/// Squares so small that an edge crosses a million lines, from above and tilted, compared with
-/// pieces that cross fewer.
+/// An edge crosses a million lines if squares are very small. Seen from above and tilted, the
+/// integral is compared with the sum over parts whose edges cross fewer lines.
 #[test]
 fn a_million_lines() {
     for (turn, tilt) in [
@@ -272,9 +274,10 @@ fn the_horizon() {
             view.place = DVec2::new(0.5, y);
             let board = view.board();
             let found = board.alone(&PIXEL);
-            // The bound of the integral is twice that of the mean.
+            // The integral is twice the mean, and so is its bound.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
-            // Slices have other crossings, counted from other places.
+            // Vertical slices of the pixel have other crossings, which are counted from other
+            // points.
             let mut slices = BoundedSum::default();
             for i in 0..5 {
                 let [low, high] = [i, i + 1].map(|i| f64::from(i) / 5.0 - 0.5);
@@ -292,8 +295,8 @@ fn the_horizon() {
     }
 }
 
-/// The part of a horizon pixel between two depths: as the difference of two integrals, and
-/// directly.
+/// The integral over the part of a horizon pixel below a line: computed directly, and as the
+/// difference between the pixel and the part above the line.
 #[test]
 fn the_end_is_the_limit() {
     for degrees in [0.0, 45.0, 30.0, 71.565_051_177, 44.999] {
@@ -314,9 +317,10 @@ fn the_end_is_the_limit() {
     }
 }
 
-/// What a pixel far to the side sees in the limit of a view of 180 degrees: one straight line on
-/// the floor, with a and b both linear in q = height·x/y. Sums the parts of the polygon between
-/// values of q at which one of them is an integer.
+/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, and returns
+/// the area that is left beyond q = `most`. A pixel far to the side then sees one straight line on
+/// the floor, with a and b both linear in q = height·x/y. The polygon is cut at each q at which a
+/// or b is an integer.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
     let angle = view.degrees.to_radians();
     let factors = [-libm::sin(angle), libm::cos(angle)];
@@ -361,9 +365,9 @@ fn widest(focal: f64, degrees: f64) -> PixelView {
     }
 }
 
-/// In the widest views, squares are so many, and a pixel sees such a narrow strip of them, that
-/// displacements by rounding are not small: a and b are nearly proportional. Below the horizon, and
-/// including it.
+/// In the widest views, a and b are nearly proportional: squares are very many, and a pixel sees
+/// such a narrow strip of them that rounding displaces them visibly. The polygon is below the
+/// horizon, or reaches it.
 #[test]
 fn the_widest_views() {
     for degrees in [30.0, 71.565_051_177, 135.0, 224.9] {
@@ -375,7 +379,7 @@ fn the_widest_views() {
                 let found = view.board().alone(&polygon);
                 let (expected, left) = brute_limit(&view, &polygon, most);
                 let error = (found.value - expected).abs();
-                // The limit is off because lines are displaced by the focal length.
+                // The limit is not exact, because the focal length displaces lines.
                 assert!(
                     error <= found.bound + left + 1e-11 + 1e3 * focal,
                     "{degrees} {focal:e} {y}: {found:?}, not {expected} to {left:e}: {error:e}"
@@ -386,7 +390,7 @@ fn the_widest_views() {
 }
 
 proptest! {
-    // Each case takes 20 ms: a quarter of the usual number.
+    // Each case takes 20 ms, so that only a quarter of the usual number of cases is run.
     #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases / 4, ..ProptestConfig::default() })]
 
     #[test]
@@ -401,7 +405,8 @@ proptest! {
         let pieces = left.value + right.value;
         let bound = whole.bound + left.bound + right.bound;
         prop_assert!((pieces - whole.value).abs() <= bound, "{} {} {bound}", whole.value, pieces);
-        // The region between the arc and its chord, by the exact cuts and by many chords.
+        // The integral over the region between the arc and its chord is compared with that over a
+        // polygon of 100 chords.
         let segment = board.over_segment(&arc, &budget());
         let points: Vec<DVec2> = (0..=100).map(|i| arc.at(f64::from(i) / 100.0)).collect();
         let chords = board.alone(&points);
@@ -421,8 +426,8 @@ proptest! {
         prop_assume!(matrix.determinant().abs() > 1e-3);
         let found = Homography::new([a, b], below).alone(&PIXEL);
         let expected = brute([a, b, below], &PIXEL);
-        // The expected value maps corners of squares to the picture by the inverse, whose accuracy
-        // is the matrix's condition.
+        // The expected value maps the corners of squares to the picture by the inverse matrix. The
+        // condition of the matrix limits its accuracy.
         let size = |matrix: DMat3| matrix.to_cols_array().map(f64::abs).iter().sum::<f64>();
         let roundings = 4.0 * f64::EPSILON * size(matrix) * size(matrix.inverse());
         prop_assert!((found.value - expected).abs() <= found.bound + roundings, "{found:?} {expected}");
@@ -431,7 +436,8 @@ proptest! {
 
 #[test]
 fn from_straight_above() {
-    // Squares of 1/1000 pixel: the pixel's sides hold 1000 of them and a remainder.
+    // The side of a square is about 1/1000 pixel: each side of the pixel holds 1000 squares and a
+    // remainder.
     let board = Homography::new(
         [[1000.5, 0.0, 500.25], [0.0, 1000.5, 500.25]],
         [0.0, 0.0, 1.0],
@@ -444,7 +450,7 @@ fn from_straight_above() {
     );
 }
 
-/// A result that takes too long, or is not wanted any more, is reported as unknown.
+/// An integral that exceeds the budget, or is cancelled, is returned as unknown.
 #[test]
 fn nothing_is_computed_beyond_the_budget() {
     let below = [0.0, 0.0, 1.0];
@@ -454,12 +460,12 @@ fn nothing_is_computed_beyond_the_budget() {
     let nothing = board.over(&PIXEL, &PixelBudget::new(DEFAULT_TOLERANCE, &cancelled));
     assert!(all.value != 0.0 && nothing.value == 0.0);
     assert!(nothing.bound > all.value.abs(), "{nothing:?} of {all:?}");
-    // A row of a billion squares next to the line above which the eye is.
+    // A row of a billion squares, next to the line on the floor above which the eye is.
     let board = Homography::new([[1e9, 1.0, 0.3], [0.0, 1e-9, 0.2]], [0.0, 2.1, 1.1]);
     assert_eq!(board.alone(&PIXEL).value, 0.0);
 }
 
-/// The horizon above a single square, whatever its size.
+/// The horizon above a single square is known, whatever the square's size.
 #[test]
 fn a_square_that_goes_to_the_horizon_is_known() {
     // Beyond this exponent, the forms cannot be distinguished from singular ones.
@@ -474,8 +480,8 @@ fn a_square_that_goes_to_the_horizon_is_known() {
         let board = view.board();
         let BoundedSum { value, bound } = board.alone(&PIXEL);
         assert!(bound < 1e-9, "{bound} of {view:?}");
-        // A little more than half of the pixel, 0.51, shows the floor, and its other squares are at
-        // least 0.3 squares away.
+        // A little more than half of the pixel, 0.51, shows the floor, nearly all of it a single
+        // square: the other squares are at least 0.3 squares away.
         let others = view.focal * view.height / 0.3;
         let is_one = (value - 0.51).abs() <= bound + 2.0 * others;
         assert!(is_one, "{value} of {view:?}");

@@ -155,8 +155,6 @@ pub const ROWS: &[MistakeRow] = &[
         AVERAGE, |c, _| map_channels(c, |light| srgb_to_linear(linear_to_srgb(light).sqrt()))),
     row("decoded_twice", InAreas, "the colours are much too dark: light was decoded from sRGB once more instead of encoded", ENCODE,
         |c, _| map_channels(c, |light| srgb_to_linear(srgb_to_linear(light)))),
-    row("six_levels", InAreas, "each channel has one of six levels, those of a palette of 216 colours", CHANNELS,
-        |c, _| map_channels(c, |light| srgb_to_linear((5.0 * linear_to_srgb(light)).round() / 5.0))),
     row("gamma_18", InAreas, "the colours were encoded with the power 1/1.8, not as sRGB", ENCODE,
         |c, _| map_channels(c, |light| srgb_to_linear(libm::pow(light.max(0.0), 1.0 / 1.8)))),
     row("video_range", InAreas, "the colours lie between 16 and 235, as video has them, not between 0 and 255", CHANNELS,

@@ -111,7 +111,8 @@ impl<'a> Prediction<'a> {
                         };
                         slope(0.25).abs().max(slope(1.0).abs())
                     };
-                    // Most cells equal the one before, and a function is slow to evaluate.
+                    // The last argument and value of `curve` for each channel. Most cells equal the
+                    // one before, and a curve may be slow to evaluate.
                     let mut known = [[f64::NAN; 2]; 3];
                     for (mean, variance) in mean.iter_mut().zip(variance.iter_mut()) {
                         for i in 0..3 {

@@ -16,7 +16,7 @@ const PICTURE: f64 = 8e7;
 /// Units for each pixel of a picture, in addition to `PICTURE`.
 const PIXEL: f64 = 41.0;
 
-/// Units of preparing an object for an exact picture.
+/// Work of preparing an object for an exact picture, in units of about 30 ns.
 const WORLD_OBJECT: f64 = 20.0;
 /// Units of preparing an object for a sampled picture.
 const OBJECT: f64 = 6.0;

@@ -42,7 +42,8 @@ const NUMBER_PENALTY: f64 = 1.03;
 /// first. Comparing all of them takes as long as finding a single mistake does otherwise.
 const EXACT_ROWS: usize = 24;
 
-/// Maximum number of sets of joint rows that are examined.
+/// Maximum number of combinations of mistakes that are examined because they may explain the
+/// picture only together (see `joint_rows`); those with the least difference come first.
 const JOINT_SETS: usize = 2;
 
 /// Ratio of a set's difference to that of the set it extends, below which it is examined at once,
@@ -166,8 +167,8 @@ impl Search<'_> {
         }
     }
 
-    /// Returns whether another candidate explains the picture with fewer parameters, or with as many
-    /// at no more cost.
+    /// Returns whether another candidate explains the picture with fewer parameters, or with as
+    /// many at no more cost.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(least, explained)| {

@@ -23,7 +23,7 @@ const MIDDLE: u32 = 96;
 /// Change of the picture, in cells, by which numbers are varied to find their derivatives.
 pub const CELL_STEP: f64 = 0.25;
 
-/// Samples in a cell of the tiny grid.
+/// Number of samples in each cell of the tiny grid (`TINY`), on which mistakes are selected.
 const SAMPLES: usize = 5;
 
 /// Number of pixels in the central crop of a picture on which edges are judged. More pixels

@@ -33,12 +33,12 @@ const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 /// half of their distance.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
-/// Displacement of all edges of a JPEG, in pixels, beyond which it is never ignored. Coding hides
-/// most of a displacement, and three samples at the same places in all pixels lie less than this
-/// off the middle.
+/// Displacement of all edges of a JPEG, in pixels to the right or down, beyond which it is reported
+/// if it is significant, too (`SURELY_MOVED`). Coding hides most of a displacement, and three
+/// samples at the same places in all pixels lie less than this off the middle.
 const MOVED: f64 = 0.2;
-/// Squared length beyond which a displacement by more than `MOVED` in a JPEG is reported. Chosen by
-/// trial.
+/// Significance (`Displacement::square`, in squared standard deviations of the fit) above which a
+/// displacement of a JPEG's edges by more than `MOVED` is reported. Chosen by trial.
 const SURELY_MOVED: f64 = 150.0;
 
 impl Judge<'_> {

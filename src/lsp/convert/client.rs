@@ -17,7 +17,7 @@ pub struct Client {
     pub encoding: Encoding,
     /// Whether completions may be snippets.
     pub snippets: bool,
-    /// Whether edits may name the version of the document that they are for.
+    /// Whether edits may name the version of the document that they apply to.
     pub versioned_edits: bool,
     /// Whether edits may be snippets.
     pub snippet_edits: bool,
@@ -25,7 +25,7 @@ pub struct Client {
 
 impl Client {
     /// Reads the capabilities from the parameters of `initialize`. The fields are looked up one by
-    /// one: types for all of them would take a twentieth of the whole program's compilation.
+    /// one, since types for all of them would take a twentieth of the program's compilation time.
     pub fn new(params: &Value) -> Self {
         let field = |path: &str| params.pointer(path);
         let can = |path: &str| field(path) == Some(&Value::Bool(true));
@@ -43,8 +43,8 @@ impl Client {
     }
 }
 
-/// Returns the first of the client's encodings, which are in its order of preference, that is known
-/// here; UTF-16 by default.
+/// Returns the first encoding in `offered`, the client's list in its order of preference, that the
+/// server supports; UTF-16 if there is none.
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),
@@ -63,7 +63,7 @@ pub fn capabilities(client: &Client) -> Value {
             Encoding::Wide(WideEncoding::Utf32) => "utf-32",
             Encoding::Wide(_) => "utf-16",
         },
-        // 2 (Incremental): changes are sent as edits of the text.
+        // 2 is `Incremental`: changes are sent as edits of the text.
         "textDocumentSync": { "openClose": true, "change": 2 },
         "completionProvider": { "triggerCharacters": ["("] },
         "hoverProvider": true,
@@ -85,12 +85,12 @@ pub fn capabilities(client: &Client) -> Value {
             },
             "full": true,
         },
-        // docs/protocol.md
+        // Version of Pinhole's own requests, see docs/protocol.md.
         "experimental": { "pinhole": 1 },
     })
 }
 
-/// Returns the legend's word for a kind of token.
+/// Returns the name of a kind of token in the token legend.
 fn token_type(kind: SemanticKind) -> &'static str {
     match kind {
         SemanticKind::Keyword => "keyword",

@@ -12,21 +12,21 @@ impl Converter<'_> {
     pub fn completion(&self, index: usize, completion: Completion) -> Value {
         let kind = match completion.kind {
             CompletionKind::Function => 3,
-            // Variable
+            // 6 is `Variable`.
             CompletionKind::Definition => 6,
-            // Property
+            // 10 is `Property`.
             CompletionKind::Field => 10,
             CompletionKind::Value => 12,
             CompletionKind::Keyword => 14,
             CompletionKind::Color(_) => 16,
-            // EnumMember
+            // 20 is `EnumMember`.
             CompletionKind::Method => 20,
             CompletionKind::Constant => 21,
-            // Struct
+            // 22 is `Struct`.
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
-            // Editors show a swatch if the documentation is a colour's code alone.
+            // Editors show a swatch if the documentation is only a colour code.
             CompletionKind::Color(color) => json!(color.to_string()),
             _ => markup(completion.help),
         };
@@ -39,22 +39,22 @@ impl Converter<'_> {
         };
         without_nulls(json!({
             "label": completion.label,
-            // Neovim takes an item with an edit and without this field for filtered already, and
-            // replaces the typed text by the first one.
+            // If an item has an edit but not this field, Neovim assumes that the items are filtered
+            // already, and replaces the typed text by the first one.
             "filterText": completion.label,
             "kind": kind,
             "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
             "documentation": documentation,
-            // Editors sort by this text, which keeps the list's order.
+            // Editors sort by this text, so it keeps the order of the list.
             "sortText": format!("{index:04}"),
-            // PlainText, or Snippet
+            // 1 is `PlainText`, 2 is `Snippet`.
             "insertTextFormat": 1 + u8::from(is_snippet),
             "textEdit": { "range": self.range(completion.replaces), "newText": text },
         }))
     }
 }
 
-/// Returns the inserted text without placeholders.
+/// Returns the inserted text with the placeholders' values as plain text.
 fn plain(pieces: &[SnippetPart]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
         SnippetPart::Text(text) | SnippetPart::Placeholder(text) => text.as_str(),
@@ -62,7 +62,7 @@ fn plain(pieces: &[SnippetPart]) -> String {
     texts.collect()
 }
 
-/// Returns the inserted text as a snippet, with placeholders to type over.
+/// Returns the inserted text as a snippet with numbered placeholders, which the user types over.
 fn snippet(pieces: &[SnippetPart]) -> String {
     let mut text = String::new();
     let mut holes = 0;

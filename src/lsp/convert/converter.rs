@@ -1,4 +1,4 @@
-//! Converts answers about a document to types of the protocol, and positions and changes of the
+//! Converts answers about a document to types of the protocol, and positions and changes in the
 //! protocol to ours.
 
 use line_index::WideEncoding;
@@ -19,12 +19,12 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Converter for a document and the client that has it open.
+/// Converter for a document and the client in which the document is open.
 #[derive(Clone, Copy)]
 pub struct Converter<'d> {
-    /// The client that has the document open.
+    /// The client in which the document is open.
     pub client: &'d Client,
-    /// The document's address.
+    /// The document's URI.
     pub uri: &'d Uri,
     /// The document.
     pub document: &'d Document,
@@ -35,12 +35,12 @@ pub(super) fn count(number: usize) -> u32 {
 }
 
 impl Converter<'_> {
-    /// Returns the offset of a position.
+    /// Converts a position to a byte offset.
     pub fn offset(&self, position: Position) -> usize {
         self.document.offset(line_column(position))
     }
 
-    /// Returns the span of a range.
+    /// Converts a range to a span; start and end may be exchanged.
     pub fn span(&self, range: Range) -> Span {
         let (start, end) = (self.offset(range.start), self.offset(range.end));
         Span::new(SourceId::File, start.min(end), end.max(start))
@@ -66,8 +66,8 @@ impl Converter<'_> {
         count(self.client.encoding.columns(text))
     }
 
-    /// Converts a diagnostic. The help follows the message, and the labels except the first become
-    /// related places.
+    /// Converts a diagnostic. The help is appended to the message, and all labels except the first
+    /// become related information.
     pub fn diagnostic(&self, diagnostic: &Diagnostic) -> Value {
         let mut labels = diagnostic.labels.iter();
         let place = labels.next().map(|label| self.range(label.span));
@@ -89,7 +89,7 @@ impl Converter<'_> {
             "code": diagnostic.code.trim_start_matches("pinhole::"),
             "source": "pinhole",
             "message": message,
-            // Unnecessary: editors show it in grey.
+            // 1 is `Unnecessary`: editors show the text in grey.
             "tags": diagnostic.is_needless.then_some([1]),
             "relatedInformation": Some(related).filter(|related| !related.is_empty()),
         }))
@@ -101,7 +101,7 @@ impl Converter<'_> {
 
     pub fn signature(&self, signature: Signature) -> Value {
         let parameters = signature.parameters.iter().map(|range| {
-            // Offsets within labels are in UTF-16 units, whatever the encoding of positions.
+            // Offsets within labels are in UTF-16 units, regardless of the encoding of positions.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
                 count(WideEncoding::Utf16.measure(before))
@@ -123,7 +123,7 @@ impl Converter<'_> {
     }
 
     pub fn highlight(&self, occurrence: Occurrence) -> Value {
-        // Write, or Read
+        // 3 is `Write`, 2 is `Read`.
         let kind = if occurrence.is_definition { 3 } else { 2 };
         json!({ "range": self.range(occurrence.span), "kind": kind })
     }
@@ -134,23 +134,26 @@ impl Converter<'_> {
         edits.into_iter().map(edit).collect()
     }
 
-    /// Converts edits to a `WorkspaceEdit` of the document.
+    /// Converts edits to a `WorkspaceEdit` of the document, with the document's version if the
+    /// client supports that.
     pub fn edit(&self, edits: impl IntoIterator<Item = Edit>) -> Value {
         let edits = self.text_edits(edits);
         if !self.client.versioned_edits {
             return json!({ "changes": { self.uri.0.as_str(): edits } });
         }
-        // With the version, an editor whose text is newer rejects the edits.
+        // With the version, an editor with a newer text rejects the edits.
         let document = json!({ "uri": self.uri, "version": self.document.version });
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
 
-    /// Converts a fix of one diagnostic, or of all, to a code action. Placeholder values become
-    /// snippet placeholders if the client has them.
+    /// Converts a fix to a code action. `of` is the diagnostic that the fix is for; `None` for a
+    /// fix of all diagnostics. Placeholder values become placeholders of a snippet if the client
+    /// supports snippets in edits.
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
         let is_made_up = fix.applicability == Applicability::Placeholder;
         let edit = match (is_made_up, fix.edits.as_slice()) {
-            // Editors would indent the further lines of a snippet once more.
+            // Fixes of several lines are not made snippets, since editors would indent their
+            // further lines once more.
             (true, [only]) if self.client.snippet_edits && !only.text.trim().contains('\n') => {
                 self.snippet(only)
             }
@@ -169,10 +172,10 @@ impl Converter<'_> {
             "title": title,
             "kind": if of.is_some() { QUICK_FIX } else { FIX_ALL },
             "diagnostics": of.map(|diagnostic| [self.diagnostic(diagnostic)]),
-            // A safe fix that is the only one can be applied without asking.
+            // The only fix of a diagnostic can be applied without asking if it is safe.
             "isPreferred": of.map(|diagnostic| diagnostic.fixes.len() == 1 && fix.is_safe()),
             "edit": edit,
-            // docs/protocol.md
+            // See docs/protocol.md.
             "data": of.map(|_| json!({
                 "applicability": fix.applicability.word(),
                 "values": values,
@@ -180,7 +183,7 @@ impl Converter<'_> {
         }))
     }
 
-    /// Converts an edit to a snippet whose placeholder values are to be typed over.
+    /// Converts an edit to a snippet whose example values the user types over.
     fn snippet(&self, edit: &Edit) -> Value {
         let mut template = String::new();
         let mut at = 0;
@@ -198,7 +201,7 @@ impl Converter<'_> {
         json!({ "documentChanges": [{ "textDocument": document, "edits": [edit] }] })
     }
 
-    /// Converts an entry of the outline.
+    /// Converts an entry of the outline, with its children.
     pub fn symbol(&self, symbol: Symbol) -> Value {
         let children = symbol.children.into_iter().map(|child| self.symbol(child));
         let children: Vec<_> = children.collect();
@@ -206,11 +209,11 @@ impl Converter<'_> {
             "name": symbol.name,
             "detail": Some(symbol.detail).filter(|detail| !detail.is_empty()),
             "kind": match symbol.kind {
-                // Module
+                // 2 is `Module`.
                 SymbolKind::Setting => 2,
-                // Property
+                // 7 is `Property`.
                 SymbolKind::Field => 7,
-                // Variable
+                // 13 is `Variable`.
                 SymbolKind::Definition => 13,
                 SymbolKind::Object => 19,
             },
@@ -233,7 +236,7 @@ impl Converter<'_> {
     }
 
     pub fn hint(&self, hint: Hint) -> Value {
-        // Type
+        // 1 is `Type`.
         let kind = 1;
         json!({
             "position": self.position(hint.at), "label": hint.text, "kind": kind, "paddingLeft": true
@@ -257,8 +260,9 @@ impl Converter<'_> {
     }
 }
 
-/// Reads the changes of a text: each of a range, or of the whole text if it has no range. A range
-/// of null is an error: taken for the whole text, it would replace everything by a piece.
+/// Reads the changes of a text: each of a range, or of the whole text if there is no field `range`.
+/// A range of null is an error, since taking it for the whole text would replace the text by a part
+/// of it.
 pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;
     let change = |change: &Value| {
@@ -275,7 +279,7 @@ pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     changes.iter().map(change).collect()
 }
 
-/// Escapes a text for a snippet.
+/// Escapes a text for use in a snippet.
 pub(super) fn escaped(text: &str) -> String {
     text.replace('\\', "\\\\")
         .replace('$', "\\$")
@@ -286,10 +290,10 @@ fn line_column(position: Position) -> LineColumn {
     (position.line, position.character)
 }
 
-/// Converts a colour that the client has picked.
+/// Converts a colour that the client has picked, rounded to 8 bits per channel.
 pub fn color(color: protocol::Color) -> Color {
     let bytes = [color.red, color.green, color.blue];
-    // Conversions of floats saturate at the bounds.
+    // Conversions of floats to integers saturate.
     Color::from_bytes(bytes.map(|channel| (channel * 255.0).round() as u8))
 }
 

@@ -1,5 +1,5 @@
-//! Converts between the types of the editor module and those of the protocol. Kinds are numbers in
-//! the protocol; comments beside them have their names there.
+//! Converts between the types of the editor module and those of the protocol. The protocol uses
+//! numbers for kinds; comments beside them give their names in the protocol.
 
 mod client;
 mod completion;

@@ -9,8 +9,8 @@ use crate::{
 };
 
 impl Converter<'_> {
-    /// Encodes each token relative to the one before it. Comments of several lines are split into
-    /// one token per line.
+    /// Encodes tokens as the protocol requires, each relative to the previous one. A comment of
+    /// several lines is split into one token per line.
     pub fn semantic_tokens(&self, tokens: &[SemanticToken]) -> Value {
         let mut data = Vec::with_capacity(5 * tokens.len());
         let mut last = Position::default();

@@ -1,10 +1,10 @@
-//! The oracle: what is seen at a sample point according to textbook formulas, in arithmetic of
-//! hundreds of bits.
+//! The oracle: a tracer that decides what is seen at a sample point by textbook formulas, in
+//! arithmetic of hundreds of bits.
 //!
-//! Nothing here is shared with the tracer: it uses world coordinates instead of the view plane, the
-//! quadratic formula, signed areas, and slabs with divisions. A value counts as zero if it is
-//! smaller than its terms by 5/14 of the bits (2^−500 with 1400 bits, 2^−182 with 512): far beyond
-//! the 2^−90 where the language's ties begin, and far from the last bits.
+//! The oracle shares nothing with the tracer. It uses world coordinates instead of the view plane,
+//! the quadratic formula, signed areas, and slabs with divisions. A value counts as zero if it is
+//! smaller than its terms by 5/14 of the bits: 2^−500 with 1400 bits, 2^−182 with 512. This is far
+//! below the 2^−90 where the language's ties begin, and far above the last bits.
 
 mod number;
 
@@ -20,48 +20,49 @@ use crate::{
     scene::{Lens, Scene, Shape, TriangleOutline, View},
 };
 
-/// Number of bits for scenes whose numbers have any size of an `f64`.
+/// Number of bits for scenes whose numbers may be of any size that an `f64` can have.
 pub const ALL_SIZES: usize = 1400;
 
-/// Number of bits for views so wide or narrow that a pixel's side and the distance of the view
-/// plane differ in size by about 2^1000.
+/// Number of bits for extremely wide or narrow views, in which the side of a pixel and the distance
+/// of the view plane differ by factors of about 2^1000.
 pub const ALL_VIEWS: usize = 3000;
 
-/// Number of bits for scenes whose numbers differ in size by about 2^100.
+/// Number of bits for scenes whose numbers differ by factors of about 2^100.
 pub const USUAL_SIZES: usize = 512;
 
 /// A scene prepared for exact decisions.
 #[derive(Debug)]
 pub struct Oracle {
-    /// The arithmetic.
+    /// Arithmetic of the oracle's precision.
     pub number: Number,
     scene: Scene,
     surfaces: Vec<PreparedShape>,
     eye: V,
-    /// The picture's right, its top, and the direction opposite to the view.
+    /// The camera's axes: the directions of the picture's right and top, and the direction
+    /// opposite to the view.
     pub axes: [V; 3],
-    /// Distance of the view plane.
+    /// Distance between the eye and the view plane.
     d: N,
     /// Side of a pixel in the view plane.
     pixel: N,
 }
 
-/// Values of a shape's formulas that are the same for all rays.
+/// Values that a shape's formulas need for every ray.
 #[derive(Debug)]
 enum PreparedShape {
-    /// f = eye − centre, f·f and f·f − radius².
+    /// A sphere: f = eye − centre, f·f, and c = f·f − radius².
     Sphere { f: V, square: N, c: N },
-    /// The vertices, the normal n, n·(centroid − eye), which is zero if the eye is in the plane,
-    /// and the scale of areas.
+    /// A triangle: the vertices; the normal n; n·(centroid − eye), which is zero if the eye lies in
+    /// the plane; and the size of the terms of signed areas.
     Triangle {
         vertices: Box<[V; 3]>,
         normal: V,
         height: N,
         scale: N,
     },
-    /// min − eye and max − eye.
+    /// A box: min − eye and max − eye.
     Box { lo: V, hi: V },
-    /// y − eye's y, and the side of a square.
+    /// A checkerboard: its height above the eye (y − the eye's y), and the side of a square.
     Checkerboard { height: N, square: N },
 }
 
@@ -72,13 +73,13 @@ pub struct OracleHit {
     pub object: usize,
     /// Whether a checkerboard shows its second colour.
     pub odd: bool,
-    /// The parameter of the point eye + t · direction.
+    /// Parameter t of the intersection eye + t·direction.
     pub t: N,
 }
 
 impl Oracle {
-    /// Prepares a scene for arithmetic of `bits` bits. Its up vector must not be parallel to the
-    /// view direction.
+    /// Prepares a scene for arithmetic of `bits` bits. The scene's up vector must not be parallel
+    /// to the view direction.
     pub fn new(scene: &Scene, bits: usize) -> Self {
         let number = Number { bits };
         let n = |x| number.exact(x);
@@ -119,13 +120,13 @@ impl Oracle {
         }
     }
 
-    /// Returns the direction of the ray through an offset from the centre of the pixel in column
-    /// `x` and row `y`.
+    /// Returns the direction of the ray through the point at `offset` pixels from the centre of the
+    /// pixel in column `x` and row `y`.
     pub fn direction(&self, x: u32, y: u32, offset: DVec2) -> V {
         self.direction_through(dvec2(f64::from(x), f64::from(y)) + 0.5, offset)
     }
 
-    /// Returns the direction of the ray through an offset from a point, in pixels from the
+    /// Returns the direction of the ray through the point `pixels` + `offset`, in pixels from the
     /// picture's top left corner.
     pub fn direction_through(&self, pixels: DVec2, offset: DVec2) -> V {
         let n = |x| self.number.exact(x);
@@ -136,7 +137,8 @@ impl Oracle {
         axpy(&axpy(&scale(&right, u), &up, v), &-self.d.clone(), w)
     }
 
-    /// Returns what is seen along a direction.
+    /// Returns the visible intersection of the ray with direction `r` from the eye, or `None` if
+    /// the ray hits nothing between the clip planes.
     pub fn seen(&self, r: &V) -> Option<OracleHit> {
         let (camera, n) = (&self.scene.camera, |x| self.number.exact(x));
         let (near, far) = (n(camera.near), camera.far.map(n));
@@ -150,7 +152,7 @@ impl Oracle {
             let crossings = self.crossings(object, r);
             Some((object, crossings.into_iter().find(is_visible)?))
         });
-        // On a tie the first object of the file is seen.
+        // If two objects are at the same distance, the first of the file is seen.
         let (object, t) = seen.reduce(|best, next| match self.order(&next.1, &best.1) {
             Ordering::Less => next,
             _ => best,
@@ -165,20 +167,22 @@ impl Oracle {
         Some(OracleHit { object, odd, t })
     }
 
-    /// Computes eye + t · r.
+    /// Computes the point eye + `t`·`r`.
     pub fn point(&self, t: &N, r: &V) -> V {
         axpy(&self.eye, t, r)
     }
 
-    /// Returns whether a coordinate lies in an odd row of squares.
+    /// Returns whether the coordinate `x` lies in a row of squares with an odd number.
     fn is_odd(&self, x: &N, square: &N) -> bool {
-        // A number this close to an integer is that integer: 1/3 + 2/3 is not 0.999….
+        // A quotient that is so little below an integer counts as that integer: 1/3 + 2/3 is not
+        // 0.999….
         let close = self.number.exact(1.0) >> (self.number.bits as isize * 3 / 14);
         let cell = (x / square + close).floor();
         (cell.to_int().value() & IBig::ONE) == IBig::ONE
     }
 
-    /// Returns all t > 0 at which the ray eye + t · r meets an object, in order.
+    /// Returns all t > 0, in ascending order, at which the ray eye + t·`r` hits the object with
+    /// index `index`.
     pub fn crossings(&self, index: usize, r: &V) -> Vec<N> {
         match &self.surfaces[index] {
             PreparedShape::Sphere { f, square, c } => self.sphere(f, square, c, r),
@@ -200,7 +204,8 @@ impl Oracle {
         }
     }
 
-    /// Returns the positive roots of a t² + 2 b t + c.
+    /// Intersects the ray with a sphere: returns the positive roots of a·t² + 2b·t + c. A ray that
+    /// only touches the sphere misses it.
     fn sphere(&self, f: &V, square: &N, c: &N, r: &V) -> Vec<N> {
         let (a, b) = (dot(r, r), dot(f, r));
         let bb = &b * &b;
@@ -210,7 +215,7 @@ impl Oracle {
         }
         let root = discriminant.sqrt();
         let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
-        // If the eye is on the surface, one root is zero, whatever its rounding.
+        // If the eye is on the surface, one root is zero except for its rounding.
         if self.sign(c, square) == Ordering::Equal {
             let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
             return roots.into_iter().skip(1).filter(|_| is_ahead).collect();
@@ -218,7 +223,8 @@ impl Oracle {
         roots.into_iter().filter(|t| *t > N::ZERO).collect()
     }
 
-    /// Intersects the ray with the plane n·(p − eye) = height.
+    /// Intersects the ray with the plane n·(p − eye) = `height`. Returns `None` if the eye lies in
+    /// the plane, if the ray is parallel to it, or if the plane is behind the eye.
     fn plane(&self, n: &V, height: &N, r: &V) -> Option<N> {
         let slope = dot(n, r);
         if *height == N::ZERO || self.sign(&slope, &(size(n) * size(r))) == Ordering::Equal {
@@ -228,7 +234,8 @@ impl Oracle {
         (t > N::ZERO).then_some(t)
     }
 
-    /// Returns whether a point of a triangle's plane lies inside each edge, or on it.
+    /// Returns whether the point `p` of a triangle's plane lies inside the triangle or on its
+    /// edges.
     fn is_in_triangle(&self, [a, b, c]: &[V; 3], normal: &V, scale: &N, p: &V) -> bool {
         let scale = scale + size(normal) * dot(p, p);
         [(a, b), (b, c), (c, a)].iter().all(|(a, b)| {
@@ -237,8 +244,9 @@ impl Oracle {
         })
     }
 
-    /// Returns the greatest t of entry and the least t of exit of the slabs, if the ray meets the
-    /// box.
+    /// Intersects the ray with a box: the ray is inside from the greatest t at which it enters a
+    /// slab to the least t at which it leaves one. Returns those of the two that are positive; none
+    /// if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);
@@ -256,8 +264,8 @@ impl Oracle {
         ends.filter(|t| *t > N::ZERO).collect()
     }
 
-    /// Compares two numbers, which are equal if their difference is negligible relative to the
-    /// larger one.
+    /// Compares two numbers. They count as equal if their difference is negligible relative to
+    /// their absolute values.
     fn order(&self, a: &N, b: &N) -> Ordering {
         self.sign(&(a - b), &(abs(a) + abs(b)))
     }

@@ -10,18 +10,18 @@ use crate::{math::Angle, scene::CenteredTriangle};
 /// A binary floating-point number of the oracle's precision.
 pub type N = FBig<HalfEven, 2>;
 
-/// A vector of the world.
+/// A vector in world coordinates.
 pub type V = [N; 3];
 
-/// Arithmetic of a fixed precision.
+/// Arithmetic with a fixed number of bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
-    /// Number of bits.
+    /// Number of bits of every result.
     pub bits: usize,
 }
 
 impl Number {
-    /// Converts a number of a scene.
+    /// Converts a number of a scene. The number must be finite.
     pub fn exact(self, x: f64) -> N {
         debug_assert!(x.is_finite());
         let x = N::try_from(x).unwrap_or(N::ZERO);
@@ -33,8 +33,8 @@ impl Number {
         v.to_array().map(|x| self.exact(x))
     }
 
-    /// Returns the sign of a result whose operands have a certain size; it is zero if it is smaller
-    /// than these by 5/14 of the bits.
+    /// Returns the sign of the result `x` of operands whose terms have the size `size`. The sign is
+    /// zero if `x` is smaller than `size` by 5/14 of the bits.
     pub fn sign(self, x: &N, size: &N) -> Ordering {
         if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
             Ordering::Equal
@@ -43,7 +43,7 @@ impl Number {
         }
     }
 
-    /// Returns sine and cosine of an angle, which is a number of degrees plus a number of radians.
+    /// Returns the sine and the cosine of an angle, including its part in radians.
     pub fn sin_cos(self, angle: Angle) -> (N, N) {
         let (s, c) = self.exact(angle.degrees).sin_cos_unit(360);
         if angle.radians == 0.0 {
@@ -53,7 +53,7 @@ impl Number {
         (&s * &d + &c * &t, c * d - s * t)
     }
 
-    /// Returns a triangle's vertices: left base end, right base end, apex.
+    /// Returns the vertices of a triangle: left end of the base, right end of the base, and apex.
     pub fn vertices(self, triangle: &CenteredTriangle) -> [V; 3] {
         let CenteredTriangle {
             centroid, normal, ..
@@ -67,7 +67,8 @@ impl Number {
         };
         let right = unit(&cross(&self.vector(reference), &unit_normal));
         let top = cross(&unit_normal, &right);
-        // The law of cosines at the left end, then a rotation about the centroid.
+        // The law of cosines gives the angle at the left end of the base. The vertices are then
+        // rotated about the centroid.
         let [a, b, c] = triangle.sides.to_array().map(n);
         let cos = (&a * &a + &c * &c - &b * &b) / (n(2.0) * &a * &c);
         let sin = (n(1.0) - &cos * &cos).sqrt();
@@ -84,27 +85,27 @@ impl Number {
     }
 }
 
-/// Computes a − b.
+/// Computes `a` − `b`.
 pub fn sub(a: &V, b: &V) -> V {
     [0, 1, 2].map(|i| &a[i] - &b[i])
 }
 
-/// Computes a + k b.
+/// Computes `a` + `k`·`b`.
 pub fn axpy(a: &V, k: &N, b: &V) -> V {
     [0, 1, 2].map(|i| &a[i] + k * &b[i])
 }
 
-/// Computes k a.
+/// Computes `k`·`a`.
 pub fn scale(k: &N, a: &V) -> V {
     [0, 1, 2].map(|i| k * &a[i])
 }
 
-/// Computes the dot product.
+/// Computes the dot product of `a` and `b`.
 pub fn dot(a: &V, b: &V) -> N {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// Computes the cross product.
+/// Computes the cross product `a` × `b`.
 pub fn cross(a: &V, b: &V) -> V {
     [
         &a[1] * &b[2] - &a[2] * &b[1],
@@ -118,18 +119,19 @@ pub fn length(a: &V) -> N {
     dot(a, a).sqrt()
 }
 
-/// Bounds the size of a vector, as a scale for what is negligible.
+/// Bounds the length of a vector by the sum of its absolute components, as a scale for what is
+/// negligible.
 pub fn size(a: &V) -> N {
     abs(&a[0]) + abs(&a[1]) + abs(&a[2])
 }
 
-/// Computes a/|a|.
+/// Computes the unit vector `a`/|`a`|.
 pub fn unit(a: &V) -> V {
     let length = length(a);
     [0, 1, 2].map(|i| &a[i] / &length)
 }
 
-/// Computes |x|.
+/// Computes the absolute value of `x`.
 pub fn abs(x: &N) -> N {
     x.clone().abs()
 }

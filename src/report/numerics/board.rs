@@ -52,7 +52,7 @@ fn parallels(random: &mut CaseRng) -> CaseScene {
     })
 }
 
-/// A board, a triangle, and the top of a box at the height of the eye.
+/// Returns a scene with a board, a triangle, and the top of a box exactly at the height of the eye.
 fn edge_on(random: &mut CaseRng) -> CaseScene {
     let eye = random.vector(3.0);
     let ahead = dvec3(random.within(-0.5, 0.5), random.within(-0.3, 0.3), -1.0);
@@ -92,8 +92,8 @@ fn displaced(random: &mut CaseRng) -> CaseScene {
     input(along(eye, down), &[board(0.0, 1.0)])
 }
 
-/// From a height of 64 squares, where one pixel corresponds to a slope of 1/64, a pixel's upper
-/// left corner shows that of a square.
+/// Returns a view from a height of 64 squares, where one pixel corresponds to a slope of 1/64: the
+/// upper left corner of each pixel shows the corner of a square.
 fn corners(random: &mut CaseRng) -> CaseScene {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
     let eye = random.wholes([-reach, 64, -reach], [reach, 64, reach]) * size;

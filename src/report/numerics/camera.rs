@@ -1,5 +1,5 @@
-//! The camera: nearly parallel up vectors, directions of all lengths, rolls, lenses, and wide
-//! pictures.
+//! Cases of the camera: up vectors nearly parallel to the view, directions of all lengths, rolls,
+//! lenses, and wide pictures.
 
 use glam::{DVec3, dvec3};
 
@@ -37,8 +37,9 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // Up is as close to the view direction as f64 allows. If all neighbouring f64s are equal, the
-    // world's axes leave more room.
+    // The up vector is as close to the view direction as `f64` allows. If the sum rounds to a
+    // parallel vector, a camera that looks along −y is used instead, because the coordinate axes
+    // leave more room.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -68,11 +69,13 @@ fn lengths(random: &mut CaseRng) -> Camera {
     camera
 }
 
-/// A world behind lenses that see nearly everything, and behind lenses that see next to nothing.
+/// Returns a scene seen through a lens that shows nearly everything, or through one that shows next
+/// to nothing.
 ///
-/// Through the widest lenses, the rays of whole rows of the picture are parallel to the board up to
-/// d. Such a ray is a tie from 2^−90 on, which Pinhole treats as a tie from 2^−310 on and the
-/// oracle from 2^−500 on: lenses in between are not tested.
+/// Through the widest lenses, the rays of whole rows of the picture differ from the board's
+/// direction only by about d. By the language, a ray is parallel to the board (a tie) if that
+/// difference is below about 2^−90. Pinhole treats it as parallel only below 2^−310, and the oracle
+/// only below 2^−1071, 5/14 of its bits. Lenses between these limits are not tested.
 fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);
@@ -117,7 +120,7 @@ fn wide(random: &mut CaseRng) -> CaseScene {
         let size = dvec3(0.7, random.within(0.1, 2.0), 18.0);
         shapes.push(cuboid(corner, corner + size));
     }
-    // The window is 2 m high and as wide as 2^20 of its 64 rows.
+    // The window is 2 m high, and 2^20/64 times as wide as it is high.
     camera.lens = Lens::Distance(16384.0);
     let mut input = input(camera, &shapes);
     input.scene.image.width = 1 << 20;
@@ -132,8 +135,8 @@ const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(6.0, 3.0, -2.0), 7.0),
 ];
 
-/// A wall perpendicular to the view, at the depth of one of the two clip planes or at a
-/// neighbouring f64.
+/// Returns a scene with a wall perpendicular to the view, at the depth of one of the two clip
+/// planes or at a neighbouring `f64`.
 fn exactly_there(random: &mut CaseRng) -> CaseScene {
     let (direction, length) = random.pick(&WHOLE);
     let steps = random.whole(1, 1 << 20) / 1024.0;

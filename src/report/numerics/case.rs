@@ -1,4 +1,4 @@
-//! A hard case: how its inputs are generated, and where in the scene they are tested.
+//! A hard case: how its inputs are generated, and at which points of the picture they are tested.
 
 use super::{
     inputs::{CaseRng, SamplePoint},
@@ -9,23 +9,24 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A row of the catalogue.
+/// A case of the catalogue.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// Name.
+    /// Name of the case.
     pub id: &'static str,
-    /// What makes the case hard.
+    /// Description of what makes the case hard.
     pub title: &'static str,
-    /// Maximum error that is claimed; no decision is wrong.
+    /// Maximum error that Pinhole claims, in the case's [`unit`](Self::unit). No decision may be
+    /// wrong.
     pub bound: f64,
     pub(super) subject: Question,
 }
 
-/// What a case tests.
+/// The quantity that a case tests.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Question {
-    /// What is seen in a scene, which is tested at many points. Errors of distances and points are
-    /// counted in units in the last place.
+    /// What is seen at many points of a scene. Errors of distances and points are counted in units
+    /// in the last place.
     Seen(fn(&mut CaseRng) -> CaseScene),
     /// The axes of a camera. Errors of the components of unit vectors are counted in units of
     /// 2^−53.
@@ -33,17 +34,17 @@ pub(super) enum Question {
 }
 
 impl Case {
-    /// Returns whether the case tests decisions, not only numbers.
+    /// Returns whether the case tests decisions about what is seen, not only numbers.
     pub fn decides(&self) -> bool {
         matches!(self.subject, Question::Seen(_))
     }
 
-    /// Returns the unit of its errors.
+    /// Returns the unit of the case's errors.
     pub fn unit(&self) -> &'static str {
         if self.decides() { "ulp" } else { "u" }
     }
 
-    /// Tests `count` inputs.
+    /// Tests `count` inputs of the case and adds the results to `tally`.
     pub(super) fn ask(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let input = match self.subject {
             Question::Seen(input) => input(random),
@@ -65,12 +66,12 @@ pub(super) struct CaseScene {
     bits: usize,
     /// Generates points of the picture; by default they lie anywhere.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Number of inputs tested at these points, in halves of all inputs; the others lie close to
-    /// boundaries.
+    /// Number of halves of the inputs that are tested at these points: 0, 1 or 2. The other inputs
+    /// lie close to boundaries.
     halves: u64,
 }
 
-/// Tests points close to the boundaries of what a camera sees of the shapes.
+/// Returns a scene of which points close to the boundaries of what is seen are tested.
 pub(super) fn input(camera: Camera, shapes: &[Shape]) -> CaseScene {
     CaseScene {
         scene: scene(camera, shapes),
@@ -86,12 +87,12 @@ impl CaseScene {
         Self { bits, ..self }
     }
 
-    /// Tests points anywhere.
+    /// Makes the case test points anywhere.
     pub fn anywhere(self) -> Self {
         Self { halves: 2, ..self }
     }
 
-    /// Tests points that `point` generates.
+    /// Makes the case test points that `point` generates.
     pub fn at(self, point: impl Fn(&mut CaseRng) -> SamplePoint + 'static) -> Self {
         Self {
             points: Box::new(point),
@@ -99,8 +100,8 @@ impl CaseScene {
         }
     }
 
-    /// Tests half of the inputs at points anywhere, or at those of `at`, and half close to
-    /// boundaries.
+    /// Makes the case test half of the inputs at points anywhere (or at those of `at`) and half
+    /// close to boundaries.
     pub fn mixed(self) -> Self {
         Self { halves: 1, ..self }
     }

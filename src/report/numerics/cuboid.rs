@@ -19,8 +19,8 @@ pub const CASES: &[Case] = &[
     Case { id: "B5", title: "the seam of two boxes that share a face", bound: 2.0, subject: Seen(neighbours) },
 ];
 
-/// The eye looks along −z from a place whose x and y are those of a face or not, and rays leave it
-/// in the planes x = e_x and y = e_y.
+/// Returns a view along −z from an eye whose x and y may be those of a face. Rays leave the eye in
+/// the planes x = e_x and y = e_y, so that they may lie in the plane of a face.
 fn in_planes(random: &mut CaseRng) -> CaseScene {
     let min = random.wholes([-9, -9, -40], [9, 9, -9]) / 4.0;
     let max = min + random.wholes([1; 3], [9; 3]) / 4.0;
@@ -66,7 +66,7 @@ fn thin(random: &mut CaseRng) -> CaseScene {
     let axis = random.below(3) as usize;
     max[axis] = min[axis].next_up();
     let mut eye = random.vector(1.0).normalize() * 5.0;
-    // Steep or nearly along the plane.
+    // The eye looks at the plane of the thin box steeply or nearly along it.
     eye[axis] = min[axis] + random.sign() * random.power(-15.0, 0.5);
     let shapes = [cuboid(min, max), sphere((min + max) / 2.0, 0.3)];
     input(camera(eye, (min + max) / 2.0), &shapes)
@@ -81,7 +81,7 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
     input(camera(eye, (min + max) / 2.0), &shapes)
 }
 
-/// The eye is beside the shared face's plane or in it.
+/// Returns two boxes that share a face. The eye is beside the plane of that face or exactly in it.
 fn neighbours(random: &mut CaseRng) -> CaseScene {
     let seam = random.within(-1.0, 1.0);
     let mut shapes = [

@@ -1,4 +1,4 @@
-//! Pseudorandom numbers from which inputs are generated.
+//! Pseudorandom numbers from which the inputs of cases are generated.
 
 use glam::DVec3;
 use rand::{Rng, RngExt};
@@ -11,11 +11,12 @@ use crate::{
     },
 };
 
-/// A point of a picture: for each axis a pixel's column or row, and an offset from its centre.
+/// A point of a picture: for each axis, the pixel's column or row and an offset from the pixel's
+/// centre, in pixels.
 pub type SamplePoint = [(u32, f64); 2];
 
-/// The coordinates next to the middle of a picture of the usual size: just before it, and exactly
-/// on it.
+/// Coordinates at the middle of a picture of the usual size: just before the middle, and exactly on
+/// it.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
 /// Pseudorandom numbers that depend only on a case and a block of its inputs.
@@ -23,29 +24,29 @@ pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE 
 pub struct CaseRng(CounterRng);
 
 impl CaseRng {
-    /// Starts the numbers of a block of a case.
+    /// Creates the generator of the block `block` of the case named `case`.
     pub fn new(case: &str, block: u64) -> Self {
         let name = case.bytes();
         let name = name.fold(0, |name, byte| name << 8 | u64::from(byte));
         Self(Key::new(name, block).rng())
     }
 
-    /// Returns an integer below `n`.
+    /// Returns a uniform integer from 0 to `n` − 1.
     pub fn below(&mut self, n: u64) -> u64 {
         scale(self.0.next_u64(), n)
     }
 
-    /// Returns an integer from `low` to `high`.
+    /// Returns a uniform integer from `low` to `high`, both included.
     pub fn whole(&mut self, low: i64, high: i64) -> f64 {
         (low + self.below((high - low + 1) as u64) as i64) as f64
     }
 
-    /// Returns a column or row of a picture of the usual size.
+    /// Returns a random column or row of a picture of the usual size.
     pub fn pixel(&mut self) -> u32 {
         self.below(SIZE.into()) as u32
     }
 
-    /// Returns one of the items.
+    /// Returns one of `things` at random.
     pub fn pick<T: Copy>(&mut self, things: &[T]) -> T {
         things[self.below(things.len() as u64) as usize]
     }
@@ -55,17 +56,18 @@ impl CaseRng {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// Returns 10 to a uniform power.
+    /// Returns 10 to a uniform power between `low` and `high`.
     pub fn power(&mut self, low: f64, high: f64) -> f64 {
         libm::pow(10.0, self.within(low, high))
     }
 
-    /// Returns −1 or 1.
+    /// Returns −1 or 1 at random.
     pub fn sign(&mut self) -> f64 {
         self.pick(&[-1.0, 1.0])
     }
 
-    /// Returns a uniform point of a box. An axis without extent consumes no number.
+    /// Returns a uniform point of the box from `low` to `high`. An axis without extent consumes no
+    /// random number.
     pub fn between(&mut self, low: [f64; 3], high: [f64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| {
             let (a, b) = (low[axis], high[axis]);
@@ -73,8 +75,8 @@ impl CaseRng {
         }))
     }
 
-    /// Returns a point of a box with integer coordinates. An axis without extent consumes no
-    /// number.
+    /// Returns a point with integer coordinates in the box from `low` to `high`. An axis without
+    /// extent consumes no random number.
     pub fn wholes(&mut self, low: [i64; 3], high: [i64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| {
             let (a, b) = (low[axis], high[axis]);
@@ -82,12 +84,12 @@ impl CaseRng {
         }))
     }
 
-    /// Returns a uniform point of a cube around the origin.
+    /// Returns a uniform point of a cube around the origin whose side is 2·`half`.
     pub fn vector(&mut self, half: f64) -> DVec3 {
         self.between([-half; 3], [half; 3])
     }
 
-    /// Returns a unit vector.
+    /// Returns a uniformly distributed unit vector.
     pub fn unit(&mut self) -> DVec3 {
         loop {
             let v = self.vector(1.0);
@@ -97,12 +99,12 @@ impl CaseRng {
         }
     }
 
-    /// Returns a point of a picture of the usual size.
+    /// Returns a random point of a picture of the usual size.
     pub fn point(&mut self) -> SamplePoint {
         self.point_of([SIZE; 2])
     }
 
-    /// Returns a point of a picture of the given columns and rows.
+    /// Returns a random point of a picture of `size` columns and rows.
     pub fn point_of(&mut self, size: [u32; 2]) -> SamplePoint {
         let pixels = size.map(|pixels| self.below(pixels.into()) as u32);
         pixels.map(|pixel| (pixel, self.within(-0.5, 0.5)))

@@ -4,17 +4,17 @@
 //! surfaces, numbers of all sizes. What is seen there is decided three times: by the
 //! [`oracle`](crate::reference::oracle) in hundreds of bits, by the
 //! [`textbook`](crate::reference::textbook) formulas in `f64`, and by the tracer that renders
-//! pictures, one ray at a time. (Tests verify that rays in vectors give the same pictures to the
-//! bit.) Decisions that differ from the oracle's are counted; distances and points are measured at
-//! one input of 16. Inputs lie at the neighbouring `f64`s on both sides of a boundary and at
-//! distances from it that are uniform on a logarithmic scale, unless the case says otherwise.
+//! pictures, one ray at a time. (Tests verify that SIMD rays give bit-identical pictures.)
+//! Decisions that differ from the oracle's are counted. Distances and points are measured for one
+//! input of 16. Unless the case says otherwise, inputs lie at the neighbouring `f64`s on both sides
+//! of a boundary, and at distances from the boundary that are uniform on a logarithmic scale.
 //!
-//! Inputs depend only on the case and their number, so that they are the same with any number of
-//! threads.
+//! Inputs depend only on the case and on their own number, so that they are the same for any number
+//! of threads.
 //!
-//! Not here: what the tests of the samplers and of the film cover, and what the language rejects
-//! before it could become a picture, such as negative sizes, empty clip ranges, and numbers that
-//! are not finite.
+//! The catalogue leaves out what the tests of the samplers and of the film cover. It also leaves
+//! out what the language rejects, such as negative sizes, empty clip ranges, and numbers that are
+//! not finite.
 
 mod board;
 mod camera;
@@ -38,7 +38,7 @@ pub use self::{
 };
 use crate::{render::Control, threads};
 
-/// Returns the catalogue.
+/// Returns all cases of the catalogue, in order.
 pub fn cases() -> impl Iterator<Item = &'static Case> {
     let families = [
         sphere::CASES,
@@ -53,20 +53,20 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 /// Number of inputs of a case that share a scene.
 const BLOCK: u64 = 100;
 
-/// Tests `inputs_per_case` inputs of every case, and reports progress in inputs. If it is
-/// cancelled, the result has what was tested so far: about as many inputs of every case, and no
-/// case without inputs.
+/// Tests `inputs_per_case` inputs of every case, and reports progress in inputs. If the run is
+/// cancelled, the result covers what was tested so far: about equally many inputs of every case,
+/// and no case without inputs. Fails if the threads cannot be started.
 pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, ThreadPoolBuildError> {
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);
     let count = cases.len() as u64;
-    // Block by block of all cases, so that all cases progress evenly.
+    // Blocks alternate between all cases, so that all cases progress evenly.
     let ask = |mut tallies: Vec<CaseTally>, index| {
         let (block, at) = (index / count, (index % count) as usize);
         let inputs = BLOCK.min(inputs_per_case - block * BLOCK);
         let random = &mut CaseRng::new(cases[at].id, block);
         // Each block has a tally of its own, so that the choice of measured inputs does not depend
-        // on how threads share the blocks.
+        // on how the threads share the blocks.
         let mut tally = CaseTally::default();
         cases[at].ask(random, inputs, &mut tally);
         tallies[at] = tallies[at].plus(tally);

@@ -31,9 +31,9 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
     input(camera, &[shape])
 }
 
-/// The eye at the origin looks along −z, and the plane x = 0 touches the sphere at (0, y, z). Of
-/// the rays in that plane, which are those of the middle of the picture, none meets the sphere; of
-/// the rays on one side of it, one next to it does.
+/// Returns a view of a sphere that touches the plane x = 0 at (0, y, z). The eye is at the origin
+/// and looks along −z. The rays in that plane pass through the middle of the picture, and none of
+/// them hits the sphere. On one side of the plane, a ray next to it does.
 fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();
@@ -78,7 +78,8 @@ fn inside(random: &mut CaseRng) -> CaseScene {
 }
 
 fn at_the_surface(random: &mut CaseRng) -> CaseScene {
-    // 3, 4 and 5: the eye is exactly on the surface before `above` is applied.
+    // These points are exactly 5 from the origin, so that the eye is exactly on the surface before
+    // `above` is applied.
     let on = random.pick(&[
         dvec3(3.0, 4.0, 0.0),
         dvec3(0.0, 4.0, -3.0),

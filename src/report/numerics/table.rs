@@ -21,17 +21,17 @@ pub struct CaseResult {
 pub struct NumericsTable {
     /// The results in the order of the catalogue.
     pub rows: Vec<CaseResult>,
-    /// Number of inputs that were planned.
+    /// Number of inputs that were planned, for all cases together.
     pub planned: u64,
 }
 
 impl NumericsTable {
-    /// Returns the number of Pinhole's wrong decisions.
+    /// Returns the number of wrong decisions by Pinhole.
     pub fn wrong(&self) -> u64 {
         self.rows.iter().map(|row| row.tally.wrong[1]).sum()
     }
 
-    /// Returns the number of inputs tested.
+    /// Returns the number of inputs that were tested.
     pub fn inputs(&self) -> u64 {
         self.rows.iter().map(|row| row.tally.inputs).sum()
     }
@@ -41,8 +41,8 @@ impl NumericsTable {
         self.inputs() == self.planned
     }
 
-    /// Converts the table for programs. An infinite error, such as that of a distance that is not
-    /// found at all, is null, and so are numbers that were not measured or do not apply to a case.
+    /// Converts the table to JSON. An infinite error, such as that of a distance that is not found
+    /// at all, is null. So are numbers that were not measured or do not apply to a case.
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|CaseResult { case, tally }| {
             let side = |i: usize| {
@@ -112,7 +112,7 @@ fn cells(CaseResult { case, tally }: &CaseResult) -> [String; 7] {
     [id, title, theirs, ours, their_error, our_error, bound]
 }
 
-/// Formats a share of the inputs in per cent, with an exponent if it is small.
+/// Formats `count` as a percentage of `inputs`, with an exponent if it is below 0.1.
 fn share(count: u64, inputs: u64) -> String {
     let percent = 100.0 * count as f64 / inputs as f64;
     match count {
@@ -122,7 +122,8 @@ fn share(count: u64, inputs: u64) -> String {
     }
 }
 
-/// Formats an error with two digits, or a dash if none was measured.
+/// Formats an error with two decimals, or with one digit and an exponent if it is very small or
+/// large. Returns a dash if none was measured.
 fn size(error: Option<f64>) -> String {
     let Some(error) = error else {
         return "-".to_owned();

@@ -1,4 +1,4 @@
-//! Judges inputs: what the oracle, the textbook and Pinhole see at a sample point.
+//! Compares what the oracle, the textbook and Pinhole see at sample points.
 
 use dashu_float::ops::Abs;
 use glam::{DVec2, DVec3, dvec2};
@@ -17,19 +17,19 @@ use crate::{
     tracer::{Basis, World, ray},
 };
 
-/// Counts and measurements of the textbook (first) and of Pinhole (second).
+/// Counts and measurements. In each pair, the textbook comes first and Pinhole second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CaseTally {
     /// Number of inputs tested.
     pub inputs: u64,
-    /// Number of decisions that differ from exact arithmetic.
+    /// Number of decisions that differ from the oracle's.
     pub wrong: [u64; 2],
-    /// Greatest error of a number; `None` if none was measured.
+    /// Greatest error of a measured number, in the case's unit; `None` if none was measured.
     pub error: [Option<f64>; 2],
 }
 
 impl CaseTally {
-    /// Adds up two tallies.
+    /// Returns the sum of two tallies, with the greater errors.
     pub fn plus(self, other: Self) -> Self {
         Self {
             inputs: self.inputs + other.inputs,
@@ -38,7 +38,7 @@ impl CaseTally {
         }
     }
 
-    /// Records a pair of errors, as far as they were measured.
+    /// Records a pair of errors; one that was not measured is `None`.
     pub fn errors(&mut self, errors: [Option<f64>; 2]) {
         self.error = [0, 1].map(|i| greater(self.error[i], errors[i]));
     }
@@ -49,7 +49,8 @@ fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
 
-/// Measures the errors of a camera's axes in units of 2^−53.
+/// Measures the greatest error of a camera's axes, in units of 2^−53, and adds it to `tally` as one
+/// input.
 pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     let scene = scene(*camera, &[]);
     let oracle = Oracle::new(&scene, ALL_SIZES);
@@ -71,7 +72,7 @@ pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     tally.errors(errors.map(Some));
 }
 
-/// A scene as seen by the oracle, the textbook and Pinhole.
+/// A scene prepared for the oracle, the textbook and Pinhole.
 #[derive(Debug)]
 pub(super) struct Trial {
     scene: Scene,
@@ -80,15 +81,15 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of inputs of which one is measured: a distance takes longer than a decision.
+/// Number of inputs per measurement of a distance and a point, which takes longer than a decision.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Number of boundaries of which one is found by the oracle. Finding a boundary takes about six
-/// times as long as testing beside it.
+/// Number of searches for a boundary per search that the oracle does; Pinhole does the others. A
+/// search by the oracle takes about six times as long as testing beside the boundary.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
-    /// Prepares a scene; the oracle computes with `bits` bits.
+    /// Prepares a scene. The oracle computes with `bits` bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
         Self {
             world: World::new(&scene),
@@ -98,7 +99,8 @@ impl Trial {
         }
     }
 
-    /// Compares what all three see at a sample point.
+    /// Compares what all three see at a sample point, and counts wrong decisions in `tally`. One of
+    /// every [`INPUTS_PER_MEASUREMENT`] inputs is also measured.
     pub fn decide(&self, point: SamplePoint, tally: &mut CaseTally) {
         let truth = self.truth(point);
         let pixels = point.map(|(pixel, offset)| f64::from(pixel) + 0.5 + offset);
@@ -125,15 +127,16 @@ impl Trial {
         self.world.palette()[self.world.slot_at(x, y, dvec2(dx, dy))]
     }
 
-    /// Returns the colour of an object, where a board may show its second colour, or the
-    /// background.
+    /// Returns the colour that is seen: that of an object (for a checkerboard, of the square's
+    /// colour), or the background if `seen` is `None`.
     fn color(&self, seen: Option<(usize, bool)>) -> Color {
         let background = self.scene.image.background;
         seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
-    /// Measures the distance and the point that are seen through a point of the picture, in units
-    /// in the last place: of the distance, and of the greatest coordinate.
+    /// Measures the errors of the distance and of the point that are seen at `pixels`, and records
+    /// the greater one in `tally`. The unit is that in the last place of the distance, or of the
+    /// point's greatest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -153,7 +156,7 @@ impl Trial {
         tally.errors([theirs, Some(ours)]);
     }
 
-    /// Returns the error of a distance and a point, in units in the last place.
+    /// Returns the greater of the errors of a distance and of a point, in units in the last place.
     fn distance(&self, t: f64, point: DVec3, true_t: &N, true_point: &V) -> f64 {
         let coordinates = true_point.iter().map(|x| x.to_f64().value().abs());
         let greatest = coordinates.fold(0.0, f64::max);
@@ -162,7 +165,7 @@ impl Trial {
         of_point.into_iter().fold(of_t, f64::max)
     }
 
-    /// Returns the error of a number in units in the last place of `of`.
+    /// Returns the error of `x` in units in the last place of `of`.
     fn ulps(&self, x: f64, truth: &N, of: f64) -> f64 {
         if !x.is_finite() {
             return f64::INFINITY;
@@ -172,13 +175,13 @@ impl Trial {
         error.to_f64().value()
     }
 
-    /// Tests close to the boundaries that random rows and columns cross: at the neighbouring `f64`s
-    /// on both sides of each, and at distances from it that are uniform on a logarithmic scale.
-    /// Pinhole's own decisions find most of them, and the oracle's find some, in case Pinhole does
-    /// not see a boundary at all.
+    /// Tests `count` inputs close to boundaries of what is seen along random rows and columns. They
+    /// lie at the neighbouring `f64`s on both sides of each boundary, and at distances from it that
+    /// are uniform on a logarithmic scale. Pinhole's own decisions find most boundaries; the
+    /// oracle's find some, in case Pinhole does not see a boundary at all.
     pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
-        // A picture without boundaries is tested anywhere.
+        // If too few boundaries are found, the remaining inputs lie anywhere.
         let mut patience = 4 * count;
         while tally.inputs < end && patience > 0 {
             patience -= 1;
@@ -196,8 +199,9 @@ impl Trial {
         }
     }
 
-    /// Returns a place where what is seen changes along a row (axis 0) or column (axis 1): a pixel,
-    /// and the last offset before the change.
+    /// Searches a random row (`axis` 0) or column (`axis` 1) for a point where the colour `seen`
+    /// changes. Returns the pixel and the last offset before the change, or `None` if the two ends
+    /// of the search have the same colour.
     fn boundary(
         &self,
         random: &mut CaseRng,
@@ -223,10 +227,11 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // The change is at the pixel's edge.
+            // Here the change is at the pixel's edge.
             low = high;
         }
-        // Bisects down to neighbouring numbers; near 0 these are closer than anything that matters.
+        // This bisects down to neighbouring numbers. Near 0, 130 steps end at a distance smaller
+        // than anything that matters.
         for _ in 0..130 {
             let middle = low + (high - low) / 2.0;
             if middle == low || middle == high {
@@ -242,7 +247,7 @@ impl Trial {
         Some(point)
     }
 
-    /// Tests on both sides of a boundary.
+    /// Tests at most 12 inputs, and no more than `count`, on and beside a boundary.
     fn beside(
         &self,
         random: &mut CaseRng,

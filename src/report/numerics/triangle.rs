@@ -23,7 +23,7 @@ pub const CASES: &[Case] = &[
     Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
-/// Sides of the assignment's triangle.
+/// Sides of the triangle in the assignment.
 const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
 
 fn tiny(random: &mut CaseRng) -> CaseScene {
@@ -48,13 +48,13 @@ fn slivers(random: &mut CaseRng) -> CaseScene {
     input(camera, &[shape])
 }
 
-/// Sides of two triangles, of which the second is the first rotated by 180° about the middle of one
-/// of its edges. The vertices lie at (∓9, −4) and (0, 8) from the centroid, so that the edges
-/// coincide exactly if the plane is one of the world's.
+/// Sides of a triangle that is also used rotated by 180° about the middle of one of its edges, so
+/// that both share this edge. The vertices lie at (∓9, −4) and (0, 8) from the centroid. The shared
+/// edges therefore coincide exactly if the plane is perpendicular to a coordinate axis.
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
-/// For each edge, the centroid of the rotated triangle and points of the edge, relative to the
-/// first centroid.
+/// For each edge, the centroid of the rotated triangle and some points of the edge, all relative to
+/// the first centroid.
 #[rustfmt::skip]
 const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ([0.0, -8.0], &[[-9.0, -4.0], [-4.0, -4.0], [0.0, -4.0], [7.0, -4.0], [9.0, -4.0]]),
@@ -82,7 +82,8 @@ fn shared_edges(random: &mut CaseRng) -> CaseScene {
     input(camera(eye, middle), &shapes)
 }
 
-/// From a distance of 64, the corners of pixels are the points of the lattice.
+/// Returns two triangles at a distance of 64, where the corners of pixels show points with integer
+/// coordinates.
 fn lattice_points(random: &mut CaseRng) -> CaseScene {
     let size = libm::exp2(random.whole(-8, 8));
     let (other, points) = random.pick(&SHARED);

@@ -1,8 +1,8 @@
 //! Charts of error against time and against samples, as SVG.
 //!
-//! Both axes are logarithmic. A line is labelled at its end, so that no legend is needed, and its
-//! marker and dash identify it in black and white. Black is written as the current colour, so that
-//! the page may be dark.
+//! Both axes are logarithmic. Each line is labelled at its end, so that no legend is needed, and
+//! its marker and dash identify the line even in black and white. Black is written as the current
+//! colour, so that the page may be dark.
 
 use std::ops::Range;
 
@@ -27,27 +27,27 @@ use super::{
 };
 use crate::{diagnostic::escaped, numbers};
 
-/// Size of a chart in pixels: small, so that its letters are still legible on a phone, whose screen
-/// is 400 of these pixels wide.
+/// Width and height of a chart, in pixels. A chart is small, so that its letters are still legible
+/// on a phone, whose screen is 400 of these pixels wide.
 const SIZE: (u32, u32) = (560, 440);
 
-/// Width to the right of the chart for labels, in pixels; the longest is `multi_jittered`.
+/// Width of the labels to the right of the chart, in pixels; the longest label is `multi_jittered`.
 const LABELS: i32 = 162;
 
-/// Minimum distance of labels, in pixels.
+/// Minimum vertical distance between labels, in pixels.
 const LABEL_HEIGHT: i32 = 21;
 
-/// The quantity of the horizontal axis.
+/// A quantity for the horizontal axis, with its names and its format.
 struct HorizontalAxis {
     title: &'static str,
     name: &'static str,
     of: fn(&SeriesPoint) -> f64,
     written: fn(f64) -> String,
-    /// Value of the exact method, whose error is off the scale.
+    /// Value of the exact method, which is a vertical line because its error is off the scale.
     exact: Option<f64>,
 }
 
-/// Draws error against CPU time. The exact method is a vertical line.
+/// Draws the chart of error against CPU time as SVG. The exact method is a vertical line.
 pub fn against_time(measured: &Measurement) -> String {
     let time = HorizontalAxis {
         title: "Error against CPU time",
@@ -59,7 +59,7 @@ pub fn against_time(measured: &Measurement) -> String {
     svg(measured, &time)
 }
 
-/// Draws error against samples per pixel.
+/// Draws the chart of error against samples per pixel as SVG.
 pub fn against_samples(measured: &Measurement) -> String {
     let samples = HorizontalAxis {
         title: "Error against samples",
@@ -71,7 +71,7 @@ pub fn against_samples(measured: &Measurement) -> String {
     svg(measured, &samples)
 }
 
-/// Returns the requested errors, except those that are far from all measured ones.
+/// Returns the requested errors that are within a factor of 30 of a measured one.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
     let found: Vec<_> = points.map(|point| point.typical().error).collect();
@@ -84,7 +84,7 @@ pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
 
 fn svg(measured: &Measurement, against: &HorizontalAxis) -> String {
     let mut svg = String::new();
-    // Writing to a string fails only in the layout of text, which is not used.
+    // Writing to a string can fail only in the layout of text, which is not used.
     let canvas = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
     let done = draw(canvas, measured, against);
     debug_assert!(done.is_ok(), "{done:?}");
@@ -102,7 +102,7 @@ fn svg(measured: &Measurement, against: &HorizontalAxis) -> String {
 
 fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Drawn {
     let wanted = shown_errors(measured);
-    // A number without logarithm has no place.
+    // A number that is not finite and positive has no logarithm, and is not drawn.
     let exact = against.exact.filter(|x| x.is_finite() && *x > 0.0);
     let lines = measured.series.iter().map(|series| {
         let place = |point: &SeriesPoint| ((against.of)(point), point.typical().error);
@@ -172,8 +172,9 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Dra
     canvas.present()
 }
 
-/// Draws the vertical line of the exact method, with an arrow to where its error lies. Its label
-/// stands where the lines of the others are not, which run from the top left to the bottom right.
+/// Draws the vertical line of the exact method, with an arrow down to where its error lies. The
+/// lines of the other methods run from the top left to the bottom right; the label stands off their
+/// diagonal.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];
@@ -197,20 +198,20 @@ fn letters(size: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
 }
 
-/// Returns the range of an axis that contains the values, with some margin.
+/// Returns the range of an axis that contains all `values`, with a margin of a factor of 1.5.
 fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let wider = |(low, high): (f64, f64), value| (low.min(value), high.max(value));
     let (low, high) = values.fold((f64::INFINITY, 0.0), wider);
     if low <= high {
         low / 1.5..high * 1.5
     } else {
-        // Nothing to show: any axis will do.
+        // There is nothing to show, and any axis will do.
         0.1..1.0
     }
 }
 
-/// Returns a logarithmic axis with labels at 1, 2 and 5 times powers of ten, or only at the powers
-/// if there would be many, and lines at all digits.
+/// Returns a logarithmic axis. It has labels at 1, 2 and 5 times the powers of ten, or only at the
+/// powers if there would be more than five, and grid lines at all digits times the powers.
 fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let marks = |digits: &[i32]| -> Vec<f64> {
         let powers = libm::log10(ends.start).floor() as i32..=libm::log10(ends.end) as i32;
@@ -228,19 +229,19 @@ fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
         .with_light_points(marks(&[1, 2, 3, 4, 5, 6, 7, 8, 9]))
 }
 
-/// Returns heights for labels near the ends of their lines, in the order of the ends, without
-/// overlap.
+/// Returns a height in pixels for each line's label, in the order of `ends`. The labels are near
+/// the ends of their lines and do not overlap.
 fn spread_out(ends: &[CanvasPoint], rows: &Range<i32>) -> Vec<i32> {
     let mut order: Vec<_> = (0..ends.len()).collect();
     order.sort_by_key(|&at| ends[at].1);
     let mut heights = vec![0; ends.len()];
-    // Down from the top, each as high as possible, ...
+    // Labels are placed from the top downwards, each as high as possible.
     let mut free = rows.start;
     for &at in &order {
         heights[at] = ends[at].1.max(free);
         free = heights[at] + LABEL_HEIGHT;
     }
-    // ... and up from the bottom, where labels exceed the chart.
+    // Labels that then exceed the chart are moved up, from the bottom upwards.
     let mut free = rows.end;
     for &at in order.iter().rev() {
         heights[at] = heights[at].min(free);

@@ -1,4 +1,5 @@
-//! Estimates of what each method needs for an error, and a ranking of the methods by time.
+//! Estimates of the samples and the time that each method needs for an error, and a ranking of the
+//! methods by CPU time.
 
 use super::{
     results::{Measurement, MethodSeries, Run, SeriesPoint},
@@ -6,46 +7,47 @@ use super::{
 };
 use crate::scene::Method;
 
-/// What a method needs for an error.
+/// Estimated samples and time that a method needs for an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Samples per pixel; `None` for the exact method.
     pub per_pixel: Option<f64>,
     /// CPU time in seconds.
     pub cpu: f64,
-    /// The least and the greatest CPU time by single runs, in seconds.
+    /// Least and greatest CPU time estimated from single runs, in seconds.
     pub cpu_runs: [f64; 2],
-    /// Wall time in seconds.
+    /// Elapsed time in seconds.
     pub wall: f64,
     /// Whether the estimate lies beyond the measured range.
     pub is_extrapolated: bool,
 }
 
 impl Estimate {
-    /// Returns whether the runs do not determine which of two times is less: one lies within the
-    /// spread of the other's runs.
+    /// Returns whether the runs leave open which of the two methods is faster: the time of one is
+    /// within the spread of the other's runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
 }
 
-/// The methods that reach an error.
+/// The methods that reach an error, by CPU time.
 pub struct Ranking {
-    /// The method with the least CPU time, and those that are about as fast.
+    /// The method with the least CPU time, and the methods that are about as fast.
     pub fastest: Vec<(Method, Estimate)>,
-    /// The others, by CPU time.
+    /// The other methods, by CPU time.
     pub others: Vec<(Method, Estimate)>,
 }
 
 impl Measurement {
-    /// Estimates what a sampled method needs for an error. Returns `None` if more samples do not
-    /// help, or if the error is not above the reference's own: the root of the mean of its squared
-    /// bounds, since errors are such means.
+    /// Estimates the samples and the time that a sampled method needs for an error. Returns `None`
+    /// if more samples do not help. Returns `None` also if the error is not above that of the exact
+    /// picture, the root mean square of its bounds (errors are root mean squares, too).
     pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
 
-    /// Estimates what the exact method needs for an error; `None` if it was not measured.
+    /// Estimates the time that the exact method needs for an error. Returns `None` if it was not
+    /// measured, or if the error is not above that of the exact picture.
     pub fn exact_estimate(&self, error: f64) -> Option<Estimate> {
         let runs = self.exact.as_ref().filter(|_| self.tells(error))?;
         let Run { cpu, wall, .. } = Run::typical(runs);
@@ -62,14 +64,14 @@ impl Measurement {
         error > self.reference.root_mean_square_bound()
     }
 
-    /// Ranks the methods that reach an error. Extrapolated ones come after all measured ones,
-    /// however fast they seem.
+    /// Ranks the methods that reach an error by CPU time. Extrapolated estimates come after all
+    /// others, even if they are less.
     pub fn ranking(&self, error: f64) -> Ranking {
         let estimate = |it: &MethodSeries| Some((it.method, self.estimate(it, error)?));
         let sampled = self.series.iter().filter_map(estimate);
         let exact = self.exact_estimate(error).map(|it| (Method::Exact, it));
         let mut all: Vec<_> = sampled.chain(exact).collect();
-        // If the system does not report CPU time, no method has the least.
+        // If the system does not report CPU time, no method can be ranked.
         all.retain(|(_, estimate)| estimate.cpu.is_finite());
         all.sort_by(|(_, a), (_, b)| {
             let measured_first = a.is_extrapolated.cmp(&b.is_extrapolated);
@@ -85,15 +87,19 @@ impl Measurement {
     }
 }
 
-/// A number of samples per pixel and its result, of one run or of all.
+/// A number of samples per pixel and its result, from one run or from all runs.
 type Measured = (f64, Run);
 
 impl MethodSeries {
-    /// Estimates what the method needs for an error. Errors are assumed to fall as a power of the
-    /// samples: between two measured numbers of samples by the line in logarithms through both,
-    /// beyond the last with the slope of the line through the last three. (With few samples, errors
-    /// may fall at another rate, because `scatter` then leaves pixels empty.) Times are assumed to
-    /// grow linearly with the samples. If the least number suffices, it is the estimate.
+    /// Estimates the samples and the time that the method needs for an error. If the smallest
+    /// measured number of samples suffices, it is the estimate. Returns `None` if more samples do
+    /// not help.
+    ///
+    /// Errors are assumed to fall as a power of the number of samples. Between two measured
+    /// numbers, the power is that of the line through both in logarithms. Beyond the last, it is
+    /// the slope of the line through the last three. (With few samples, errors may fall at another
+    /// rate, because `scatter` then leaves pixels empty.) Times are assumed to grow linearly with
+    /// the samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));
@@ -111,11 +117,11 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // From here on, no measured error is greater.
+        // From the index `enough` on, no measured error is greater than `error`.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
-            // Fewer samples may suffice, but none were measured.
+            // Even fewer samples might suffice, but none were measured.
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
@@ -135,11 +141,11 @@ impl MethodSeries {
         })
     }
 
-    /// Returns the samples that an error needs, between a few with a greater error and many
-    /// without.
+    /// Returns the samples per pixel that an error needs, between `few`, which have a greater
+    /// error, and `many`, which have not.
     fn between(&self, (few, of_few): &Measured, (many, of_many): &Measured, error: f64) -> f64 {
         let share = if of_many.error == 0.0 {
-            // Without any error, these samples suffice for every request.
+            // If `many` samples have no error at all, they suffice for every request.
             1.0
         } else {
             libm::log(of_few.error / error) / libm::log(of_few.error / of_many.error)
@@ -152,9 +158,9 @@ impl MethodSeries {
     }
 }
 
-/// Returns the next number of samples that is a square or the product of two neighbours.
-/// Interpolation between such numbers holds for them alone, because the method makes a grid of that
-/// many cells, which is a single row for a prime number.
+/// Returns the next number of samples that is a square or the product of two neighbouring integers.
+/// Multi-jittered sampling makes a grid with as many cells as samples; for a prime number, the grid
+/// is a single row. The interpolation between squares therefore holds only for such numbers.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
     let next = root + 1.0;
@@ -163,8 +169,9 @@ fn oblong(per_pixel: f64) -> f64 {
     enough.unwrap_or(per_pixel)
 }
 
-/// Returns the time that a number of samples takes, no fewer than the first step's: by the line
-/// between the steps on either side, or between the first and the last.
+/// Returns the time that `per_pixel` samples take, by linear interpolation between the neighbouring
+/// steps. Beyond the last step, the line through the first and the last step is used. `per_pixel`
+/// must be at least that of the first step.
 fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
     let times: Vec<_> = times.collect();
@@ -175,12 +182,12 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // More samples take no less time.
+        // The slope is not negative, because more samples do not take less time.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }
 
-/// Returns the least and the greatest of some values.
+/// Returns the least and the greatest of `value` and `others`.
 fn range(value: f64, others: impl Iterator<Item = f64>) -> [f64; 2] {
     others.fold([value; 2], |[low, high], other| {
         [low.min(other), high.max(other)]

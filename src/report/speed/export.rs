@@ -1,4 +1,5 @@
-//! The measurement for programs: CSV, with a row for each method and number of samples, and JSON.
+//! The measurement in formats for programs: CSV, with a row for each method and number of samples,
+//! and JSON.
 
 use std::io;
 
@@ -11,8 +12,9 @@ use super::{
     summary::verdicts,
 };
 
-/// A row of the CSV file. Times are medians in seconds, CPU times except in `wall`; errors are in
-/// linear light. The exact method has a row without samples, and a bound in place of an error.
+/// A row of the CSV file. Times are medians in seconds: CPU time in `time`, elapsed time in `wall`.
+/// Errors are in linear light. The row of the exact method has no samples, and a bound in place of
+/// an error.
 #[derive(Default, Serialize)]
 struct CsvRow {
     method: &'static str,
@@ -26,7 +28,8 @@ struct CsvRow {
     bound: Option<f64>,
 }
 
-/// Writes a row for each method and number of samples, after a row of names.
+/// Returns the measurement as CSV: a row of names, then a row for each method and number of
+/// samples.
 pub fn to_csv(measured: &Measurement) -> io::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for series in &measured.series {
@@ -62,7 +65,7 @@ fn row(method: &'static str, runs: &[Run]) -> CsvRow {
     }
 }
 
-/// Converts runs: their median and each of them.
+/// Converts runs to JSON: their medians, and the values of each run.
 fn of_runs(runs: &[Run]) -> Value {
     let each = |number: fn(&Run) -> f64| runs.iter().map(number).collect::<Vec<_>>();
     let Run { cpu, wall, error } = Run::typical(runs);
@@ -74,7 +77,7 @@ fn of_runs(runs: &[Run]) -> Value {
     })
 }
 
-/// Converts the whole measurement. A number that is not finite is null.
+/// Converts the whole measurement to JSON. A number that is not finite becomes null.
 pub fn to_json(measured: &Measurement) -> Value {
     let whole = measured.whole();
     let (machine, reference) = (&measured.machine, &measured.reference);

@@ -1,5 +1,5 @@
-//! Line styles of the methods: a colour, a marker and a dash, each of which is enough to tell a
-//! method from its neighbours.
+//! Line styles of the methods: a colour, a marker and a dash. Each of the three alone distinguishes
+//! a method from its neighbours in the chart.
 
 use std::io;
 
@@ -26,9 +26,9 @@ pub type CanvasPoint = (i32, i32);
 #[derive(Clone, Copy)]
 pub struct LineStyle {
     pub color: RGBColor,
-    /// Length of dashes and gaps in pixels; `None` for a solid line.
+    /// Lengths of dashes and of gaps, in pixels; `None` for a solid line.
     dash: Option<(u32, u32)>,
-    /// Outline of the marker relative to its middle, and whether it is filled.
+    /// Outline of the marker, in pixels from its middle, and whether the marker is filled.
     marker: (&'static [CanvasPoint], bool),
 }
 
@@ -63,7 +63,7 @@ impl LineStyle {
         }
     }
 
-    /// Draws a line through the points.
+    /// Draws a line through the points `places`.
     pub fn line(self, canvas: &Canvas, places: &[CanvasPoint]) -> Drawn {
         let (places, style) = (places.to_vec(), self.color.stroke_width(2));
         match self.dash {
@@ -72,7 +72,7 @@ impl LineStyle {
         }
     }
 
-    /// Draws the marker.
+    /// Draws the method's marker at a point.
     pub fn marker(self, canvas: &Canvas, (x, y): CanvasPoint) -> Drawn {
         let (line, is_filled) = self.marker;
         let line: Vec<_> = line.iter().map(|(dx, dy)| (x + dx, y + dy)).collect();

@@ -7,14 +7,15 @@ use crate::files::read_system_text;
 /// Properties of a machine that affect times.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
-    /// The processor's model as the system names it, or else its architecture.
+    /// Name of the processor's model as the system reports it, or else the processor's
+    /// architecture.
     pub processor: String,
     /// Number of processors that this process may use.
     pub processors: usize,
 }
 
 impl Machine {
-    /// Returns this machine.
+    /// Returns the properties of this machine.
     pub fn here() -> Self {
         Self {
             processor: model().unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
@@ -23,7 +24,8 @@ impl Machine {
     }
 }
 
-/// Returns Linux's name of the processor; other systems only provide it through their libraries.
+/// Returns Linux's name of the processor's model, or `None` if there is none; other systems provide
+/// a name only through their libraries.
 fn model() -> Option<String> {
     let table = read_system_text("/proc/cpuinfo")?;
     let line = table.lines().find(|line| line.starts_with("model name"))?;

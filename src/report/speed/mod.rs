@@ -1,10 +1,10 @@
-//! Speed against error, method by method.
+//! Measurements of speed against error for each sampling method.
 //!
-//! In: a scene and a [`Request`]: the methods, the numbers of samples and of runs. [`measure`]
-//! times renders and compares them with the exact picture. Out: a [`Measurement`], plain data.
-//! [`text()`] formats it as a table for a terminal, [`to_csv`] and [`to_json`] as files for
-//! programs, [`against_time`] and [`against_samples`] as charts, and [`page()`] as HTML with all of
-//! these and pictures.
+//! In: a scene and a [`Request`], which has the methods, the numbers of samples and the number of
+//! runs. [`measure`] times renders and compares them with the exact picture. Out: a
+//! [`Measurement`], which is plain data. [`text()`] formats it as a table for a terminal;
+//! [`to_csv`] and [`to_json`] as files for programs; [`against_time`] and [`against_samples`] as
+//! charts; and [`page()`] as HTML with all of these and pictures.
 
 mod chart;
 mod estimate;

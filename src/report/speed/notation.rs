@@ -3,10 +3,11 @@
 use super::{estimate::Estimate, statistics::PowerLaw};
 use crate::numbers;
 
-/// Stands for an unknown number.
+/// Mark in place of an unknown number.
 pub const UNKNOWN: &str = "–";
 
-/// Formats a requested error in full, or as a fraction of light if that is shorter, such as 1/256.
+/// Formats a requested error with all its digits, or as a fraction such as 1/256 if that is
+/// shorter.
 pub fn asked_error(error: f64) -> String {
     let decimal = if error < 1e-4 {
         format!("{error:e}")
@@ -21,12 +22,13 @@ pub fn asked_error(error: f64) -> String {
     }
 }
 
-/// Formats a measured error with two digits.
+/// Formats a measured error with two significant digits.
 pub fn error(error: f64) -> String {
     significant(error, 2)
 }
 
-/// Formats a time in seconds or milliseconds, with `digits` significant digits.
+/// Formats a time in seconds or milliseconds, with `digits` significant digits. NaN becomes
+/// [`UNKNOWN`].
 pub fn seconds(seconds: f64, digits: usize) -> String {
     match seconds {
         _ if seconds.is_nan() => UNKNOWN.to_owned(),
@@ -35,7 +37,8 @@ pub fn seconds(seconds: f64, digits: usize) -> String {
     }
 }
 
-/// Formats the time of an estimate; an extrapolated one has no more than two meaningful digits.
+/// Formats a time of an estimate in seconds or milliseconds, with three significant digits. An
+/// extrapolated time has only two, because more would not be meaningful.
 pub fn time(estimate: &Estimate, time: f64) -> String {
     if estimate.is_extrapolated {
         format!("~{}", seconds(time, 2))
@@ -44,7 +47,7 @@ pub fn time(estimate: &Estimate, time: f64) -> String {
     }
 }
 
-/// Formats the samples per pixel of an estimate, or nothing for the exact method.
+/// Formats the samples per pixel of an estimate. Returns an empty string for the exact method.
 pub fn samples(estimate: &Estimate) -> String {
     match estimate.per_pixel {
         None => String::new(),
@@ -53,7 +56,7 @@ pub fn samples(estimate: &Estimate) -> String {
     }
 }
 
-/// Formats a slope with its standard error.
+/// Formats the slope of a fit with its standard error, if it has one.
 pub fn slope(fit: Option<PowerLaw>) -> String {
     let signed = |number: f64| format!("{number:.3}").replace('-', "−");
     match fit {
@@ -65,7 +68,7 @@ pub fn slope(fit: Option<PowerLaw>) -> String {
     }
 }
 
-/// Formats a count with its noun.
+/// Formats a count with the noun `what`, in the plural unless the count is 1.
 pub fn plural(count: usize, what: &str) -> String {
     match count {
         1 => format!("1 {what}"),
@@ -73,8 +76,8 @@ pub fn plural(count: usize, what: &str) -> String {
     }
 }
 
-/// Formats a number with `digits` significant digits, including trailing zeros; with an exponent if
-/// it is very large or small.
+/// Formats a number with `digits` significant digits, including trailing zeros. A very large or
+/// small number has an exponent and two digits.
 fn significant(number: f64, digits: usize) -> String {
     if number == 0.0 {
         return "0".to_owned();

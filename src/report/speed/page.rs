@@ -1,4 +1,4 @@
-//! The measurements as one page of HTML: for each scene the verdict, the charts, the table and the
+//! One HTML page with the measurements: for each scene the verdicts, the charts, the table and the
 //! pictures.
 //!
 //! The page is self-contained: its charts are inline SVG, its pictures `data:` URIs, and it runs no
@@ -19,8 +19,8 @@ use crate::{
     film::{self, Film},
 };
 
-/// Maximum width and height of the whole picture, in pixels. A page is not much wider, and the file
-/// stays small.
+/// Maximum width and height of the whole picture on the page, in pixels. A page is not much wider,
+/// and the file stays small.
 const WHOLE: [u32; 2] = [640, 480];
 
 /// Returns the page, with a section for each scene.
@@ -28,7 +28,7 @@ pub fn page(measurements: &[Measurement]) -> io::Result<String> {
     let sections = measurements.iter().map(section);
     let sections = sections.collect::<io::Result<Vec<_>>>()?;
     let mut engine = Engine::new();
-    // Text is never HTML, unless the template says so.
+    // Text is escaped unless the template marks it as HTML.
     engine.set_default_formatter(&write_escaped);
     engine.add_formatter("html", fmt::default);
     let template = engine.compile(include_str!("page.html"));
@@ -84,15 +84,16 @@ fn section(measured: &Measurement) -> io::Result<Value> {
     })
 }
 
-/// Returns the methods with a picture, by their names.
+/// Returns the name and the picture of each method that has a picture.
 fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &MethodPicture)> {
     let series = measured.series.iter();
     let shown = series.filter_map(|series| Some((series.method.name(), series.picture.as_ref()?)));
     shown.collect()
 }
 
-/// Returns a description of the part that is shown of every method, and its pictures by the exact
-/// method and the others; nothing if there are no others.
+/// Returns a description of the part of the picture that is shown for every method, and the
+/// pictures of that part: first by the exact method, then by the others. Both are empty if no other
+/// method has a picture.
 fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let shown = shown_methods(measured);
     let Some(&(first, &MethodPicture { part, .. })) = shown.first() else {

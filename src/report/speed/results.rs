@@ -11,24 +11,24 @@ use crate::{area::Area, film::Film, render::Exact, scene::Method};
 /// The measured scene.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredScene {
-    /// The user's name for it.
+    /// Name of the scene as the user gave it.
     pub name: String,
-    /// The values that the command line overrides.
+    /// Values of the scene that the command line overrides.
     pub overrides: Vec<String>,
 }
 
 /// The user's request.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// The methods, possibly including `exact`.
+    /// Methods to measure, possibly including `exact`.
     pub methods: Vec<Method>,
-    /// Samples per pixel; if empty, powers of 4 as far as the time permits.
+    /// Samples per pixel to measure; if empty, powers of 4, as many as the time permits.
     pub samples: Vec<u64>,
-    /// Runs per method and number of samples; `None` for as many as the time permits.
+    /// Number of runs per method and number of samples; `None` for as many as the time permits.
     pub runs: Option<u64>,
-    /// The errors for which samples and time are estimated, in linear light.
+    /// Errors for which samples and time are estimated, in linear light.
     pub errors: Vec<f64>,
-    /// The time available, as far as there is a choice.
+    /// Time that the measurement may take, if the samples or the runs are not given.
     pub budget: Duration,
 }
 
@@ -37,23 +37,23 @@ pub struct Request {
 pub struct Measurement {
     /// The measured scene.
     pub subject: MeasuredScene,
-    /// The machine.
+    /// Machine on which the scene was measured.
     pub machine: Machine,
     /// Number of rendering threads.
     pub threads: usize,
-    /// The scene's seed, from which the runs' seeds are derived.
+    /// Seed of the scene, from which the runs' seeds are derived.
     pub seed: u64,
-    /// Samples per pixel, ascending.
+    /// Measured numbers of samples per pixel, ascending.
     pub rungs: Vec<u64>,
-    /// The requested errors.
+    /// Requested errors, in linear light.
     pub errors: Vec<f64>,
-    /// The exact picture.
+    /// The exact picture, with which all renders are compared.
     pub reference: Exact,
-    /// The renders by the exact method, if they were requested.
+    /// Renders by the exact method, if it was requested.
     pub exact: Option<Vec<Run>>,
-    /// The sampled methods, in the order of the language's table.
+    /// Results of the sampled methods, in the order of the language's table.
     pub series: Vec<MethodSeries>,
-    /// Whether the user interrupted it.
+    /// Whether the user interrupted the measurement.
     pub interrupted: bool,
 }
 
@@ -62,26 +62,26 @@ pub struct Measurement {
 pub struct MethodSeries {
     /// The method.
     pub method: Method,
-    /// By samples per pixel, ascending.
+    /// Results by samples per pixel, ascending.
     pub points: Vec<SeriesPoint>,
-    /// Its picture with the CPU time that all methods have.
+    /// Picture of the method for comparison, with about the same CPU time for all methods.
     pub picture: Option<MethodPicture>,
 }
 
-/// Results of a method with one number of samples.
+/// Results of a method with a single number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesPoint {
-    /// Samples per pixel, for `scatter` on average.
+    /// Samples per pixel; for `scatter` the mean number.
     pub per_pixel: u64,
-    /// Its renders.
+    /// Renders with this number of samples.
     pub runs: Vec<Run>,
 }
 
 /// A timed render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
-    /// CPU time of the whole process in seconds, all threads added up. NaN if the system does not
-    /// report it.
+    /// CPU time of the whole process in seconds, summed over all threads. NaN if the system does
+    /// not report it.
     pub cpu: f64,
     /// Elapsed time in seconds.
     pub wall: f64,
@@ -97,16 +97,16 @@ pub struct MethodPicture {
     pub per_pixel: u64,
     /// CPU time of the render, in seconds.
     pub cpu: f64,
-    /// Error of the whole picture.
+    /// Root mean square error of the whole picture, in linear light.
     pub rmse: f64,
-    /// The part that is shown, the same for every method.
+    /// Part of the picture that is shown, the same for every method.
     pub part: Area,
     /// Picture of that part.
     pub film: Film,
 }
 
 impl Run {
-    /// Combines renders: the median times, and the root mean square of their errors.
+    /// Combines renders into one: their median times, and the root mean square of their errors.
     pub fn typical(runs: &[Self]) -> Self {
         let all = |pick: fn(&Self) -> f64| runs.iter().map(pick).collect::<Vec<_>>();
         Self {
@@ -118,21 +118,23 @@ impl Run {
 }
 
 impl SeriesPoint {
-    /// Returns its renders combined.
+    /// Returns the renders combined by [`Run::typical`].
     pub fn typical(&self) -> Run {
         Run::typical(&self.runs)
     }
 }
 
 impl MethodSeries {
-    /// Fits the error as a power of the samples; `None` if the error is 0.
+    /// Fits the error as a power of the number of samples. Returns `None` if fewer than two numbers
+    /// of samples were measured, or an error is 0.
     pub fn fit(&self) -> Option<PowerLaw> {
         let place = |point: &SeriesPoint| (point.per_pixel as f64, point.typical().error);
         let points: Vec<_> = self.points.iter().map(place).collect();
         PowerLaw::fit(&points)
     }
 
-    /// Interpolates the samples per pixel that take this CPU time, within the measured range.
+    /// Returns the samples per pixel that take the CPU time `cpu`, by linear interpolation and
+    /// limited to the measured numbers. Returns `None` if nothing was measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
         let slower = |pair: &&[SeriesPoint]| pair[1].typical().cpu > cpu;
@@ -146,12 +148,12 @@ impl MethodSeries {
 }
 
 impl Measurement {
-    /// Returns the picture's area.
+    /// Returns the area of the whole picture.
     pub fn whole(&self) -> Area {
         Area::whole(self.reference.film.width(), self.reference.film.height())
     }
 
-    /// Returns the number of runs that were started.
+    /// Returns the greatest number of runs of any method and number of samples.
     pub fn runs(&self) -> usize {
         let sampled = self.series.iter().flat_map(|series| &series.points);
         let most = sampled.map(|point| point.runs.len()).max();

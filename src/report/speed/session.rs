@@ -1,12 +1,14 @@
 //! Times renders and compares them with the exact picture.
 //!
-//! The exact picture comes first: it is the reference, and it warms the machine up, so that its
-//! time does not count. A round then renders with every method and every number of samples once.
-//! The first round uses more and more samples, as long as there is time for a few such rounds. Each
-//! further round is in an order that a fixed rule shuffles, so that other load on the machine
-//! affects all of them alike. The timed part is the way from the scene in memory to the film in
-//! memory: preparing the objects and the samples, starting the threads, and rendering, but not
-//! reading the scene, comparing or encoding.
+//! The exact picture is rendered first. It is the reference, and it warms the machine up, so that
+//! this render's time does not count. A round then renders once with every method and every number
+//! of samples. The first round uses more and more samples, as long as there is time for a few such
+//! rounds. A fixed rule shuffles the order of each further round, so that other load on the machine
+//! affects all methods alike.
+//!
+//! The timed part starts with the scene in memory and ends with the film in memory: preparing the
+//! objects and the samples, starting the threads, and rendering. Reading the scene, comparing
+//! pictures and encoding are not timed.
 
 use std::time::{Duration, Instant};
 
@@ -27,22 +29,22 @@ use crate::{
     tracer::World,
 };
 
-/// Minimum and maximum number of powers of 4 of samples. A slope through fewer points has no
-/// standard error.
+/// Minimum and maximum number of steps if the samples are not given; the steps are 1, 4, 16, …
+/// samples per pixel. A slope through fewer than four points has no standard error.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// Number of runs that is aimed at, and its maximum. Among fewer runs, the median may be one that
-/// something else delayed.
+/// Number of runs that should be possible in the time available, and maximum number of runs. Among
+/// fewer than three runs, the median may be one that something else delayed.
 const RUNS: (u64, u64) = (3, 9);
 
-/// Samples per pixel of the slowest method whose CPU time all pictures get: enough for the methods
-/// to differ, few enough for the eye to see it.
+/// Samples per pixel that determine the CPU time of all pictures: that of the slowest method with
+/// this many. They are enough for the methods to differ, and few enough for the eye to see it.
 const SHOWN: u64 = 16;
 
-/// Measures what the request asks for. If it is cancelled, the measurement so far is returned,
-/// marked as interrupted; before the exact picture is done, there is none. After each render,
-/// `progress` is called with the share of the whole that is done; the progress callback of
-/// `control` is not called.
+/// Measures the methods of the request. If it is cancelled, returns the measurement so far, marked
+/// as interrupted, or an error if the exact picture is not done yet. Calls `progress` after each
+/// timed render with the share of the whole that is done. The progress callback of `control` is not
+/// called.
 pub fn measure(
     subject: &MeasuredScene,
     scene: &Scene,
@@ -104,7 +106,7 @@ pub fn measure(
 struct Benchmark<'a> {
     scene: &'a Scene,
     request: &'a Request,
-    /// The requested samples, ascending, without duplicates.
+    /// Requested numbers of samples, ascending and without duplicates.
     samples: Vec<u64>,
     control: &'a Control<'a>,
     progress: &'a dyn Fn(f64),
@@ -112,8 +114,8 @@ struct Benchmark<'a> {
     measured: Measurement,
 }
 
-/// A render of a round: the index of a method's series and of a point in it, or `None` for the
-/// exact picture.
+/// A render of a round: the index of a method's series and the index of a point in that series, or
+/// `None` for the exact picture.
 type Task = Option<(usize, usize)>;
 
 impl Benchmark<'_> {
@@ -138,7 +140,8 @@ impl Benchmark<'_> {
         self.pictures()
     }
 
-    /// Renders every method with the requested samples, or with more and more while there is time.
+    /// Renders once with the exact method and with every sampled method: with the requested numbers
+    /// of samples, or with more and more while there is time.
     fn first_round(&mut self) -> Result<(), RenderError> {
         self.render(None, 0)?;
         if self.measured.series.is_empty() {
@@ -158,8 +161,8 @@ impl Benchmark<'_> {
                 self.render(Some((series, point)), 0)?;
             }
             let last = started.elapsed();
-            // A time is the sum of a constant and a part that is four times as long for four times
-            // as many samples.
+            // A time is assumed to consist of a constant and a part that is proportional to the
+            // samples, of which there will be four times as many.
             let next = last + 4 * last.saturating_sub(before);
             if is_open && !self.goes_on(next) {
                 break;
@@ -169,7 +172,9 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Returns whether to take four times as many samples, if that takes `next`.
+    /// Returns whether to go on with four times as many samples, which are expected to take `next`.
+    /// The answer is yes up to the minimum number of steps. After that, there must be time for all
+    /// rounds, and some method must still have an error above the least requested one.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
         let error = |series: &MethodSeries| Some(series.points.last()?.typical().error);
@@ -184,8 +189,8 @@ impl Benchmark<'_> {
         let measured = &mut self.measured;
         if let Some((series, point)) = task {
             let per_pixel = measured.rungs[point];
-            // Each run and each number of samples in it has a seed of its own, so that runs differ
-            // and errors of points are independent.
+            // Each run and each number of samples has a seed of its own, so that runs differ and
+            // the errors of different numbers of samples are independent.
             let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
             let series = &mut measured.series[series];
             let samples = [per_pixel, seed];
@@ -206,7 +211,8 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Renders a picture by each method in the CPU time of the slowest one.
+    /// Renders a picture with each sampled method, with as many samples as take the CPU time of the
+    /// slowest one, and keeps the same part of each.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
@@ -239,8 +245,8 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Reports the share of the samples that are done if their number is known, or else of the
-    /// time.
+    /// Reports progress: the share of the samples that are done if their total is known, otherwise
+    /// the share of the time that has passed.
     fn report_progress(&self) {
         let measured = &self.measured;
         let share = match self.request.runs {
@@ -257,7 +263,8 @@ impl Benchmark<'_> {
     }
 }
 
-/// Renders with a method, a number of samples per pixel and a seed; the exact method ignores both.
+/// Renders the scene with `method`, `per_pixel` samples per pixel and `seed`. The exact method
+/// ignores both numbers.
 fn rendered(
     scene: &Scene,
     method: Method,
@@ -274,11 +281,12 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// Maximum size of the part that is shown, in pixels. Several stand side by side on a page, and the
-/// noise of a sample should be visible.
+/// Maximum width and height of the part that is shown, in pixels. Several parts stand side by side
+/// on a page, and the noise of single samples should be visible.
 const PART: (u32, u32) = (240, 135);
 
-/// Returns the part of a picture with the greatest error, in steps of half its size.
+/// Returns the part of a picture with the greatest error. Parts are compared in steps of half of
+/// their size.
 fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     let (width, height) = (film.width().min(PART.0), film.height().min(PART.1));
     let places = |length: u32, size: u32| {
@@ -298,8 +306,8 @@ fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     Ok(worst)
 }
 
-/// Times work, and leaves the error open. Nothing else runs in the process meanwhile, except a
-/// progress bar.
+/// Does `work` and measures its time. Returns the result and a run whose error is NaN. Nothing else
+/// runs in the process meanwhile, except a progress bar.
 fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, Run), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;

@@ -1,7 +1,7 @@
 //! The median, the root mean square, and the line of least squares.
 
-/// Returns the median of values in any order; for an even number of them, the mean of the middle
-/// two. NaN if there are none.
+/// Returns the median of `values`, which may be in any order. For an even number of values, it is
+/// the mean of the middle two. Returns NaN if there are none.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -12,29 +12,32 @@ pub fn median(values: &[f64]) -> f64 {
     }
 }
 
-/// Returns the root of the mean of the squares; NaN if there are no values.
+/// Returns the root mean square of `values`, or NaN if there are none.
 pub fn root_mean_square(values: &[f64]) -> f64 {
     let squares: f64 = values.iter().map(|value| value * value).sum();
     (squares / values.len() as f64).sqrt()
 }
 
-/// A power law y = c · x^b, fitted as the line of least squares through the logarithms.
+/// A power law y = c·x^b, fitted by least squares as a line through the logarithms of the points.
 ///
-/// With k points, x̄ and ȳ the means of the logarithms and S = Σ(x − x̄)², the slope is b = Σ(x −
-/// x̄)(y − ȳ) / S and its standard error √(Σr² / (k − 2) / S), r being the residuals: Draper and
-/// Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4.
+/// With k points, x̄ and ȳ the means of the logarithms, r the residuals, and S = Σ(x − x̄)², the
+/// slope and its standard error are
+///
+/// slope: b = Σ(x − x̄)·(y − ȳ)/S, standard error: √(Σr²/(k − 2)/S)
+///
+/// (Draper and Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
-    /// The exponent b.
+    /// Exponent b, the slope of the line.
     pub slope: f64,
-    /// The standard error of b; `None` for fewer than four points, since one residual more than
-    /// the line has parameters means next to nothing.
+    /// Standard error of b; `None` for fewer than four points. With three, there is one residual
+    /// more than the line has parameters, and the standard error would mean next to nothing.
     pub slope_error: Option<f64>,
 }
 
 impl PowerLaw {
-    /// Fits points (x, y). Returns `None` if fewer than two points have different x, or a number
-    /// has no logarithm.
+    /// Fits a power law to the points (x, y). Returns `None` if there are not at least two
+    /// different x, or if a number has no logarithm.
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
         let logs: Vec<_> = points
             .iter()

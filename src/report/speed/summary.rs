@@ -1,4 +1,4 @@
-//! The measurement as sentences and as one table, for a terminal and for a page.
+//! Sentences and a table about the measurement, for a terminal and for a page.
 
 use super::{
     estimate::{Estimate, Ranking},
@@ -9,13 +9,13 @@ use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 
 /// A table with a row for each method.
 pub struct SummaryTable {
-    /// Column headings; a line feed marks where a narrow column may break.
+    /// Column headings. A line feed marks where a heading may break if the column is narrow.
     pub heads: Vec<String>,
-    /// A method's name and its cells.
+    /// Rows: a method's name and the method's other cells.
     pub rows: Vec<Vec<String>>,
 }
 
-/// Describes what was measured, how often and on what machine.
+/// Describes the picture's size, the number of runs, the threads and the machine.
 pub fn heading(measured: &Measurement) -> String {
     let whole = measured.whole();
     let machine = &measured.machine;
@@ -30,13 +30,13 @@ pub fn heading(measured: &Measurement) -> String {
     )
 }
 
-/// Recommends a method for each error.
+/// Recommends a method for each requested error.
 pub fn verdicts(measured: &Measurement) -> Vec<String> {
     let verdict = |&error: &f64| verdict(measured, error);
     measured.errors.iter().map(verdict).collect()
 }
 
-/// Recommends a method for an error, gives the reason, and says how certain it is.
+/// Recommends a method for the error `wanted`, gives the reason, and says how certain it is.
 pub fn verdict(measured: &Measurement, wanted: f64) -> String {
     let Ranking { fastest, others } = measured.ranking(wanted);
     let wanted = asked_error(wanted);
@@ -90,7 +90,7 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
     verdict
 }
 
-/// Describes the cost of a method.
+/// Describes the CPU time and the samples per pixel of a method, for a sentence.
 fn cost((method, estimate): &(Method, Estimate)) -> String {
     let is_guess = estimate.is_extrapolated;
     let takes = if is_guess { "would take" } else { "takes" };
@@ -108,8 +108,8 @@ fn per_pixel(estimate: &Estimate) -> String {
     format!("{} {noun} per pixel", samples(estimate))
 }
 
-/// Returns for each method its slope, and for each error the samples, the CPU time and the wall
-/// time that it needs.
+/// Returns a table with a row for each method: the slope of its error and, for each of `errors`,
+/// the samples, the CPU time and the wall time that the method needs.
 pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     let mut heads = vec!["method".to_owned(), "slope of\nthe error".to_owned()];
     for wanted in errors.iter().copied().map(asked_error) {
@@ -139,7 +139,7 @@ pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     SummaryTable { heads, rows }
 }
 
-/// Explains the table.
+/// Returns sentences that explain the table's signs and limits.
 pub fn notes(measured: &Measurement) -> Vec<String> {
     let bound = numbers::at_most(measured.reference.bound());
     let mut notes = vec![format!(
@@ -151,8 +151,8 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes
 }
 
-/// Makes text from outside safe to print anywhere: controls are made visible, and the two
-/// characters that XML cannot contain even so are replaced.
+/// Makes text from outside safe to print anywhere. Control characters are made visible, and the two
+/// other characters that XML cannot contain are replaced.
 pub fn printable(text: &str) -> String {
     visible_line(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

@@ -10,8 +10,8 @@ use super::{
 /// Maximum length of a line, in characters.
 const WIDTH: usize = 100;
 
-/// Describes what was measured, and for each error prints a table and the recommended method,
-/// followed by notes on the table.
+/// Returns the measurement as text: a description, then a table and the recommended method for each
+/// requested error of the picture, then notes on the tables.
 pub fn text(measured: &Measurement) -> String {
     let filled = |text: &str| textwrap::fill(text, WIDTH) + "\n";
     let mut text = format!(

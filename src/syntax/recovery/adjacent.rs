@@ -1,5 +1,5 @@
-//! Several values in the place of one: the parts of a list without parentheses, a product without
-//! its sign, a number with commas, or the value of a field without its name.
+//! Several values where one is expected: the parts of a list without parentheses, a product without
+//! its operator, a number with commas, or the value of a field whose name is missing.
 
 use super::{Recovery, example, is_plain_number};
 use crate::{
@@ -16,14 +16,14 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Returns the text of a list's parts.
+    /// Returns the texts of `values`, separated by commas.
     pub(super) fn list_of(&self, values: &[Value<'s>]) -> String {
         let texts = values.iter().map(|value| self.written(value.span));
         texts.collect::<Vec<_>>().join(", ")
     }
 
-    /// Reports several values that stand in the place of one, and returns the value that they
-    /// probably mean.
+    /// Reports several values that stand where one is expected. Returns the value that they
+    /// probably mean, or a bad value if that is uncertain.
     pub(super) fn adjacent_values(
         &mut self,
         mut values: Vec<Value<'s>>,
@@ -33,7 +33,8 @@ impl<'s> Recovery<'_, 's> {
             [] => return bad(self.behind()),
             [_] => return values.swap_remove(0),
             [first, second, rest @ ..] => {
-                // The span ends with the last value: a comment of another language may follow.
+                // The span ends with the last value, since a comment of another language may follow
+                // it.
                 let last = rest.last().unwrap_or(second);
                 (first.clone(), second.clone(), first.span.to(last.span))
             }
@@ -49,7 +50,7 @@ impl<'s> Recovery<'_, 's> {
             _ => is_plain_number(value) || self.is_factor(value),
         });
         match (takes, values.len()) {
-            // `dark red` and `multi jittered` are one misspelt name.
+            // In `dark red` and `multi jittered`, two words are one misspelt name.
             (Some(Type::Color | Type::Method), _)
                 if are_names(&values) && commas == 0 && !whole.contains(['\n', '/']) =>
             {
@@ -64,13 +65,13 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, format!("rgb({parts})"));
                 self.report(&said, span, &[example(takes)], fix);
             }
-            // `6 371 000`
+            // Digits are grouped by spaces, as in `6 371 000`.
             (None | Some(Type::Number), _) if numbers && commas == 0 && are_thousands(whole) => {
                 let label = "no spaces stand in a number";
                 let fix = replace(span, whole.replace(' ', ""));
                 self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
-            // `2 ball`, in place of a vector: a product, whatever `ball` is.
+            // `2 ball` in place of a vector is a product, whatever type `ball` has.
             (Some(Type::Vector), 2) if commas == 0 && self.is_named_factor(&first, &second) => {
                 self.missing_between(&first, &second);
             }
@@ -104,8 +105,8 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reports a list without parentheses. If it begins within a word, as in `center1.6, 1, 0`, a
-    /// part of the first value is missing, and there is no fix.
+    /// Reports a list without parentheses. If the list begins within a word, as in `center1.6, 1,
+    /// 0`, a part of its first value is missing, and there is no fix.
     pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
         let help = example(self.context.takes);
         let before = self.line_before(span.start);
@@ -114,8 +115,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISSING_PARENTHESES, span, &[help], fix);
     }
 
-    /// Reports two values with nothing between them: an operator is missing, or the name of a
-    /// field.
+    /// Reports two values with nothing between them: an operator is missing, or a field's name
+    /// before the second value.
     pub(super) fn missing_between(&mut self, left: &Value<'s>, right: &Value<'s>) {
         let is_whole = self.is_color(left) || matches!(left.kind, ValueKind::Tuple(_));
         let (l, r) = (self.short(left.span), self.short(right.span));
@@ -129,11 +130,11 @@ impl<'s> Recovery<'_, 's> {
             };
             return self.report(said, right.span, &[&r], None);
         }
-        // `2 pi`, if both surely are numbers.
+        // `2 pi` is a product if one value is a number literal and the other surely is a number.
         let sign = Span::new(self.id, left.span.end, right.span.start);
         let are_numbers = (is_plain_number(left) && self.is_factor(right))
             || (self.is_factor(left) && is_plain_number(right));
-        // `2 ball` and `(n * 0.28) ball`, in place of a vector or an angle.
+        // So are `2 ball` and `(n * 0.28) ball` in place of a vector or an angle.
         let is_scaled = matches!(self.context.takes, Some(Type::Vector | Type::Angle))
             && self.is_named_factor(left, right);
         let is_product =
@@ -143,12 +144,13 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
     }
 
-    /// Reports the missing `(` of `sin30deg * i)`: the `)` here belongs to the only function since
-    /// an offset that is joined with its argument. Returns whether there is one.
+    /// Reports that a `(` is missing, as in `sin30deg * i)`, where the function's name is joined to
+    /// its argument and the `)` is the next token. Reports it only if exactly one such name stands
+    /// between `start` and the `)`. Returns whether it was reported.
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
         let end = self.here().start;
-        // Limits the time for a value with many surplus parentheses, each of which would read it
-        // again.
+        // Maximum length, in bytes, of a value that is searched. A value with many surplus
+        // parentheses is searched once for each of them, so this limits the time.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {
             return false;
@@ -182,7 +184,7 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Returns whether a value starts with a name that surely stands for a number.
+    /// Returns whether `value` starts with a name that surely stands for a number.
     pub(super) fn is_factor(&self, value: &Value<'s>) -> bool {
         match &value.kind {
             ValueKind::Name(name) => self.words.is_factor(name),
@@ -214,14 +216,14 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether the left value is a number, or numbers in parentheses, and the right one a
-    /// name.
+    /// Returns whether `left` is a number, or a number in parentheses, and `right` is a name.
     fn is_named_factor(&self, left: &Value<'s>, right: &Value<'s>) -> bool {
         let is_factor = is_plain_number(left) || matches!(left.kind, ValueKind::Parentheses(_));
         is_factor && self.is_number(left) && matches!(right.kind, ValueKind::Name(_))
     }
 
-    /// Reports `1,5` and `1,000,000`. Returns whether the values are such a number.
+    /// Reports a number with commas, such as `1,5` or `1,000,000`. Returns `false`, and reports
+    /// nothing, if the text is not such a number.
     fn comma_in_number(&mut self, span: Span) -> bool {
         let parts: Vec<&str> = self.written(span).split(',').collect();
         let is_digits = |part: &&str| part.bytes().all(|byte| byte.is_ascii_digit());
@@ -236,8 +238,8 @@ impl<'s> Recovery<'_, 's> {
         if !(rest.iter().all(is_digits) && (is_grouped || is_decimal)) {
             return false;
         }
-        // A comma before exactly three digits separates thousands: a decimal fraction seldom has
-        // just three.
+        // A comma before exactly three digits separates thousands: few decimal fractions have
+        // exactly three digits.
         let is_whole_number = are_thousands && is_single && *head != "0";
         let (message, sign) = if is_grouped || is_whole_number {
             ("no commas stand in a number", "_")
@@ -255,7 +257,8 @@ impl<'s> Recovery<'_, 's> {
     }
 }
 
-/// Returns whether digits stand in groups of three.
+/// Returns whether a text consists of digits in groups of three, separated by spaces; the first
+/// group may be shorter.
 fn are_thousands(text: &str) -> bool {
     let mut groups = text.split(' ');
     let is_head = |head: &str| (1..=3).contains(&head.len());
@@ -264,7 +267,7 @@ fn are_thousands(text: &str) -> bool {
         && text.bytes().all(|it| it.is_ascii_digit() || it == b' ')
 }
 
-/// Returns whether a `)` behind a value changes nothing, wherever its `(` would be.
+/// Returns whether a `)` after `value` changes nothing, wherever its `(` would be.
 pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Chain { first, rest } => {
@@ -278,7 +281,8 @@ pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
             })
         }
         ValueKind::Negation { .. } => is_plain_number(value),
-        // `normalize(1, 0, 0))`
+        // In `normalize(1, 0, 0))` the call has a wrong number of arguments, so the `)` may belong
+        // to a missing `(`.
         ValueKind::Call(call)
             if schema::function(call.function.text)
                 .is_some_and(|row| !row.accepts(call.arguments.len())) =>

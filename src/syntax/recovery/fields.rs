@@ -14,7 +14,8 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads a block after its `{`, up to the sign that closes it or to where that is missing.
+    /// Reads a block after its `{`, up to and including the token `close`, or up to where that
+    /// token is missing.
     pub(super) fn body(&mut self, block: &mut Block<'s>, close: &'static str) {
         let within = Context {
             kind: block.kind.map_or("", |kind| kind.text),
@@ -24,7 +25,7 @@ impl<'s> Recovery<'_, 's> {
         };
         let outside = std::mem::replace(&mut self.context, within);
         let problems_before = self.problems.len();
-        // After reported braces within the block, it is uncertain which one is missing.
+        // Once braces within the block were reported, it is uncertain which brace is missing.
         let (mut braces, mut had_braces) = (0_usize, false);
         block.close = loop {
             self.comments(CommentPosition::Start);
@@ -56,7 +57,7 @@ impl<'s> Recovery<'_, 's> {
                     self.report(&say::NESTED_BRACES, span, &["braces within a block"], None);
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
-                    // The inner block may contain fields that the outer one lacks.
+                    // The inner block may contain the fields that the outer one lacks.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();
@@ -76,14 +77,15 @@ impl<'s> Recovery<'_, 's> {
         self.context = outside;
     }
 
-    /// Returns whether a condition or a loop of another language starts here; no field is like one.
+    /// Returns whether a condition or a loop of another language starts here, and `name` is not a
+    /// field of the block.
     fn is_statement_in_block(&self, name: &str) -> bool {
         let is_one = matches!(name, "if" | "else" | "for" | "while" | "repeat");
         is_one && !self.is_field_name(name)
     }
 
-    /// Returns whether an item starts here that shows that the block's `}` was forgotten: at the
-    /// start of a line that is indented no more than the block.
+    /// Returns whether an item starts here that shows that the block's `}` was forgotten: it is the
+    /// first of its line and indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
         (self.is(0, "let") || self.starts_block() || self.starts_item())
@@ -92,8 +94,8 @@ impl<'s> Recovery<'_, 's> {
             && self.indent(start) <= self.indent(block.span.start)
     }
 
-    /// Returns whether the sign here stands where the block should be closed: it ends a line, and
-    /// the next line begins an item.
+    /// Returns whether the next token stands where the block should be closed: it is the last of
+    /// its line, and an item or the end of the text follows.
     pub(super) fn is_end_of_block(&mut self) -> bool {
         let is_item = self.is(1, "let") || self.is_head(1);
         self.kind(1) == TokenKind::End || (self.is_on_new_line(1) && is_item)
@@ -110,7 +112,8 @@ impl<'s> Recovery<'_, 's> {
         let mut apart = " ";
         if self.written(open.to(end)).contains('\n') {
             apart = self.source.line_end();
-            // A comment behind the last field stays behind it.
+            // A comment in the line of the last field stays there, so the `}` is written at the end
+            // of that line.
             let line_end = line_end(self.text, end.start);
             let rest = self.text.get(end.start..line_end).unwrap_or_default();
             if self.here().start >= line_end && !rest.contains("/*") {
@@ -130,7 +133,8 @@ impl<'s> Recovery<'_, 's> {
         self.problems.push(found);
     }
 
-    /// Reads an object within a block by itself, and skips any other block.
+    /// Reports a block within a block. Reads the inner block as an item of its own if its kind is
+    /// known, and skips it otherwise.
     fn nested_block(&mut self) {
         let (kind, span) = (self.word(0), self.here());
         let what = format!("the block `{}` stands within another one", shorten(kind));
@@ -138,7 +142,7 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(kind) {
             return self.block();
         }
-        // The head may have indices, and no `{` may follow them.
+        // The head may have indices, and its `{` may be missing.
         self.skip_head();
         if self.is(0, "{") {
             self.bump();
@@ -146,8 +150,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reads definitions within a block as if they stood before it, unless they use an index of the
-    /// block.
+    /// Reports definitions within a block, and reads them as if they stood before the block. A
+    /// definition that uses an index of the block gets a bad value.
     fn misplaced_let(&mut self, block: &Block<'s>) {
         let (keyword, before) = (self.here(), self.items.len());
         self.context.is_block = false;
@@ -172,7 +176,7 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISPLACED_LET, keyword, &[help], None);
     }
 
-    /// Reads indices within a block as if they stood in its head.
+    /// Reads indices within a block as if they stood in the block's head.
     fn misplaced_indices(&mut self, block: &mut Block<'s>) {
         let (keyword, mut indices) = (self.bump(), Vec::new());
         while self.is_name(0) && self.is(1, "<") {
@@ -214,8 +218,8 @@ impl<'s> Recovery<'_, 's> {
         block.fields.push(Field { name, value, span });
     }
 
-    /// Reads the name of a field; two words such as `look at` or `view height` are reported and
-    /// read as one.
+    /// Reads the name of a field. Two words such as `look at` or `view height` are reported and
+    /// read as one name.
     fn field_name(&mut self) -> Name<'s> {
         let first = self.name();
         let second = self.word(0);
@@ -233,8 +237,8 @@ impl<'s> Recovery<'_, 's> {
         Name { text, span }
     }
 
-    /// Reads `radius2` and `colorred`, a field with its value and no space between them. Returns
-    /// `None` if the word is something else.
+    /// Reads a field that is joined to its value, as in `radius2` and `colorred`. Returns `None` if
+    /// the word is something else.
     fn field_without_space(&mut self) -> Option<Field<'s>> {
         let (word, span) = (self.word(0), self.here());
         let is_fraction = self.kind(1) == TokenKind::Number && self.is_adjacent(1);
@@ -252,7 +256,7 @@ impl<'s> Recovery<'_, 's> {
         if numeric_part(rest) != rest && !self.words.is_value(rest) {
             return None;
         }
-        // If a value follows, the word is a name.
+        // If a value follows, the word is a name by itself.
         let next = self.word(behind);
         let is_value = self.words.is_value(next) && !self.is_field_name(next);
         if self.starts_value(behind) && (!self.is_name(behind) || is_value) {
@@ -276,7 +280,7 @@ impl<'s> Recovery<'_, 's> {
         let after = Span::new(self.id, name.end, name.end);
         self.comments(CommentPosition::Value);
         let word = self.word(0);
-        // The next line has another name and a value.
+        // The next line starts with another name that has a value.
         let is_next = self.is_on_new_line(0)
             && self.starts_value(1)
             && !self.words.is_value(word)
@@ -294,7 +298,8 @@ impl<'s> Recovery<'_, 's> {
         self.value()
     }
 
-    /// Reads what stands in place of a field and has no field's name.
+    /// Reads values that stand in a block without a field's name. If the values are certainly those
+    /// of the first fields of a sphere or box, they become these fields.
     fn value_without_field(&mut self, block: &mut Block<'s>) {
         let (start, problems_before) = (self.here(), self.problems.len());
         if matches!(self.word(0), ")" | "]") {
@@ -303,7 +308,7 @@ impl<'s> Recovery<'_, 's> {
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // Behind a comma a name is a value, unless it has a value of its own.
+            // After a comma, a name is a value unless a value of its own follows it.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {
@@ -325,10 +330,10 @@ impl<'s> Recovery<'_, 's> {
             block.bad.push(start.to(self.behind()));
             return;
         }
-        // A comment behind the values does not belong to them.
+        // A comment after the values does not belong to them.
         let span = start.to(end);
         block.bad.push(span);
-        // Slips within the values are part of this one.
+        // Mistakes within the values are part of this mistake.
         self.problems.truncate(problems_before);
         let is_vector =
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);
@@ -346,7 +351,7 @@ impl<'s> Recovery<'_, 's> {
         });
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
-        // The two vectors of a box may also be its centre and its size.
+        // The two vectors of a box may also be its centre and its size, so its fix is not safe.
         let said = say::MISSING_FIELD_NAME.safe_if(kind == Some(BlockKind::Sphere));
         self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);

@@ -1,5 +1,5 @@
-//! Constructs of other languages: statements, comments that start with `#` or `--`, and whole
-//! files.
+//! Recognizes constructs of other languages: statements, comments that start with `#`, `--` and the
+//! like, and whole files.
 
 use memchr::memmem;
 
@@ -16,22 +16,22 @@ use crate::{
     },
 };
 
-/// Maximum number of tokens from a comparison to the `?` of its condition.
+/// Maximum number of tokens that are searched for the `?` of a conditional expression.
 const CONDITION_TOKENS: usize = 24;
 
-/// Position in the text; what starts a comment of another language depends on it.
+/// Position in the text. It decides which tokens may start a comment of another language.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum CommentPosition {
     /// Before an item or a field.
     Start,
     /// Before a value.
     Value,
-    /// Behind a value.
+    /// After a value, where an operator may follow.
     Operator,
 }
 
-/// Characters of mathematical notation and other languages: what to write for one in the place of a
-/// value, and for one behind a value.
+/// Characters of mathematical notation and of other languages. A row holds characters, the help if
+/// one of them stands in place of a value, and the help if one stands after a value.
 #[rustfmt::skip]
 const NOTATION: &[(&str, [&str; 2])] = &[
     ("π", ["write `pi`", "write `* pi`"]),
@@ -43,10 +43,11 @@ const NOTATION: &[(&str, [&str; 2])] = &[
     ("?", ["there are no conditions: `pinhole explain condition` says what to write instead"; 2]),
 ];
 
-/// Help for a remainder, and for a condition between colours.
+/// Help for the operator `%`, and for conditions that choose between colours.
 pub(super) const TURNS: &str = "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows";
 
-/// Returns the help for a word with a character of mathematical notation.
+/// Returns the help for the first row of [`NOTATION`] with a character of `word`. `is_behind` says
+/// that `word` stands after a value.
 pub(super) fn help_for_notation(word: &str, is_behind: bool) -> Option<&'static str> {
     let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
     let (_, [value, behind]) = NOTATION.iter().find(is_in)?;
@@ -54,15 +55,15 @@ pub(super) fn help_for_notation(word: &str, is_behind: bool) -> Option<&'static 
 }
 
 impl<'s> Recovery<'_, 's> {
-    /// Reports and skips a statement, such as `if (a > 0) {`, `for i in 0..10 {`, `import "x"` or
-    /// `print(r)`, with the block behind it.
+    /// Reports and skips a statement of another language, such as `if (a > 0) {`, `for i in 0..10
+    /// {`, `import "x"` or `print(r)`, and the block that follows it.
     pub(super) fn foreign_statement(&mut self, said: [&str; 2]) {
         let span = self.bump();
         self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
-        // A `Bad` item prevents reports of names that the statement may define.
+        // A `Bad` item prevents reports about unknown names that the statement may define.
         self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
@@ -70,8 +71,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports `Math.sin(a)`, `np.cos(a)` or `std::f64::consts::PI`: known words behind the name of
-    /// a library. Returns `None` if it is something else.
+    /// Reads a known word after the name of a library, as in `Math.sin(a)`, `np.cos(a)` or
+    /// `std::f64::consts::PI`, and reports it. Returns `None` if the name starts something else.
     pub(super) fn library_name(&mut self, first: Name<'s>) -> Option<Value<'s>> {
         let mut last = 0;
         loop {
@@ -103,7 +104,7 @@ impl<'s> Recovery<'_, 's> {
         Some(bad(span.to(self.behind())))
     }
 
-    /// Returns whether a `?` follows within what may be the same value.
+    /// Returns whether a `?` follows that may belong to the same value.
     fn has_question_mark(&mut self) -> bool {
         for at in 0..CONDITION_TOKENS {
             match self.word(at) {
@@ -116,8 +117,8 @@ impl<'s> Recovery<'_, 's> {
         false
     }
 
-    /// Reports and skips a condition: `n > 1 ? a : b` after its first operand, or `if n > 1 then
-    /// a`. Returns whether one starts here.
+    /// Reports and skips a condition: `> 1 ? a : b` after the operand `n`, or `if n > 1 then a`.
+    /// Returns whether one starts here.
     pub(super) fn condition(&mut self) -> bool {
         let is_one = match self.word(0) {
             "if" => !self.words.is_let("if"),
@@ -145,7 +146,7 @@ impl<'s> Recovery<'_, 's> {
             self.bump();
         }
         let span = start.to(self.behind());
-        // `i % 2 == 0 ? red : blue` is one mistake.
+        // In `i % 2 == 0 ? red : blue`, the remainder and the condition are one mistake.
         let of_remainder = |it: &Diagnostic| it.message == "there is no operator `%`";
         let last = self.problems.last().filter(|it| of_remainder(it));
         let of_color = matches!(self.context.takes, Some(Type::Color | Type::Colors));
@@ -161,8 +162,9 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Skips comments of other languages. They end with their line, or before the `}` of a block
-    /// that was opened in it.
+    /// Skips comments of other languages and records what starts them. A comment ends with its
+    /// line; if the line opens a block before the comment, it ends before the `}` at the end of the
+    /// line.
     pub(super) fn comments(&mut self, place: CommentPosition) {
         while self.starts_comment(place) {
             let start = self.here().start;
@@ -176,7 +178,7 @@ impl<'s> Recovery<'_, 's> {
             let end = start + kept.len().max(1);
             let sign = if line.starts_with(['#', '%']) { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
-            // With `//`, the comment would include the brace, so there is no fix.
+            // Written with `//`, the comment would include the `}`, so there is no fix.
             if kept.len() < line.len() {
                 let words = [self.written(place), ""];
                 self.report(&say::COMMENT_SIGN, place, &words, None);
@@ -203,7 +205,8 @@ impl<'s> Recovery<'_, 's> {
                 || (word == "%" && place == CommentPosition::Operator);
             return is_place && self.is_prose();
         }
-        // `1 -- big`, but a difference in `1 --b` and `1 -- b`.
+        // `1 -- big` is a value with a comment, but `1 --b` and `1 -- b` with a known `b` are
+        // differences.
         let name = self.word(2);
         let is_remark = self.is_name(2)
             && !self.is_adjacent(2)
@@ -217,7 +220,8 @@ impl<'s> Recovery<'_, 's> {
                 || (place == CommentPosition::Operator && is_remark))
     }
 
-    /// Returns whether unknown words follow a sign in its line, as in `; a comment`.
+    /// Returns whether the next token starts a comment in plain words, as in `; a comment`: unknown
+    /// words follow it in its line.
     fn is_prose(&mut self) -> bool {
         let mut is_word = |at| {
             let word = self.word(at);
@@ -233,7 +237,7 @@ impl<'s> Recovery<'_, 's> {
                 && !self.is_on_new_line(1)
     }
 
-    /// Returns whether the words behind a `#` in the place of a value are a comment rather than the
+    /// Returns whether the words after a `#` in place of a value are a comment, rather than the
     /// digits or the name of a colour.
     fn is_remark(&mut self) -> bool {
         let word = self.word(1);
@@ -241,8 +245,8 @@ impl<'s> Recovery<'_, 's> {
         self.is(1, "#") || (self.is_name(1) && !is_color_code(word) && !is_lone_color)
     }
 
-    /// Reports `/* /* */ c */`, where the first `*/` ended the comment. Returns whether the text
-    /// here is the rest of one.
+    /// Reports and skips the rest of nested comments, such as `c */` in `/* /* */ c */`, where the
+    /// first `*/` ended the comment. Returns whether the text here is such a rest.
     pub(super) fn nested_comment(&mut self) -> bool {
         const ENOUGH: usize = 64;
         let start = self.here().start;
@@ -266,7 +270,7 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Reports a whole file of another program as one mistake. Returns whether the text is one.
+    /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));

@@ -1,28 +1,28 @@
-//! Slips in the indices of an object's head, `for i < 8, j < i`, as tables.
+//! Finds mistakes in the indices of an object's head, `for i < 8, j < i`, with tables of patterns.
 //!
-//! In: the head's text from its first word on. Out: the place of the first slip, what is wrong, and
-//! the right head if it is certain.
+//! In: the head's text from its first word on. Out: the place of the first mistake, what is wrong,
+//! and the corrected head if it is certain.
 
 use std::ops::Range;
 
 use crate::syntax::tokens::{is_name_char, numeric_part};
 
-/// First slip in a head.
+/// First mistake in a head.
 pub(super) struct HeadSlip {
-    /// Its place in the text.
+    /// Range of the mistake in the head's text, in bytes.
     pub at: Range<usize>,
-    /// The message; empty if the slip is unknown.
+    /// The message; empty if the mistake is unknown.
     pub said: &'static str,
-    /// The help for a head that is not certain.
+    /// The help if the corrected head is not certain.
     pub help: String,
-    /// The right head, if it is certain.
+    /// The corrected head, if it is certain.
     pub right: Option<String>,
 }
 
-/// Pattern, message, right text, and help if the right text is not certain. In the pattern, `I` and
-/// `W` are names, `O` is a name if another one follows it, `N` and `M` are values, `$` is the end,
-/// `|` separates alternatives, and the slip is between `«` and `»`. The other three contain the
-/// matched texts in the places of `{I}`, `{W}`, `{N}` and `{M}`.
+/// A row: pattern, message, correction, and help if the correction is not certain. In the pattern,
+/// `I` and `W` are names, `O` is a name if another one follows it, `N` and `M` are values, `$` is
+/// the end, `|` separates alternatives, and the mistake is between `«` and `»`. In message,
+/// correction and help, `{I}`, `{W}`, `{N}` and `{M}` stand for the matched texts.
 type HeadPattern = [&'static str; 4];
 
 const FROM_ZERO: &str = "an index begins at 0 by itself";
@@ -33,7 +33,7 @@ const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the v
 const LACKS_COUNT: &str =
     "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
 const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
-/// Right text of a row that moves the object's name before the `for`.
+/// Correction of a row that moves the object's name before the `for`.
 const NAME_FIRST: &str = "^";
 
 /// Patterns of an index with its count.
@@ -70,7 +70,7 @@ const INDICES: [HeadPattern; 27] = [
 
 const COMMA: &str = "a comma separates two indices";
 
-/// Patterns of what follows an index.
+/// Patterns of what may follow an index and its count.
 #[rustfmt::skip]
 const BEHIND: [HeadPattern; 9] = [
     ["« , » $", "no comma stands behind the last index", "", ""],
@@ -84,7 +84,8 @@ const BEHIND: [HeadPattern; 9] = [
     ["« W » $", "the name of an object stands before the `for`", NAME_FIRST, ""],
 ];
 
-/// Finds the first slip in a head that starts with `for`, or with what stands for it.
+/// Finds the first mistake in `head`, which starts with `for` or a word that stands for it.
+/// `has_name` says whether the object has a name before the `for`.
 pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     let mut found = Captures::default();
     let keyword = name_length(head);
@@ -143,7 +144,7 @@ pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     }
 }
 
-/// Texts of the last match of each letter.
+/// Texts that the letters of a pattern matched last.
 #[derive(Default)]
 struct Captures<'t> {
     i: &'t str,
@@ -153,8 +154,8 @@ struct Captures<'t> {
 }
 
 impl<'t> Captures<'t> {
-    /// Matches a row's pattern. Returns the end of the match and the place of the slip; `None` if
-    /// the text does not match.
+    /// Matches a row's pattern at offset `from`. Returns the end of the match and the range of the
+    /// mistake, or `None` if the text does not match.
     fn read(&mut self, row: &str, text: &'t str, from: usize) -> Option<(usize, Range<usize>)> {
         let (mut at, mut under, mut index) = (from, from..from, "");
         for item in row.split(' ') {
@@ -200,7 +201,7 @@ impl<'t> Captures<'t> {
             }
             if let Some(slot) = slot {
                 *slot = rest.get(..length)?;
-                // Both occurrences of an index must be the same name.
+                // Both occurrences of `I` in a pattern must be the same name.
                 if item == "I" && !index.is_empty() && index != *slot {
                     return None;
                 }
@@ -211,7 +212,8 @@ impl<'t> Captures<'t> {
         Some((at, under))
     }
 
-    /// Fills the matched texts into a template.
+    /// Fills the matched texts into a template; computes sums and differences if the texts are
+    /// numbers.
     fn filled(&self, text: &str) -> String {
         let [n, m] = [self.n, self.m].map(|text| text.parse::<u32>().ok());
         let or = |number: Option<u32>, text: String| number.map_or(text, |it| it.to_string());
@@ -238,14 +240,14 @@ impl<'t> Captures<'t> {
     }
 }
 
-/// Returns the length of the name at the start of a text, in bytes.
+/// Returns the length, in bytes, of the name at the start of a text; 0 if there is none.
 fn name_length(text: &str) -> usize {
     let is_name = !text.starts_with(|c: char| c.is_ascii_digit());
     let length = text.bytes().take_while(|&byte| is_name_char(byte)).count();
     if is_name { length } else { 0 }
 }
 
-/// Returns the length of the group in parentheses at the start of a text, in bytes; 0 if there is
+/// Returns the length, in bytes, of the group in parentheses at the start of a text; 0 if there is
 /// none.
 fn group_length(text: &str) -> usize {
     if !text.starts_with('(') {
@@ -265,7 +267,7 @@ fn group_length(text: &str) -> usize {
     0
 }
 
-/// Returns the length of the value at the start of a text, in bytes: operands with operators
+/// Returns the length, in bytes, of the value at the start of a text: operands with operators
 /// between them.
 fn value_length(text: &str) -> usize {
     let mut end = 0;
@@ -278,7 +280,7 @@ fn value_length(text: &str) -> usize {
         };
         let operand = operand.trim_start();
         let operand = operand.strip_prefix('-').unwrap_or(operand);
-        // `0..8` is a range rather than a number with two points.
+        // `0..8` is a range, so `0.` must not be read as a number there.
         let number = numeric_part(operand);
         let is_range = operand
             .get(number.len()..)

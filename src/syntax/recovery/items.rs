@@ -1,35 +1,26 @@
-//! Items: definitions, blocks with their heads, and lines that are neither.
+//! Reads items: definitions, blocks with their heads, and lines that are neither.
 
 use super::{Recovery, foreign::CommentPosition, is_name, unquoted};
 use crate::{
     diagnostic::{Edit, Fix},
     schema,
     source::Span,
-    suggest,
     syntax::{
         messages::{self as say, statement},
         problem::shorten,
         tokens::TokenKind,
-        tree::{Block, Definition, Item, Name, Repetition, Value, ValueKind, bad},
+        tree::{Block, Item, Name, Repetition},
     },
 };
 
-/// Words of other languages for `let`.
-const OTHER_LETS: &str =
-    "var const def define set val auto local int float double number vec3 vector";
-
-/// Words before a kind that are not the name of an object.
+/// Words before a kind that are surely not the name of an object.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
 /// Maximum number of tokens of a line that are searched.
 const LINE_TOKENS: usize = 24;
 
-/// Maximum number of preceding items that are searched for a definition of the same name. Without
-/// it, each line of a long text would be compared with all.
-const ITEMS_BEFORE: usize = 64;
-
 impl<'s> Recovery<'_, 's> {
-    /// Reads one item, or what stands in its place.
+    /// Reads one item, or whatever stands in place of one.
     pub(super) fn any_item(&mut self) {
         self.comments(CommentPosition::Start);
         match self.word(0) {
@@ -53,109 +44,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    pub(super) fn definition(&mut self) {
-        let keyword = self.bump();
-        let mut definition = Definition::begun(keyword);
-        let problems_before = self.problems.len();
-        definition.name = self.name_of_definition(keyword);
-        if let Some(name) = definition.name
-            && self.is(0, "=")
-            && self.is_name(1)
-            && self.is(2, "{")
-            && !self.is_on_new_line(1)
-        {
-            self.bump();
-            return self.named_block(keyword, name);
-        }
-        definition.equals = matches!(self.word(0), "=" | ":" | ":=").then(|| self.bump());
-        if self.is(0, "=") && self.is_adjacent(0) {
-            definition.equals = definition.equals.map(|first| first.to(self.bump()));
-        }
-        definition.value = self.value_of_definition(definition.name, definition.equals);
-        self.clear_uncertain_fixes(problems_before);
-        definition.span = keyword.to(definition.value.span);
-        let is_right = self.problems.len() == problems_before;
-        // A word starts the next item, and so do `;` and `,`.
-        let is_next = self.is_name(0) || (is_right && matches!(self.word(0), ";" | ","));
-        if !is_next && !self.is_boundary() {
-            if is_right {
-                let help = "write one value behind the `=`";
-                self.unexpected("the end of the definition", help);
-                definition.value = bad(definition.value.span);
-            }
-            self.resync();
-        }
-        self.items.push(Item::Definition(definition));
-    }
-
-    fn value_of_definition(&mut self, name: Option<Name<'s>>, sign: Option<Span>) -> Value<'s> {
-        let (start, problems_before) = (self.here(), self.problems.len());
-        let value = (!self.is_end_of_definition()).then(|| self.value());
-        let Some(name) = name else {
-            self.problems.truncate(problems_before);
-            return bad(value.map_or(self.behind(), |value| value.span));
-        };
-        let text = shorten(name.text);
-        let Some(value) = value else {
-            let span = name.span.to(sign.unwrap_or(name.span));
-            self.report(&say::LET_WITHOUT_VALUE, span, &[&text], None);
-            return bad(self.behind());
-        };
-        let edit = match sign {
-            Some(sign) if self.written(sign) == "=" => return value,
-            Some(sign) => Edit::new(Span::new(self.id, name.span.end, sign.end), " ="),
-            None => Edit::insert(self.id, start.start, "= "),
-        };
-        let title = format!("write `let {text} = {}`", self.short(value.span));
-        let fix = Fix::new(title, [edit]);
-        self.report(&say::MISSING_EQUALS, sign.unwrap_or(start), &[&text], fix);
-        value
-    }
-
-    /// Reads the name behind `let`. If more than a name stands before the `=`, all of it is
-    /// reported as a bad name.
-    fn name_of_definition(&mut self, keyword: Span) -> Option<Name<'s>> {
-        let is_sign = matches!(self.word(0), "=" | ":" | ":=");
-        if is_sign || self.is_end_of_definition() || self.is_head(0) {
-            let span = if is_sign { self.here() } else { keyword };
-            self.report(&say::MISSING_NAME, span, &[], None);
-            return None;
-        }
-        let is_end = |word: &str| matches!(word, "=" | ":" | ":=" | "{" | "}" | "let");
-        let count = self.find_in_line(is_end);
-        let has_equals =
-            matches!(self.word(count), "=" | ":" | ":=") && !self.is_on_new_line(count);
-        if self.is_name(0) && (count == 1 || !has_equals) {
-            return Some(self.name());
-        }
-        let is_function = self.is_name(0) && self.is(1, "(") && !self.is(2, ")");
-        let mut span = self.bump();
-        for _ in 1..if has_equals { count } else { 1 } {
-            span = span.to(self.bump());
-        }
-        if is_function && let Some(said) = statement("function") {
-            self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
-        } else {
-            // `2ball`: the help puts the digits at the end.
-            let written = self.short(span);
-            let letters = written.trim_start_matches(|c: char| c.is_ascii_digit());
-            let digits = written.len() - letters.len();
-            let help = if is_name(letters) && digits > 0 {
-                format!(
-                    ", as in `{letters}{}`",
-                    written.get(..digits).unwrap_or_default()
-                )
-            } else {
-                String::new()
-            };
-            self.report(&say::BAD_NAME, span, &[&written, &help], None);
-        }
-        self.items.push(Item::Bad(span));
-        None
-    }
-
-    /// Returns the number of tokens of the line before the first one that is an end, at most
-    /// [`LINE_TOKENS`].
+    /// Returns the number of tokens in the line before the first for which `is_end` holds. It is at
+    /// least 1 and at most [`LINE_TOKENS`].
     pub(super) fn find_in_line(&mut self, is_end: fn(&str) -> bool) -> usize {
         let mut count = 1;
         while count < LINE_TOKENS && !self.is_on_new_line(count) && !is_end(self.word(count)) {
@@ -164,17 +54,7 @@ impl<'s> Recovery<'_, 's> {
         count
     }
 
-    /// Returns whether no value can follow.
-    fn is_end_of_definition(&mut self) -> bool {
-        let word = self.word(0);
-        matches!(word, "" | "let" | "{" | "}" | ";")
-            || (self.is_name(0)
-                && self.is_on_new_line(0)
-                && !self.is_foreign_call()
-                && (!self.words.is_value(word) || self.is_head(0)))
-    }
-
-    /// Reads a block whose head has no slip, or is missing.
+    /// Reads a block whose head is a kind and perhaps a name, or is missing.
     pub(super) fn block(&mut self) {
         let span = self.here();
         let kind = self.is_name(0).then(|| self.name());
@@ -184,7 +64,7 @@ impl<'s> Recovery<'_, 's> {
         self.with_indices(block);
     }
 
-    /// Reads a block after its kind and its name.
+    /// Reads the rest of a block after its kind and name: indices, if any, and the fields.
     fn with_indices(&mut self, mut block: Block<'s>) {
         let goes_on = self.indices(&mut block);
         match block.kind {
@@ -196,7 +76,8 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reads a block from its `{` on.
     fn open_block(&mut self, mut block: Block<'s>) {
-        // Deeper blocks are skipped: no block may stand in another one.
+        // Maximum depth of nested blocks that are read, although no block may stand in another one;
+        // deeper blocks are skipped.
         const DEEPEST: usize = 3;
         block.open = Some(self.bump());
         if self.blocks == DEEPEST {
@@ -216,7 +97,8 @@ impl<'s> Recovery<'_, 's> {
         self.blocks -= 1;
     }
 
-    /// Reads the blocks within `scene { sphere { … } }` one by one.
+    /// Reports a block that contains blocks, as in `scene { sphere { … } }`, and reads the inner
+    /// blocks one by one.
     fn container(&mut self, kind: Name<'s>) {
         let name = shorten(kind.text);
         let what = format!("blocks stand by themselves, not within `{name}`");
@@ -227,8 +109,8 @@ impl<'s> Recovery<'_, 's> {
         self.bump();
     }
 
-    /// Reads a line that, as a rule, starts with a name: a block, whatever its head, or something
-    /// else.
+    /// Reads a line that usually starts with a name: a block, even if its head is wrong, or another
+    /// line.
     fn block_or_line(&mut self) {
         let has_other_kind = self.is_name(0) && self.is_kind(1) && !self.is_kind(0);
         if self.is_head(0) && !has_other_kind {
@@ -243,7 +125,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reads a block that has more than a kind and a name before its `{`.
+    /// Reports a block with more than a kind and a name before its `{`, and reads the block. The
+    /// `{` is `count` tokens after the first one.
     fn block_with_bad_head(&mut self, count: usize) {
         let first = self.name();
         if matches!(self.word(0), "=" | ":" | ":=") && self.is_name(1) && count == 3 {
@@ -294,9 +177,10 @@ impl<'s> Recovery<'_, 's> {
         self.with_indices(block);
     }
 
-    /// Reads `let Ball = sphere {`, `Ball: sphere {`, `Ball sphere {` and `sphere = Ball {`, after
-    /// the `=`.
-    fn named_block(&mut self, start: Span, name: Name<'s>) {
+    /// Reports and reads a block whose name stands before its kind, as in `let Ball = sphere {`,
+    /// `Ball: sphere {`, `Ball sphere {` and `sphere = Ball {`. The next token is the one after the
+    /// `=`, the `:` or the first name.
+    pub(super) fn named_block(&mut self, start: Span, name: Name<'s>) {
         let (mut name, mut kind) = (name, self.name());
         let whole = start.to(kind.span);
         if self.words.is_kind(name.text) && !self.words.is_kind(kind.text) {
@@ -305,7 +189,7 @@ impl<'s> Recovery<'_, 's> {
         let right = format!("{} {}", kind.text, name.text);
         let title = format!("write `{} {{`", shorten(&right));
         let fix = Fix::new(title, [Edit::new(whole, right)]);
-        // `red sphere {`
+        // In `red sphere {`, the first word is a colour rather than a name, so there is no fix.
         let fix = Some(fix).filter(|_| !self.words.is_color(name.text));
         let said = say::BAD_HEAD.safe_if(self.written(whole).contains(['=', ':']));
         self.report(&said, whole, &[kind.text], fix);
@@ -313,7 +197,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reads a block that lacks its `{`: `camera:`, `image 640 480`, `sphere (…)`, or `sphere Ball`
-    /// followed by fields. Returns whether one starts here.
+    /// followed by fields. Returns whether the text is such a block.
     fn unopened_block(&mut self) -> bool {
         let Some(row) = schema::block(self.word(0)) else {
             return false;
@@ -330,12 +214,12 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Reads a block after the place where its `{` is missing.
+    /// Reads a block from the place where its `{` is missing, and reports that.
     fn without_open(&mut self, mut block: Block<'s>, kind: Name<'s>) {
         let head = block.span.to(self.behind());
         block.span = head;
         let close = if self.is(0, "(") { ")" } else { "}" };
-        // The place that ` {` replaces.
+        // The span that ` {` replaces.
         let mut open = self.behind();
         if matches!(self.word(0), "(" | ":" | "=") {
             open = open.to(self.bump());
@@ -344,7 +228,8 @@ impl<'s> Recovery<'_, 's> {
         block.bad.push(open);
         if self.is_name(0) && self.words.takes(kind.text, self.word(0)).is_some() {
             self.body(&mut block, close);
-            // If nothing closes the block, or it contains braces, its end is unknown.
+            // A fix is offered only if the end of the block is certain: something closes it, and no
+            // `{` in it may own that brace.
             let is_flat = !self.written(block.span).contains('{');
             fix = block.close.filter(|_| is_flat).map(|close| {
                 let title = format!("write `{} {{`", self.short(head));
@@ -362,73 +247,7 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Block(block));
     }
 
-    // Lines that are no items.
-
-    /// Reads `x = 3`, and what may have been `let x = 3`. Returns whether one stands here.
-    fn missing_let(&mut self) -> bool {
-        let (word, start) = (self.word(0), self.here());
-        let is_let = suggest::nearest(word, ["let"]).is_some()
-            || OTHER_LETS.split(' ').any(|other| other == word);
-        let is_plain = self.is(1, "=");
-        if !(is_plain || (is_let && self.is_name(1) && self.is(2, "="))) {
-            return false;
-        }
-        if !is_plain {
-            self.bump();
-        }
-        let name = self.name();
-        let mut definition = Definition::begun(Span::new(self.id, start.start, start.start));
-        definition.name = Some(name);
-        definition.equals = Some(self.bump());
-        let problems_before = self.problems.len();
-        let value = (!self.is_end_of_definition()).then(|| self.value());
-        let value = value.unwrap_or_else(|| bad(self.behind()));
-        let text = shorten(name.text);
-        let written = self.written(value.span);
-        if is_plain && self.is_assigned_again(word, written) {
-            let what = "assignments: a name keeps its value";
-            let help = "give the new value a name of its own with `let NAME = VALUE`";
-            self.problems.truncate(problems_before);
-            self.report(&say::NOT_IN_LANGUAGE, start, &[what, help], None);
-        } else {
-            let before = Span::new(self.id, start.start, name.span.start);
-            let mut edits = vec![Edit::new(before, "let ")];
-            // A `;` at the end belongs to the other language, as its word for `let` does.
-            if self.is(0, ";") {
-                let sign = self.bump();
-                edits.push(Edit::remove_in(sign, self.text));
-            }
-            let is_next = self.is_on_new_line(0) || (self.is_name(0) && self.is(1, "="));
-            let is_right = self.problems.len() == problems_before && value.kind != ValueKind::Bad;
-            self.problems.truncate(problems_before);
-            let right = shorten(written);
-            let title = format!("write `let {text} = {right}`");
-            let fix = (is_right && is_next).then(|| Fix::new(title, edits));
-            // The word of another language may mean more than `let`.
-            let is_foreign = !is_plain && suggest::nearest(word, ["let"]).is_none();
-            let said = say::MISSING_LET.safe_if(!is_foreign);
-            self.report(&said, start, &[&text, &right], fix);
-            definition.span = start.to(value.span);
-            definition.value = bad(value.span);
-            self.items.push(Item::Definition(definition));
-        }
-        self.resync();
-        true
-    }
-
-    /// Returns whether the text, or the value that follows, has a name already.
-    fn is_assigned_again(&self, name: &str, value: &str) -> bool {
-        let is_defined = |item: &Item<'s>| match item {
-            Item::Definition(it) => it.name.is_some_and(|it| it.text == name),
-            _ => false,
-        };
-        let mut words = value.split(|c: char| !c.is_alphanumeric());
-        self.words.is_let(name)
-            || words.any(|word| word == name)
-            || self.items.iter().rev().take(ITEMS_BEFORE).any(is_defined)
-    }
-
-    /// Reads a line outside of every block that starts no item.
+    /// Reports and skips a line outside of every block that starts no item.
     fn line(&mut self) {
         let start = self.here();
         if self.is_name(0) {
@@ -465,14 +284,14 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    // Stray closing signs.
+    // Closing brackets and braces that were never opened.
 
-    /// Reports a `)` or `]` that was never opened. The fix removes it only if it would mean nothing
-    /// wherever it was opened.
+    /// Reports a `)` or `]` that was never opened. The fix removes it if `is_needless` says that
+    /// the bracket changes nothing, and if its line has no surplus opening bracket.
     pub(super) fn stray_parenthesis(&mut self, is_needless: bool) {
         let sign = self.word(0);
         let span = self.bump();
-        // The sign that opened it may be in another slip of its line.
+        // The opening bracket may be part of another mistake in the line.
         let line = self.line_before(span.start);
         let open = if sign == ")" { '(' } else { '[' };
         let is_opened = line.matches(open).count() > line.matches(sign).count();
@@ -481,16 +300,16 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::STRAY_CLOSING, span, &[sign], fix);
     }
 
-    /// Reports a `}` that was never opened, with any others right behind it.
+    /// Reports a `}` that was never opened, together with any that follow it directly.
     fn stray_brace(&mut self) {
         let first = self.bump();
         let mut all = first;
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        // Unless an item follows, it may stand for another sign.
+        // If no item follows, the `}` may be meant as another token.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
-        // It may close a block that lacks its `{`.
+        // The `}` may close a block that lacks its `{`.
         let mut last = self.problems.iter().rev().take(8);
         let is_sure = is_before_item && last.all(|found| found.code != "pinhole::unopened_block");
         let fix = is_sure.then(|| self.remove("remove this `}`", all));

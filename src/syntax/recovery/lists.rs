@@ -1,4 +1,4 @@
-//! Lists: values in parentheses, or in other brackets that stand for them.
+//! Reads lists: values in parentheses, or in other brackets that stand for parentheses.
 
 use std::ops::RangeInclusive;
 
@@ -16,31 +16,31 @@ use crate::{
     },
 };
 
-/// Number of values that a list may have.
+/// Numbers of values that a list may have.
 type PartCount = RangeInclusive<usize>;
 
 /// A list as it was written.
 struct List<'s> {
     elements: Vec<Element<'s>>,
-    /// From its `(` to its `)`.
+    /// From its opening to its closing bracket.
     span: Span,
-    /// Whether its brackets are parentheses.
+    /// Whether the list is in parentheses rather than other brackets.
     is_round: bool,
     /// Indices of the values that lack a comma before them.
     gaps: Vec<usize>,
-    /// A comma that lacks a value on one side.
+    /// A comma without a value on one side.
     needless: Option<Span>,
 }
 
 impl<'s> Recovery<'_, 's> {
-    /// Returns whether braces in place of a value contain a list rather than fields.
+    /// Returns whether a `{` in place of a value opens a list rather than fields.
     pub(super) fn is_flat_list(&mut self) -> bool {
         let sign = 1 + usize::from(self.is(1, "-"));
         let is_number = self.kind(sign) == TokenKind::Number;
         self.is(0, "{") && (is_number || (self.is_name(sign) && self.is(sign + 1, ",")))
     }
 
-    /// Reads a vector, a pair, or a value in parentheses.
+    /// Reads a vector, a pair or triple of colours, or a value in parentheses.
     pub(super) fn group(&mut self, close: &'static str) -> Value<'s> {
         let takes = self.context.takes;
         let (parts, count) = match takes {
@@ -65,7 +65,7 @@ impl<'s> Recovery<'_, 's> {
         Value::new(group(elements), span)
     }
 
-    /// Reads the arguments of a function whose name was read.
+    /// Reads the arguments of the function `function`, whose name was just read.
     pub(super) fn call(&mut self, function: Name<'s>) -> Value<'s> {
         let problems_before = self.problems.len();
         let count = match schema::function(function.text) {
@@ -80,7 +80,8 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_foreign_function(function.text) && self.problems.len() == problems_before {
             return self.foreign_function(function, list);
         }
-        // `rgb(100%, 0%, 0%)`, or the arguments of another function that makes colours.
+        // In `rgb(100%, 0%, 0%)`, or in the arguments of another function that makes colours, all
+        // `%` are one mistake.
         let is_known = schema::function(function.text).is_some();
         if self.problems.len() > problems_before + 1 && self.written(parentheses).contains('%') {
             self.problems.truncate(problems_before);
@@ -95,13 +96,14 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether a call of another language's function starts here: a value, even on a new
-    /// line.
+    /// Returns whether a call of another language's function starts here. Such a call is a value
+    /// even on a new line.
     pub(super) fn is_foreign_call(&mut self) -> bool {
         self.words.is_foreign_function(self.word(0)) && self.is(1, "(")
     }
 
-    /// Reports `vec3(1, 2, 3)` or `rgba(255, 0, 0, 1)`, whose arguments were read.
+    /// Reports `vec3(1, 2, 3)` or `rgba(255, 0, 0, 1)`, whose arguments were read already. Returns
+    /// a bad value.
     fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
         let span = name.span.to(list.span);
         let mut values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
@@ -124,8 +126,8 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reads a list, however its values are separated. Returns `None` if its end is missing or it
-    /// nests too deep.
+    /// Reads a list, however its values are separated. Returns `None` if its end is missing and its
+    /// values are uncertain, or if it nests too deep.
     fn list(
         &mut self,
         close: &'static str,
@@ -155,7 +157,7 @@ impl<'s> Recovery<'_, 's> {
             gaps: Vec::new(),
             needless: None,
         };
-        // Each is reported once for the whole list.
+        // Semicolons and names of parts are reported once for the whole list.
         let (mut semicolons, mut labels, problems_before) =
             (Vec::new(), Vec::new(), self.problems.len());
         loop {
@@ -201,7 +203,7 @@ impl<'s> Recovery<'_, 's> {
                 if !is_value_next {
                     list.gaps.push(list.elements.len());
                 }
-                // `x = 3`
+                // Skip the name of a part, as in `(x = 3, …)`.
                 let is_path = self.is(1, ":") && self.is(2, ":");
                 if self.is_name(0) && matches!(self.word(1), "=" | ":") && !is_path {
                     let name = self.bump();
@@ -217,8 +219,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether the `}` here stands for a `)`: in `(0, 1, 0} radius 1 )` two signs were
-    /// exchanged.
+    /// Returns whether the next token, a `}`, was exchanged with a `)`, as in `(0, 1, 0} radius 1
+    /// )`.
     fn is_exchanged_brace(&mut self, close: &str) -> bool {
         let next = self.word(1);
         (self.word(0), close) == ("}", ")")
@@ -229,7 +231,8 @@ impl<'s> Recovery<'_, 's> {
             && self.is_field_name(next)
     }
 
-    /// Reports a list that lacks its end. Returns it if all of its values are certain.
+    /// Reports a list that lacks its end. Returns the list if its number of values is allowed and
+    /// all of its values are certain.
     fn unclosed_list(
         &mut self,
         mut list: List<'s>,
@@ -242,7 +245,7 @@ impl<'s> Recovery<'_, 's> {
             && list.needless.is_none();
         let last = last.map(|element| &element.value);
         let last = last.filter(|value| value.kind != ValueKind::Bad);
-        // A sum or a product may end behind any part of it.
+        // If the last value is a sum or a product, the list may end after any operand of it.
         let is_sure = last.is_none_or(|it| !matches!(it.kind, ValueKind::Chain { .. }));
         let fits = is_whole && is_sure && count.contains(&list.elements.len());
         let end = last.filter(|_| fits).map(|last| last.span.end);
@@ -252,7 +255,8 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(list)
     }
 
-    /// Reports semicolons in place of commas; if the list has other slips, without a fix.
+    /// Reports semicolons in place of commas. There is no fix unless `is_plain`, i.e. the list has
+    /// no other mistakes.
     fn semicolons(&mut self, signs: &[Span], is_plain: bool) {
         if let Some(&first) = signs.first() {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
@@ -266,8 +270,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports the names of parts, each with its `=`. In another order than x, y, z or r, g, b
-    /// their meaning is uncertain, and there is no fix.
+    /// Reports parts that are named with `=` or `:`. The fix removes the names if they are x, y, z
+    /// or r, g, b in this order; otherwise the meaning is uncertain, and there is no fix.
     fn names_of_parts(&mut self, labels: &[Span], is_plain: bool) {
         let Some(&first) = labels.first() else {
             return;
@@ -283,10 +287,11 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::NOT_IN_LANGUAGE, first, &["names of parts", help], fix);
     }
 
-    /// Reports a list without its end; `end` is where the end is missing, if that is known.
+    /// Reports a list that opens at `open` and lacks its end. `end` is the offset where the end is
+    /// missing, if that is known.
     fn unclosed(&mut self, open: Span, close: &str, end: Option<usize>) {
         let word = self.word(0);
-        // A list ends before a field's name only if a value follows that name.
+        // A field's name ends a list only if a value follows the name.
         let is_end = matches!(word, "" | "}") || (self.is_name(0) && self.starts_value(1));
         let before = match word {
             "" => "at the end".to_owned(),
@@ -302,7 +307,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
     }
 
-    /// Returns the values of a list if their number is certain.
+    /// Returns the values of a list if their number is allowed. Reports a needless or missing
+    /// comma, or a wrong number of values.
     fn checked(&mut self, list: List<'s>, count: &PartCount) -> Option<Vec<Element<'s>>> {
         let elements = list.elements;
         let fits = count.contains(&elements.len());
@@ -333,7 +339,7 @@ impl<'s> Recovery<'_, 's> {
             let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
             Fix::new(format!("write `{l}, {r}`"), edits)
         });
-        // `min1.6` is one word that was split, rather than two values.
+        // In `min1.6`, one word was split into two values, so the fix is not safe.
         let are_apart = left.span.end < right.span.start;
         self.report(
             &say::MISSING_COMMA.safe_if(are_apart),
@@ -344,7 +350,7 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(elements)
     }
 
-    /// Reads the arguments of `rgb [255, 0, 0]` or `normalize <1, 2, 3>`.
+    /// Reads and reports the arguments in brackets of `rgb [255, 0, 0]` or `normalize <1, 2, 3>`.
     pub(super) fn call_in_brackets(
         &mut self,
         name: Name<'s>,
@@ -366,7 +372,8 @@ impl<'s> Recovery<'_, 's> {
         bad(name.span.to(self.behind()))
     }
 
-    /// Reports a list in other brackets, possibly the argument of a function.
+    /// Reports a list in other brackets than parentheses. If the list is the argument of a
+    /// function, `behind` is that function.
     fn brackets(
         &mut self,
         list: List<'s>,

@@ -1,18 +1,19 @@
 //! Reads an item that does not follow the grammar.
 //!
 //! In: the text from the item's start. Out: nodes of what can be understood, and one problem for
-//! each slip. A parser by recursive descent over the lexer's tokens: items stand in `items`, fields
-//! in `fields`, indices in `repetition`, values in `values`, `adjacent` and `lists`, names in
-//! `names`, numbers in `numbers`, needless signs in `signs`, and constructs of other languages in
-//! `foreign`. An item without mistakes is read as pest reads it. Three rules:
+//! each mistake. This is a recursive-descent parser over the lexer's tokens. Items are read in
+//! `items`, fields in `fields`, indices in `repetition`, values in `values`, `adjacent` and
+//! `lists`, names in `names`, numbers in `numbers`, needless separators in `signs`, and constructs
+//! of other languages in `foreign`. An item without mistakes is read as pest reads it. Three rules:
 //!
-//! - Where something fits nowhere, reading goes on at the next field, line, item or closing brace
+//! - Where a token fits nowhere, reading continues at the next field, line, item or closing brace
 //!   (`resync`).
-//! - A fix is offered where it is plain. As a rule, a value with a slip is bad, whether there is a
-//!   fix or not, so that nothing is reported of its uses.
-//! - Where one value has different slips, none of their fixes is certain (`clear_uncertain_fixes`).
+//! - A fix is offered if it is obvious. Usually, a value with a mistake becomes `Bad`, with or
+//!   without a fix, so that nothing is reported about its uses.
+//! - If one value has different mistakes, none of their fixes is certain (`clear_uncertain_fixes`).
 
 mod adjacent;
+mod definitions;
 mod fields;
 mod foreign;
 mod head;
@@ -47,23 +48,23 @@ pub struct Recovery<'w, 's> {
     id: SourceId,
     words: &'w Vocabulary<'s>,
     lexer: Lexer<'s>,
-    /// The next tokens, as far as they were looked at, without comments and invisible characters.
+    /// Tokens read ahead from the lexer, without comments and invisible characters.
     tokens: VecDeque<Token>,
     /// End of the token that was taken last.
     last_end: usize,
-    /// The items so far, including those that pest read.
+    /// The items read so far, including those that pest read.
     pub(super) items: Vec<Item<'s>>,
-    /// The problems so far.
+    /// The problems reported so far.
     pub(super) problems: Problems,
-    /// Whether a mistake took the rest of the text.
+    /// Whether a mistake hides the rest of the text.
     is_cut: bool,
-    /// Whether an item was kept as pest read it because no better explanation was found.
+    /// Whether an item was kept as pest read it because recovery found no better explanation.
     is_doubtful: bool,
-    /// End of the item that was read here last.
+    /// End of the item that recovery read last.
     pub(super) read_to: usize,
-    /// Whether the text was checked and is not a file of another program.
+    /// Whether the text is known not to be a file of another program.
     is_checked: bool,
-    /// The block or the file that is read.
+    /// Context of what is read: the block, or the file.
     context: Context<'s>,
     /// Number of parentheses, signs and calls around the value that is read.
     depth: usize,
@@ -71,7 +72,7 @@ pub struct Recovery<'w, 's> {
     lists: usize,
     /// Number of blocks around the item that is read.
     blocks: usize,
-    /// Whether the value nests too deep, so that its rest was skipped.
+    /// Whether the value nests too deep, so that the rest of it was skipped.
     too_deep: bool,
 }
 
@@ -80,20 +81,20 @@ pub struct Recovery<'w, 's> {
 struct Context<'s> {
     kind: &'s str,
     is_block: bool,
-    /// The sign that closes the block.
+    /// The token that closes the block.
     close: &'static str,
     /// Name of the field whose value is read.
     field: &'s str,
-    /// Type that the value should have, if it is known.
+    /// Type that the value should have, if that is known.
     takes: Option<Type>,
-    /// Needless signs, and those of comments in other languages, with their places.
+    /// Needless separators and what starts comments in other languages, each with all its places.
     signs: BTreeMap<&'s str, Vec<Span>>,
-    /// Whether one of the signs may be needed after all.
+    /// Whether one of these may be needed after all, so that their reports get no fix.
     is_doubtful: bool,
 }
 
 impl<'w, 's> Recovery<'w, 's> {
-    /// Starts at the beginning of a text.
+    /// Makes a recovery at the beginning of a text.
     pub fn new(source: &'s Source, id: SourceId, words: &'w Vocabulary<'s>) -> Self {
         let text = source.text();
         Self {
@@ -118,7 +119,9 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    /// Reads one item, or what stands in its place. Returns its end, which is after `start`.
+    /// Reads one item, or whatever stands in place of one, and returns its end, which is after
+    /// `start`. If the text is a file of another program or the maximum number of problems is
+    /// reached, the end is that of the text.
     pub fn item(&mut self, start: usize) -> usize {
         if !self.is_checked && self.foreign_file() {
             self.read_to = self.text.len();
@@ -135,9 +138,10 @@ impl<'w, 's> Recovery<'w, 's> {
         self.read_to
     }
 
-    /// Reads an item that follows the grammar, but may have been meant otherwise. Returns its end
-    /// if the new reading explains it better: by fields that the block has, or by a comment or a
-    /// function of another language.
+    /// Reads an item again that follows the grammar but may have been meant otherwise. Returns the
+    /// item's end if the new reading explains it better: by fields that the block has, or by a
+    /// comment or a function of another language. Otherwise, restores the items and problems and
+    /// returns `None`.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.context.signs.values().map(Vec::len).sum::<usize>();
@@ -151,7 +155,7 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
-                // What has no mistake is not read again.
+                // An item without mistakes is not replaced by the new reading.
                 let is_new = slips(self) > slips_before || self.problems.len() > problems;
                 is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
             }
@@ -170,7 +174,8 @@ impl<'w, 's> Recovery<'w, 's> {
         None
     }
 
-    /// Reads the text from an offset on as one value.
+    /// Reads the text from an offset to the end as one value, and reports anything that follows the
+    /// value.
     pub fn whole_value(&mut self, start: usize) -> Value<'s> {
         self.seek(start);
         let problems_before = self.problems.len();
@@ -183,7 +188,7 @@ impl<'w, 's> Recovery<'w, 's> {
         value
     }
 
-    /// Returns all that was read, with the result of the scan.
+    /// Returns everything that was read, together with the comments and problems of the scan.
     pub fn finish(mut self, scan: Scan) -> Parsed<'s> {
         self.report_signs(self.problems.len());
         let mut parsed = Parsed {
@@ -200,12 +205,13 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // Tokens.
 
-    /// Returns the token that follows `ahead` tokens after the next one.
+    /// Returns the token `ahead` tokens after the next one, without taking it. At the end of the
+    /// text, this is an end token.
     fn peek(&mut self, ahead: usize) -> Token {
         while self.tokens.len() <= ahead {
             self.tokens.push_back(self.lexer.seen_token());
         }
-        // After the maximum number of problems, the text ends.
+        // Once the maximum number of problems is reached, recovery behaves as if the text ended.
         let token = self.tokens.get(ahead).filter(|_| !self.problems.is_full());
         let end = || Lexer::new(self.text, self.text.len()).token();
         token.copied().unwrap_or_else(end)
@@ -215,7 +221,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.peek(ahead).kind
     }
 
-    /// Returns the text of a token ahead; an empty text at the end.
+    /// Returns the text of the token `ahead` tokens after the next one; empty at the end.
     fn word(&mut self, ahead: usize) -> &'s str {
         let token = self.peek(ahead);
         self.text.get(token.start..token.end).unwrap_or_default()
@@ -225,7 +231,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.word(ahead) == word
     }
 
-    /// Returns the part of a place's line that is before it.
+    /// Returns the part of the line before the offset `at`.
     fn line_before(&self, at: usize) -> &'s str {
         let before = self.text.get(..at).unwrap_or_default();
         before.rsplit('\n').next().unwrap_or_default()
@@ -235,7 +241,8 @@ impl<'w, 's> Recovery<'w, 's> {
         self.kind(ahead) == TokenKind::Name && !self.is(ahead, "let")
     }
 
-    /// Returns the text between a token ahead and the one before it.
+    /// Returns the text between the token `ahead` tokens after the next one and the token before
+    /// that.
     fn space_before(&mut self, ahead: usize) -> &'s str {
         let end = match ahead {
             0 => self.last_end,
@@ -245,17 +252,17 @@ impl<'w, 's> Recovery<'w, 's> {
         self.text.get(end..start).unwrap_or_default()
     }
 
-    /// Returns whether a token ahead is the first of its line.
+    /// Returns whether a token ahead is the first of its line, or the end of the text.
     fn is_on_new_line(&mut self, ahead: usize) -> bool {
         self.kind(ahead) == TokenKind::End || self.space_before(ahead).contains('\n')
     }
 
-    /// Returns whether no space separates a token ahead from the one before it.
+    /// Returns whether nothing separates a token ahead from the token before it.
     fn is_adjacent(&mut self, ahead: usize) -> bool {
         self.space_before(ahead).is_empty()
     }
 
-    /// Takes the next token and returns its place.
+    /// Takes the next token and returns its span.
     fn bump(&mut self) -> Span {
         let span = self.here();
         if self.kind(0) != TokenKind::End {
@@ -265,7 +272,7 @@ impl<'w, 's> Recovery<'w, 's> {
         span
     }
 
-    /// Continues reading at an offset.
+    /// Continues reading at an offset and forgets the tokens read ahead.
     fn seek(&mut self, at: usize) {
         self.tokens.clear();
         self.last_end = at;
@@ -283,7 +290,7 @@ impl<'w, 's> Recovery<'w, 's> {
         Span::new(self.id, token.start, token.end)
     }
 
-    /// Returns the empty span behind the token that was taken last.
+    /// Returns the empty span after the token that was taken last.
     fn behind(&self) -> Span {
         Span::new(self.id, self.last_end, self.last_end)
     }
@@ -297,7 +304,7 @@ impl<'w, 's> Recovery<'w, 's> {
     }
 
     /// Returns whether a block starts at a token ahead: `sphere {`, `sphere Ball {` or `sphere for
-    /// i`. After a word that is not a kind, a kind on a new line starts a block of its own.
+    /// i`. If the first word is not a kind, a kind on a new line starts a block of its own.
     fn is_head(&mut self, ahead: usize) -> bool {
         let name = ahead + 1;
         let ends = |this: &mut Self, at| this.is(at, "{") || this.is_repetition(at);
@@ -308,7 +315,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.is_name(name) && ends(self, name + 1) && !(is_kind && self.is_on_new_line(name))
     }
 
-    /// Returns whether a block of a known kind starts here.
+    /// Returns whether the head of a block of a known kind starts here.
     fn starts_block(&mut self) -> bool {
         self.is_head(0) && self.is_kind(0)
     }
@@ -318,13 +325,13 @@ impl<'w, 's> Recovery<'w, 's> {
         self.words.is_kind(self.word(ahead))
     }
 
-    /// Returns whether a name is that of a field of the block.
+    /// Returns whether `name` is a field of the current block.
     fn is_field_name(&self, name: &str) -> bool {
         self.context.is_block && self.words.takes(self.context.kind, name).is_some()
     }
 
-    /// Returns whether a line starts here that is the head of a block of a known kind, even if the
-    /// head has slips.
+    /// Returns whether the next token starts a line that is the head of a block of a known kind.
+    /// The head may have mistakes.
     fn starts_item(&mut self) -> bool {
         let word = self.word(0);
         self.is_on_new_line(0) && self.words.is_kind(word) && !self.is_field_name(word) && {
@@ -335,8 +342,8 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // Resynchronization.
 
-    /// Returns whether everything before this token must have ended: at a brace, `let`, the name of
-    /// a field, or a new line.
+    /// Returns whether every unfinished construct must end before the next token: at a brace, at
+    /// `let`, at the name of a field, at a head or at a new line.
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
@@ -346,21 +353,21 @@ impl<'w, 's> Recovery<'w, 's> {
             || self.starts_item()
     }
 
-    /// Skips to the next field, line, item or closing brace.
+    /// Skips to the next field, line, item or brace.
     fn resync(&mut self) {
         while !self.is_boundary() {
             self.bump();
         }
     }
 
-    /// Skips to the next `{`, or to the end.
+    /// Skips to the next `{`, or to the end of the text.
     fn skip_head(&mut self) {
         while !self.is(0, "{") && self.kind(0) != TokenKind::End {
             self.bump();
         }
     }
 
-    /// Skips the contents of a block and its `}`.
+    /// Skips the contents of a block and its `}`; the `{` was taken already.
     fn skip_block(&mut self) {
         let mut braces = 1_usize;
         while braces > 0 && self.kind(0) != TokenKind::End {
@@ -391,7 +398,8 @@ impl<'w, 's> Recovery<'w, 's> {
         let help_for_notation =
             foreign::help_for_notation(&written, expected != "a value" || is_behind_part);
         let help = help_for_notation.unwrap_or(help);
-        // `½` and `π` by themselves.
+        // If the text is a character such as `½` or `π` alone, the help names its replacement,
+        // which becomes the fix.
         let text =
             help_for_notation.filter(|_| expected == "a value" && written.chars().count() == 1);
         let text = text.and_then(|help| help.strip_prefix("write `")?.strip_suffix('`'));
@@ -405,8 +413,8 @@ impl<'w, 's> Recovery<'w, 's> {
         Fix::new(title, [Edit::remove_in(span, self.text)])
     }
 
-    /// Removes the fixes of the problems from index `first` on if they are of different kinds: then
-    /// none of the fixes is certain.
+    /// Removes the fixes of the problems from index `first` on if the problems have different
+    /// codes, since none of the fixes is then certain.
     fn clear_uncertain_fixes(&mut self, first: usize) {
         let problems = self.problems.get_mut(first..).unwrap_or_default();
         if problems.chunk_by(|a, b| a.code == b.code).count() > 1 {
@@ -423,19 +431,20 @@ fn is_name(text: &str) -> bool {
         && text != "let"
 }
 
-/// Returns a text without its quotation marks.
+/// Returns a text without the quotation marks and white space around it.
 fn unquoted(written: &str) -> &str {
     let marks = ['"', '\'', '“', '”', '„', '‘', '’', '«', '»'];
     written.trim_matches(marks).trim()
 }
 
-/// Returns a help with an example of a value of a type.
+/// Returns a help with an example of a value of the type `takes`, or of any type if that is
+/// unknown.
 fn example(takes: Option<Type>) -> &'static str {
     let any = "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`";
     takes.map_or(any, Type::such_as)
 }
 
-/// Returns whether a value is a plain number, perhaps with a sign.
+/// Returns whether a value is a number literal, perhaps with a minus.
 fn is_plain_number(value: &Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Number(_) => true,

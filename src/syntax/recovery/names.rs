@@ -1,4 +1,4 @@
-//! Names in the places of values: references and calls of functions.
+//! Reads names in place of values: references and calls of functions.
 
 use super::{Recovery, example};
 use crate::{
@@ -12,7 +12,8 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads a name, the call of a function, or a construct of another language in place of one.
+    /// Reads a name, the call of a function, or a construct of another language that starts with a
+    /// name.
     pub(super) fn reference(&mut self) -> Value<'s> {
         let name = self.name();
         if let Some(value) = self.library_name(name) {
@@ -38,13 +39,13 @@ impl<'s> Recovery<'_, 's> {
         if self.is(0, "(") {
             return self.call(name);
         }
-        // `sizes[i]` and `Ball[3]`
+        // An index in brackets, as in `sizes[i]` and `Ball[3]`.
         let (is_let, is_known) = (self.words.is_let(name.text), self.words.is_value(name.text));
         if self.is(0, "[") && self.is_adjacent(0) && (is_let || !is_known) {
             let problems_before = self.problems.len();
             self.group("]");
             self.problems.truncate(problems_before);
-            // `Ball[3].center`
+            // Skip a field of an object, as in `Ball[3].center`.
             if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
                 self.bump();
                 self.bump();
@@ -70,7 +71,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether the argument of a function without parentheses starts at a token ahead.
+    /// Returns whether the token `ahead` tokens after the next one can start an argument of a
+    /// function that is called without parentheses.
     fn is_argument(&mut self, ahead: usize) -> bool {
         let (word, kind) = (self.word(ahead), self.kind(ahead));
         let is_sign = matches!(word, "[" | "<") || (word == "{" && self.is_flat_list());
@@ -82,8 +84,8 @@ impl<'s> Recovery<'_, 's> {
             && (kind == TokenKind::Number || is_negative || is_name || (is_sign && ahead == 0))
     }
 
-    /// Reads the arguments in `sin 30deg`, `rgb 255 0 0` or `length v - 1`: as many operands as the
-    /// function takes.
+    /// Reports and reads a call without parentheses, such as `sin 30deg`, `rgb 255 0 0` or `length
+    /// v - 1`. Takes as many operands as the function has parameters.
     fn call_without_parentheses(&mut self, name: Name<'s>, row: &schema::Function) -> Value<'s> {
         let close = match self.word(0) {
             "[" => "]",
@@ -118,7 +120,7 @@ impl<'s> Recovery<'_, 's> {
         let is_whole = row.accepts(arguments.len())
             && (!row.more || self.lists == 0)
             && !self.goes_on(&arguments);
-        // An operator behind the argument may have been meant to be within the parentheses.
+        // An operator after the arguments may have been meant to be part of the last argument.
         let whole = self.operations(bad(span)).span;
         let is_all = self.last_end == end;
         let mut fix = replace(span, format!("{}({list})", name.text));

@@ -1,4 +1,4 @@
-//! Numbers, with units and other text behind them.
+//! Reads numbers, with a unit or other text after them.
 
 use super::Recovery;
 use crate::{
@@ -12,8 +12,8 @@ use crate::{
     },
 };
 
-/// Spellings of units, the factor to the right unit, and that unit. Lengths have none: they are in
-/// metres.
+/// Units: their spellings, the factor that converts to a unit of the language, and that unit.
+/// Lengths have no unit, since the language measures them in metres.
 const UNITS: &[(&str, f64, &str)] = &[
     ("° deg degs degree degrees", 1.0, "deg"),
     ("rad rads radian radians", 1.0, "rad"),
@@ -32,8 +32,8 @@ pub(super) fn unit_of(written: &str) -> Option<(f64, &'static str)> {
     row.map(|&(_, factor, unit)| (factor, unit))
 }
 
-/// Returns a number times a factor, rounded to 12 digits so that the result has no digits of
-/// rounding error.
+/// Returns a number times a factor, rounded to 12 significant digits so that no rounding error
+/// shows. Returns `None` if `number` is not a number.
 fn scaled(number: &str, factor: f64) -> Option<String> {
     if factor == 1.0 {
         return Some(number.to_owned());
@@ -43,7 +43,8 @@ fn scaled(number: &str, factor: f64) -> Option<String> {
     Some(format!("{rounded}"))
 }
 
-/// Returns the value of a number such as `0x10`, `0b11` or `0o17`.
+/// Returns the value of a number in another base, such as `0x10`, `0b11` or `0o17`. Returns `None`
+/// for any other text, or if the value exceeds `u32`.
 fn in_other_base(written: &str) -> Option<u32> {
     let (base, digits) = written.strip_prefix('0')?.split_at_checked(1)?;
     let base = match base {
@@ -56,7 +57,8 @@ fn in_other_base(written: &str) -> Option<u32> {
 }
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads a number, with its unit if it has one.
+    /// Reads a number with its unit, if it has one, and reports a wrong unit or other text after
+    /// the digits.
     pub(super) fn number(&mut self) -> Value<'s> {
         let written = self.word(0);
         let span = self.bump();
@@ -82,7 +84,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports a number whose unit is wrong, or is separated from it.
+    /// Reports a number whose unit is wrong or stands apart. `factor` and `right` convert it to a
+    /// unit of the language; `whole` is the number with its unit, and `behind` the unit.
     fn with_unit(
         &mut self,
         number: &'s str,
@@ -106,8 +109,8 @@ impl<'s> Recovery<'_, 's> {
         };
         let text = scaled(number, factor).filter(|_| fits);
         let angle = |unit| ValueKind::Angle { number, unit };
-        // A correct angle or number is kept, so that what else is wrong with it is reported at
-        // once.
+        // A correct angle or number is kept, so that other mistakes with it are reported in the
+        // same run.
         let meant = match (fits && factor == 1.0, right) {
             (false, _) => ValueKind::Bad,
             (true, "deg") => angle(Unit::Degrees),
@@ -125,7 +128,8 @@ impl<'s> Recovery<'_, 's> {
         Value::new(meant, whole)
     }
 
-    /// Reports a word that starts with a digit and is not a number.
+    /// Reports a word that starts with a digit and is not a number. `digits` is its numeric part,
+    /// and `behind` the span of the rest.
     fn bad_number(&mut self, written: &str, digits: &str, span: Span, behind: Span) -> Value<'s> {
         let unit = self.written(behind);
         let hex = written.strip_prefix("0x").unwrap_or(written);
@@ -147,7 +151,7 @@ impl<'s> Recovery<'_, 's> {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)
         };
-        // `4x4` becomes 16.
+        // The fix of `4x4` would be 16. It is shorter than the text, so it is not safe.
         let is_longer = |right: &String| right.len() >= written.len();
         let said = say::BAD_NUMBER.safe_if(right.as_ref().is_none_or(is_longer));
         let fix = right.map(|right| replace(span, right));
@@ -155,7 +159,8 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Returns the right text of `0.5x1.5x2` or `4x4`.
+    /// Returns the correction of sizes written with `x`, such as `0.5x1.5x2` or `4x4`. Returns
+    /// `None` if the meaning is uncertain.
     fn sizes(&self, written: &str, span: Span) -> Option<String> {
         let parts: Vec<&str> = written.split(['x', 'X']).collect();
         let is_number = |part: &&str| !part.is_empty() && numeric_part(part) == *part;
@@ -164,7 +169,8 @@ impl<'s> Recovery<'_, 's> {
         }
         match (parts.as_slice(), self.context.takes) {
             ([_, _, _], None | Some(Type::Vector)) => Some(format!("({})", parts.join(", "))),
-            // `width 640x480`
+            // For `width 640x480`, the second number becomes the field `height`, unless the block
+            // has that field.
             ([a, b], Some(Type::Number)) if self.context.field == "width" => {
                 let before = self.text.get(..span.start)?.rsplit('{').next()?;
                 let behind = self.text.get(span.end..)?.split('}').next()?;

@@ -1,4 +1,4 @@
-//! Indices of a block: the part of its head between the name of the object and the `{`.
+//! Reads the indices of a block: the part of its head between the name of the object and the `{`.
 
 use super::{Recovery, head, is_name};
 use crate::{
@@ -13,8 +13,8 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Returns whether indices start at a token ahead. A line that starts with `for` is a statement
-    /// of another language instead.
+    /// Returns whether indices start at the token `ahead` tokens after the next one. A `for` at the
+    /// start of a line is a statement of another language instead.
     pub(super) fn is_repetition(&mut self, ahead: usize) -> bool {
         let words = ["for", "foreach", "loop", "repeat", "while"];
         let is_word = words.contains(&self.word(ahead)) && !self.is_on_new_line(ahead);
@@ -25,8 +25,9 @@ impl<'s> Recovery<'_, 's> {
                 || self.kind(next) == TokenKind::Number)
     }
 
-    /// Reads the indices of a block, if it has any: `for i < 8, j < i`. Anything else up to the `{`
-    /// is reported as one mistake. Returns whether the block goes on behind the indices.
+    /// Reads the indices of a block, such as `for i < 8, j < i`, if it has any. If anything else
+    /// stands before the `{`, all of it is reported as one mistake. Returns whether the block
+    /// continues after the indices.
     pub(super) fn indices(&mut self, block: &mut Block<'s>) -> bool {
         if !self.is_repetition(0) {
             return true;
@@ -69,8 +70,8 @@ impl<'s> Recovery<'_, 's> {
         is_right || self.is(0, "{") || self.starts_fields(kind)
     }
 
-    /// Returns whether a field of a kind with its value starts here, so that a `{` is missing
-    /// before it.
+    /// Returns whether a field of a block of kind `kind` starts here, with its value, so that a `{`
+    /// is missing before the field.
     pub(super) fn starts_fields(&mut self, kind: &str) -> bool {
         let is_field = self.is_name(0) && self.words.takes(kind, self.word(0)).is_some();
         is_field && self.starts_value(1) && !self.is(1, "<")
@@ -82,7 +83,7 @@ impl<'s> Recovery<'_, 's> {
         let fix = slip.right.map(|right| replace(span, right));
         let is_char = |c: char| !c.is_ascii_alphanumeric();
         let words = |text| str::split(text, is_char).filter(|word| !word.is_empty());
-        // The fix is safe if it only changes signs.
+        // The fix is safe if it keeps all words and only changes other characters.
         let mut edits = fix.iter().flat_map(|fix| &fix.edits);
         let is_safe = edits.all(|edit| words(&edit.text).eq(words(written)));
         let [start, end] = [slip.at.start, slip.at.end].map(|at| span.start + at);
@@ -90,8 +91,8 @@ impl<'s> Recovery<'_, 's> {
         self.report_head(at, slip.said, &slip.help, fix, is_safe);
     }
 
-    /// Reports a slip in a head. If message or help is empty, the report explains how a head is
-    /// written.
+    /// Reports a mistake in a head. An empty `said` or `help` is replaced by a text that explains
+    /// how a head is written.
     pub(super) fn report_head(
         &mut self,
         at: Span,
@@ -106,8 +107,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&said, at, &words, fix);
     }
 
-    /// Reports `Ball[8]`, `Ball[i] for i < 8` or `i < 8` in place of a name, up to the `for` or the
-    /// `{`. Returns whether it was one of them.
+    /// Reports `Ball[8]`, `Ball[i] for i < 8` or `i < 8` in place of a name; `rest` is the text up
+    /// to the `for` or the `{`. Returns whether the text is one of them.
     pub(super) fn counted_name(&mut self, kind: &str, rest: Span) -> bool {
         let written = self.written(rest);
         let id = self.id;
@@ -154,7 +155,8 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Reads `i < 8`, or `i <= 7`, with the comma behind it.
+    /// Reads an index with its count and the comma after it, as in `i < 8`. Reports `<=`, as in `i
+    /// <= 7`.
     pub(super) fn index(&mut self) -> Index<'s> {
         let (name, less) = (self.name(), self.bump());
         let equal = self.is(0, "=").then(|| self.bump());

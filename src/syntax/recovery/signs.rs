@@ -1,4 +1,5 @@
-//! Needless signs, and those of comments in other languages: a block has one report for each kind.
+//! Collects needless separators and what starts comments in other languages. A block has one report
+//! for each of them.
 
 use super::{Recovery, numbers::unit_of};
 use crate::{
@@ -8,7 +9,8 @@ use crate::{
 };
 
 impl Recovery<'_, '_> {
-    /// Takes a `,` or `;` between fields or items. Before a value it may stand for something else.
+    /// Takes a `,` or `;` between fields or items and records it. Before a value, it may be meant
+    /// as something else, so the reports become doubtful.
     pub(super) fn separator(&mut self) {
         let sign = self.bump();
         self.note_sign(sign);
@@ -28,8 +30,8 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Reports the needless signs. If a problem from index `first` on has no fix, it is uncertain
-    /// what they belong to, and they get no fix either.
+    /// Reports the recorded separators and comment starts. If a problem from index `first` on has
+    /// no fix, it is uncertain what they belong to, so they get no fix either.
     pub(super) fn report_signs(&mut self, first: usize) {
         let since = self.problems.get(first..).unwrap_or_default();
         let is_doubtful = since.iter().any(|problem| problem.fixes.is_empty())

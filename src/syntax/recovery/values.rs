@@ -1,4 +1,4 @@
-//! Values: operators and operands.
+//! Reads values: operators and operands.
 
 use super::{
     Context, Recovery,
@@ -19,14 +19,14 @@ use crate::{
     },
 };
 
-/// Operators of a product, and signs that people write for them.
+/// Operators of a product, and characters that people write for them.
 const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "⋅", "÷", "∕", "⁄", "^", "**", "%"];
-/// Operators of a sum, and signs that people write for them.
+/// Operators of a sum, and characters that people write for them.
 const SUM: &[&str] = &["+", "-", "−", "–", "—"];
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads the value of a field, a definition or a `--set` argument, with everything that stands
-    /// in its place.
+    /// Reads the value of a field, a definition or a `--set` argument, or whatever stands in place
+    /// of one.
     pub(super) fn value(&mut self) -> Value<'s> {
         let start = self.here();
         let (values, commas) = self.values();
@@ -40,8 +40,8 @@ impl<'s> Recovery<'_, 's> {
         self.stray_closings(start.start, value)
     }
 
-    /// Reads values as long as they may belong together. Returns them, and the number of commas
-    /// between them.
+    /// Reads values as long as they may belong together. Returns the values and the number of
+    /// commas between them.
     fn values(&mut self) -> (Vec<Value<'s>>, usize) {
         let (mut values, mut commas) = (Vec::new(), 0);
         self.too_deep = false;
@@ -67,7 +67,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports a list that lacks its `(`, before its `)`.
+    /// Reports a list that lacks its `(`. The next token is its `)`. Returns a bad value.
     fn unopened_list(&mut self, start: Span, values: &[Value<'s>], commas: usize) -> Value<'s> {
         let (sign, span) = (self.word(0), self.bump());
         let parts = self.context.takes.and_then(Type::parts);
@@ -89,8 +89,8 @@ impl<'s> Recovery<'_, 's> {
         bad(start.to(self.behind()))
     }
 
-    /// Reports closing signs behind a value that starts at an offset, and reads the operators that
-    /// follow each of them.
+    /// Reports closing brackets after a value that starts at offset `start`, and reads the
+    /// operators that follow each of them.
     fn stray_closings(&mut self, start: usize, mut value: Value<'s>) -> Value<'s> {
         while self.is_stray_closing() {
             let is_needless = is_same_in_parentheses(&value);
@@ -114,18 +114,18 @@ impl<'s> Recovery<'_, 's> {
 
     fn is_stray_closing(&mut self) -> bool {
         let word = self.word(0);
-        // In place of a block's `}`, the block reports it.
+        // A closing bracket in place of a block's `}` is reported by the block.
         let is_end = |this: &mut Self| this.context.is_block && this.is_end_of_block();
         matches!(word, ")" | "]") && word != self.context.close && !is_end(self)
     }
 
-    /// Returns whether the next token belongs to the values before it.
+    /// Returns whether the next token belongs to `values`, which precede it.
     pub(super) fn goes_on(&mut self, values: &[Value<'s>]) -> bool {
         let (word, next, is_new) = (self.word(0), self.word(1), self.is_on_new_line(0));
         match self.kind(0) {
             _ if is_new && !self.context.is_block => false,
             TokenKind::Name => {
-                // The name of a colour or a method in separate words.
+                // Words that together are the name of a colour or a method, as in `dark red`.
                 let is_words = matches!(self.context.takes, Some(Type::Color | Type::Method))
                     && are_names(values)
                     && (!self.starts_value(1) || self.is_field_name(next));
@@ -141,7 +141,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether the comma here separates values rather than fields.
+    /// Returns whether the next token, a comma, separates values rather than fields.
     fn goes_on_behind_comma(&mut self) -> bool {
         let word = self.word(1);
         matches!(self.kind(1), TokenKind::Number | TokenKind::Color)
@@ -150,7 +150,8 @@ impl<'s> Recovery<'_, 's> {
             || (self.is_name(1) && matches!(self.word(2), "," | ")"))
     }
 
-    /// Reads a name with hyphens, such as `multi-jittered`, without spaces, comments or line ends.
+    /// Reads a name with hyphens, such as `multi-jittered`. No spaces, comments or line ends may
+    /// stand around the hyphens.
     fn hyphenated(&mut self) -> Value<'s> {
         let mut span = self.bump();
         while self.is(0, "-") && self.is_name(1) && self.is_adjacent(0) && self.is_adjacent(1) {
@@ -175,7 +176,7 @@ impl<'s> Recovery<'_, 's> {
             let first = this.signed();
             this.chain(first, PRODUCT, Self::signed)
         });
-        // An `if` is handled in the place of an operand.
+        // A condition that starts with `if` is handled in `operand`.
         let compares = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?" | "=");
         if compares && !self.is_on_new_line(0) && self.condition() {
             return bad(left.span.to(self.behind()));
@@ -183,7 +184,8 @@ impl<'s> Recovery<'_, 's> {
         left
     }
 
-    /// Extends a value while these operators follow.
+    /// Reads operators from `signs` and their operands while they follow `left`. Returns the
+    /// extended value.
     fn chain(
         &mut self,
         mut left: Value<'s>,
@@ -229,7 +231,8 @@ impl<'s> Recovery<'_, 's> {
         chain(left, operator, sign, right)
     }
 
-    /// Returns the fix that writes `r^2` or `r**2` as a product.
+    /// Returns the fix that writes `r^2` or `r**2` as a product; `None` for other bases or
+    /// exponents.
     fn power(&self, sign: &str, base: &Value<'s>, exponent: &Value<'s>) -> Option<Fix> {
         let is_square = matches!(sign, "^" | "**") && exponent.kind == ValueKind::Number("2");
         let is_one = matches!(base.kind, ValueKind::Number(_) | ValueKind::Name(_));
@@ -248,7 +251,7 @@ impl<'s> Recovery<'_, 's> {
         self.report(&said, span, &[written, help], fix);
     }
 
-    /// Reports an operator that lacks its right operand.
+    /// Reports an operator that lacks its right operand, and returns a bad value.
     fn without_operand(&mut self, left: Value<'s>, written: &str, sign: Span) -> Value<'s> {
         if written == "%" {
             self.unknown_operator(written, sign, false, None);
@@ -258,7 +261,8 @@ impl<'s> Recovery<'_, 's> {
         bad(left.span.to(sign))
     }
 
-    /// Skips operators that lack a left operand, and the value behind them.
+    /// Skips operators that lack a left operand, and the value after them. Returns the empty span
+    /// after them.
     fn passed_operators(&mut self) -> Span {
         while PRODUCT.contains(&self.word(0)) {
             self.bump();
@@ -271,8 +275,8 @@ impl<'s> Recovery<'_, 's> {
         self.behind()
     }
 
-    /// Returns whether no value can stand here: before a closing or separating sign, a field, or an
-    /// item.
+    /// Returns whether no value can start here: the next token is a closing or separating one, a
+    /// field's name, or the start of an item.
     pub(super) fn ends_value(&mut self) -> bool {
         let word = self.word(0);
         match self.kind(0) {
@@ -340,7 +344,7 @@ impl<'s> Recovery<'_, 's> {
             _ => {
                 let start = self.behind();
                 self.unexpected("a value", example(self.context.takes));
-                // `\frac{1}{2}` is one mistake.
+                // Skip the groups of `\frac{1}{2}`, so that it is one mistake.
                 if word == "\\" {
                     self.bump();
                     self.bump();
@@ -358,7 +362,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether a value can start at a token ahead.
+    /// Returns whether a value can start at the token `ahead` tokens after the next one.
     pub(super) fn starts_value(&mut self, ahead: usize) -> bool {
         match self.kind(ahead) {
             TokenKind::Number | TokenKind::Color | TokenKind::Quoted | TokenKind::Word => true,
@@ -407,7 +411,7 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reports a value that nests too deep, and skips its rest.
+    /// Reports a value that nests too deep, and skips the rest of it.
     pub(super) fn pass_over(&mut self) -> Value<'s> {
         let first = self.here();
         self.report(&say::TOO_DEEP, first, &[&NESTING_LIMIT.to_string()], None);

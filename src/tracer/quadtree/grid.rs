@@ -1,5 +1,5 @@
-//! The grid in which a quadtree counts: whole numbers for places in the view plane and for the
-//! nearness of an object.
+//! The grid of a quadtree: whole numbers for positions in the view plane and for the nearness of an
+//! object.
 //!
 //! In: coordinates in the view plane, inverse depths. Out: units of the grid, and the upper half of
 //! an `f64`. Both conversions are monotone, and bounds are rounded outwards.
@@ -11,15 +11,15 @@ use crate::tracer::{
     local_form::Patch,
 };
 
-/// Ratio of the root's side to the window's: a sixteenth wider on either side, so that rectangles
-/// of pixels at the rim are inside, including roundings.
+/// Ratio of the root's side to the window's longer side. The root is a sixteenth wider on either
+/// side, so that rectangles of pixels at the picture's edge are inside, including roundings.
 const ROOT_MARGIN: f64 = 1.125;
 
 /// Binary logarithm of the root's side in units of the grid. A pixel of a picture 100,000 pixels
 /// wide is about a hundred units.
 pub(super) const LEVELS: u32 = 24;
 
-/// A rectangle in units of the grid, ends included.
+/// A rectangle in units of the grid; both ends are included.
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle {
     pub(super) low: [u32; 2],
@@ -33,12 +33,12 @@ pub struct BoundedObject {
     pub bounds: Rectangle,
     /// Upper bound of the object's inverse depths.
     pub nearest: Nearness,
-    /// Its index in the file.
+    /// The object's index in the file.
     pub object: u32,
 }
 
-/// An inverse depth with 20 bits of its fraction: the upper half of an `f64`, whose order is that
-/// of the numbers.
+/// An inverse depth rounded to 20 bits of its fraction: the upper half of a non-negative `f64`,
+/// whose bits have the order of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Nearness(u32);
 
@@ -47,16 +47,17 @@ pub struct Nearness(u32);
 pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// The window, ends included: no point outside of it is ever asked for.
+    /// First unit of the window on each axis. No point outside of the window is looked up.
     low: [u32; 2],
     high: [u32; 2],
 }
 
 impl Nearness {
-    /// The nearness that everything exceeds.
+    /// The least nearness, which hides nothing.
     pub const NONE: Self = Self(0);
 
-    /// Rounds up a number that is not negative; infinite for NaN.
+    /// Rounds up a number that is not negative. Returns the greatest nearness for NaN and negative
+    /// numbers.
     fn above(x: f64) -> Self {
         if x >= 0.0 {
             Self((x.to_bits() >> 32) as u32 + 1)
@@ -65,7 +66,7 @@ impl Nearness {
         }
     }
 
-    /// Rounds down a number; [`NONE`](Self::NONE) for NaN.
+    /// Rounds down a positive number. Returns [`NONE`](Self::NONE) for all other numbers and NaN.
     pub fn below(x: f64) -> Self {
         if x > 0.0 {
             Self((x.to_bits() >> 32) as u32)
@@ -76,14 +77,14 @@ impl Nearness {
 }
 
 impl Rectangle {
-    /// The rectangle that meets every other. `u32::MAX` is left out, since a share counts units up
-    /// to one beyond the last.
+    /// The rectangle that contains every other one. Its ends are below `u32::MAX`, since
+    /// [`share_of`](Self::share_of) adds one to them.
     pub const ALL: Self = Self {
         low: [0; 2],
         high: [u32::MAX - 1; 2],
     };
 
-    /// Whether two rectangles have a unit in common.
+    /// Returns whether two rectangles have a unit in common.
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         let meets = |i: usize| (self.low[i] <= other.high[i]) & (other.low[i] <= self.high[i]);
@@ -96,7 +97,7 @@ impl Rectangle {
         holds(0) & holds(1)
     }
 
-    /// Returns the share of another rectangle that this one covers, 0 to 1.
+    /// Returns the share of `other` that this rectangle covers, 0 to 1.
     pub fn share_of(&self, other: &Self) -> f64 {
         let share = |i: usize| {
             let (low, high) = (
@@ -108,7 +109,7 @@ impl Rectangle {
         share(0) * share(1)
     }
 
-    /// Whether all of another rectangle lies in this one.
+    /// Returns whether all of `other` lies in this rectangle.
     #[inline]
     pub fn contains(&self, other: &Self) -> bool {
         self.holds(other.low) && self.holds(other.high)
@@ -131,15 +132,17 @@ impl CellGrid {
         grid
     }
 
-    /// Returns the unit that contains a coordinate, or the nearest unit; the first one for NaN.
+    /// Returns the unit that contains a coordinate, or the nearest unit of the grid. Returns the
+    /// first unit for NaN.
     #[inline]
     fn unit(&self, x: f64) -> u32 {
-        // One less than the last unit, so that the window's end, one unit further, exists, too.
+        // The last unit but one, since the window ends one unit further.
         const LAST: u32 = (1 << LEVELS) - 2;
         (((x - self.least) * self.per_unit) as u32).min(LAST)
     }
 
-    /// Returns the units of a direction. Returns `None` outside of the window.
+    /// Returns the units of a direction's X and Y. Returns `None` if the direction is outside of
+    /// the window.
     #[inline]
     pub(super) fn units(&self, r: &Direction<f64>) -> Option<[u32; 2]> {
         let at = [self.unit(r.x), self.unit(r.y)];
@@ -147,7 +150,8 @@ impl CellGrid {
         (is_within(0) && is_within(1)).then_some(at)
     }
 
-    /// Clips two ranges to the window. Returns `None` if one of them lies outside.
+    /// Converts ranges of X and Y to a rectangle, widened by one unit on each side and clipped to
+    /// the window. Returns `None` if it lies outside of the window.
     fn ends(&self, ranges: [Interval; 2]) -> Option<Rectangle> {
         let low = [0, 1].map(|i| {
             let low = self.unit(ranges[i].low).saturating_sub(1);
@@ -157,19 +161,20 @@ impl CellGrid {
         (low[0] <= high[0] && low[1] <= high[1]).then_some(Rectangle { low, high })
     }
 
-    /// Returns the rectangle that contains all rays through a patch. Returns `None` outside of the
-    /// window.
+    /// Returns the rectangle that contains all rays through a patch, clipped to the window. Returns
+    /// `None` if the patch lies outside of the window.
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         let center = [patch.center.x, patch.center.y];
         self.ends([0, 1].map(|i| Interval::about(center[i], 0.5 * patch.sides[i])))
     }
 
-    /// Converts the bounds of an object. Returns `None` outside of the window.
+    /// Converts the bounds of an object to units of the grid. Returns `None` if they lie outside of
+    /// the window.
     pub fn item(&self, object: usize, extent: &Extent) -> Option<BoundedObject> {
         Some(BoundedObject {
             bounds: self.ends(extent.across)?,
             nearest: Nearness::above(extent.nearest),
-            // More objects would not fit into memory.
+            // An index fits, since 2^32 objects would not fit into memory.
             object: object as u32,
         })
     }

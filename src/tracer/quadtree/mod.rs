@@ -1,14 +1,16 @@
-//! The objects that may be met at a point of the view plane: a quadtree over their bounds there.
+//! The objects that rays through a point of the view plane may hit: a quadtree over their bounds
+//! there.
 //!
 //! All rays share the eye, so a ray is a point of the view plane and lies in exactly one cell of
-//! each level: the way down has no branches. An object is listed in the cells that it overlaps on
-//! the level where cells are about as large as itself. They are four at most, so that the lists
-//! have at most four entries per object, whatever the objects look like. Each list is sorted by
-//! nearness; a ray that has met something stops where the rest of the list lies behind it.
+//! each level: its search does not branch. An object is listed in the cells that it overlaps on the
+//! level where cells are about as large as the object. There are at most four such cells, so the
+//! lists have at most four entries per object, whatever the objects look like. Each list is sorted
+//! by nearness. A ray that has hit an object leaves a list where all further entries lie behind
+//! that object.
 //!
-//! Cells are counted in whole numbers, and the conversion of coordinates is monotone: its rounding
-//! never separates a point from bounds that contain it by more than one unit, and bounds are one
-//! unit wider.
+//! Cells have coordinates in whole numbers, and the conversion to them is monotone. Its rounding
+//! moves a point out of the bounds that contain it by at most one unit, and bounds are widened by
+//! one unit.
 
 mod grid;
 mod point_query;
@@ -31,15 +33,15 @@ pub struct Quadtree {
 }
 
 impl Quadtree {
-    /// Builds a quadtree over some objects. If it is cancelled, some of them are missing.
+    /// Builds a quadtree over `items`. If it is cancelled, some of the objects are missing.
     pub fn new(grid: CellGrid, items: Vec<BoundedObject>, cancel: &AtomicBool) -> Self {
         let tree = Cells::new(items, cancel);
         Self { grid, tree }
     }
 
-    /// Calls `visit` with the objects that a ray may meet, the largest first, until it fails.
-    /// Objects that are not nearer than its last answer are skipped. Returns `None` for a direction
-    /// outside of the window.
+    /// Calls `visit` with the objects that a ray may hit, level by level from the largest on, until
+    /// it fails. `visit` returns the nearness at and below which objects are hidden; these are
+    /// skipped. Returns `None` if the direction is outside of the window.
     #[inline]
     pub fn visit<E>(
         &self,
@@ -49,9 +51,9 @@ impl Quadtree {
         Some(self.tree.visit(self.grid.units(r)?, visit))
     }
 
-    /// Finds the objects that rays through a patch may meet, in file order, except those hidden by
-    /// an object that fills the patch: `behind` returns the nearness at and below which an object
-    /// hides the rest. Returns `None` if there seem to be more than `most`.
+    /// Finds the objects that rays through a patch may hit, in file order. For an object that fills
+    /// the patch, `behind` returns the nearness at and below which it hides other objects; these
+    /// are left out. Returns `None` if there seem to be more than `most` objects.
     pub fn within(
         &self,
         patch: &Patch,
@@ -64,16 +66,16 @@ impl Quadtree {
         }
     }
 
-    /// Finds the objects that rays through a patch may meet, the nearest first. Returns `None` if
-    /// there seem to be more than a cell lists.
+    /// Finds the objects that rays through a patch may hit, the nearest first. Returns `None` if
+    /// there seem to be more than [`OBJECTS_A_CELL`].
     pub fn nearby(&self, patch: &Patch) -> Option<Vec<BoundedObject>> {
         let mut items = self.within(patch, OBJECTS_A_CELL, |_| Nearness::NONE)?;
         items.sort_by_key(|item| Reverse(item.nearest));
         Some(items)
     }
 
-    /// Visits objects as [`visit`](Self::visit) does, for a ray through a patch whose objects were
-    /// found by [`nearby`](Self::nearby).
+    /// Visits those of the objects `nearby` that a ray may hit, as [`visit`](Self::visit) does.
+    /// `nearby` is the result of [`nearby`](Self::nearby) for a patch that contains the ray.
     #[inline]
     pub fn visit_nearby<E>(
         &self,
@@ -85,8 +87,8 @@ impl Quadtree {
         Some(visit_list(nearby, at, &mut { Nearness::NONE }, &mut visit))
     }
 
-    /// Returns the rectangle that contains all rays through a patch. Returns `None` outside of the
-    /// window.
+    /// Returns the rectangle that contains all rays through a patch. Returns `None` if the patch
+    /// lies outside of the window.
     #[inline]
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         self.grid.rectangle(patch)

@@ -1,7 +1,7 @@
-//! The point query: the objects that one ray may meet.
+//! The point query: the objects that one ray may hit.
 //!
-//! In: a point in the grid. Out: the objects of the cells that contain it, from the root down; each
-//! list ends where the rest is hidden.
+//! In: a point in the grid. Out: the objects of the cells that contain it, from the root down. The
+//! search leaves a list where all further entries are hidden.
 
 use super::{
     grid::{BoundedObject, LEVELS, Nearness},
@@ -9,8 +9,8 @@ use super::{
 };
 
 impl Cells {
-    /// Calls `visit` with the objects that the ray through a point may meet, until it fails.
-    /// Objects that are not nearer than its last answer are skipped.
+    /// Calls `visit` with the objects that the ray through a point may hit, until it fails. `visit`
+    /// returns the nearness at and below which objects are hidden; these are skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -37,7 +37,7 @@ impl Cells {
 }
 
 /// Calls `visit` with the objects of one list, the nearest first, that the ray through a point may
-/// meet.
+/// hit. Stops at the first object at or below `hidden`, which is set to what `visit` returns.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[BoundedObject],

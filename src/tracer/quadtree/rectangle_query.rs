@@ -1,26 +1,27 @@
-//! The rectangle query: the objects that rays through a rectangle may meet.
+//! The rectangle query: the objects that rays through a rectangle may hit.
 //!
-//! In: a rectangle of the grid. Out: the objects whose bounds meet it, in file order, except those
-//! behind an object that fills it.
+//! In: a rectangle of the grid. Out: the objects whose bounds intersect it, in file order, except
+//! those behind an object that fills it.
 
 use super::{
     grid::{BoundedObject, Nearness, Rectangle},
     tree::{CellSquare, Cells},
 };
 
-/// Maximum number of cells that list one object: it is no longer than such a cell, and meets at
-/// most two of them along each axis.
+/// Maximum number of cells that list one object. The object is no longer than such a cell, so it
+/// intersects at most two of them along each axis.
 const MAX_CELLS: usize = 4;
 
-/// A search for the objects that rays through a rectangle may meet.
+/// A search for the objects that rays through a rectangle may hit.
 pub(super) struct Search<'a, F> {
     tree: &'a Cells,
     rectangle: &'a Rectangle,
-    /// Maximum number of entries.
+    /// Maximum number of entries found, in which an object may occur several times.
     most: usize,
-    /// Returns the nearness at and below which an object hides others, if it fills the rectangle.
+    /// For an object that fills the rectangle, returns the nearness at and below which it hides
+    /// others.
     behind: F,
-    /// Nearness at and below which everything is hidden.
+    /// Nearness at and below which objects are hidden.
     hidden: Nearness,
     found: Vec<BoundedObject>,
 }
@@ -37,7 +38,8 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         }
     }
 
-    /// Returns the objects in file order. Returns `None` if they are too many.
+    /// Returns the objects in file order, each once. Returns `None` if more than `most` entries
+    /// were found.
     pub(super) fn run(mut self) -> Option<Vec<BoundedObject>> {
         self.below(0, CellSquare::ROOT)?;
         let mut items = self.found;
@@ -48,8 +50,8 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         Some(items)
     }
 
-    /// Adds the objects of a cell, and then those of its quarters: large objects, which may hide
-    /// others, come first. Returns `None` if they are too many.
+    /// Adds the objects of a cell, and then those of its quarters, so that large objects, which may
+    /// hide others, come first. Returns `None` if more than `most` entries were found.
     fn below(&mut self, cell: u32, square: CellSquare) -> Option<()> {
         let cell = self.tree.cells[cell as usize];
         if cell.nearest <= self.hidden || !square.bounds().meets(self.rectangle) {

@@ -1,15 +1,16 @@
 //! The cells of a quadtree, and the objects listed in them.
 //!
 //! In: objects' bounds in units of the grid. Out: cells in one list and their entries in another. A
-//! cell that holds many objects is divided; an object larger than its quarters stays in it.
+//! cell with many objects is divided; an object larger than the quarters stays in the cell's own
+//! list.
 
 use std::{cmp::Reverse, sync::atomic::AtomicBool};
 
 use super::grid::{BoundedObject, LEVELS, Nearness, Rectangle};
 use crate::cancel;
 
-/// Maximum number of objects of a cell that is not divided. Measured on 10⁵ spheres: 16 and 64
-/// render in the same time within a twentieth.
+/// Maximum number of objects in a cell that is not divided. Measured on 10⁵ spheres: with 16 or 64,
+/// the render time changes by at most a twentieth.
 pub const OBJECTS_A_CELL: usize = 32;
 
 /// All cells; the first one is the root.
@@ -32,14 +33,14 @@ pub(super) struct Cell {
 }
 
 impl Cells {
-    /// Builds the tree of all cells. If it is cancelled, some of the objects are missing.
+    /// Builds the tree of cells over `items`. If it is cancelled, some of the objects are missing.
     pub(super) fn new(items: Vec<BoundedObject>, cancel: &AtomicBool) -> Self {
         let mut tree = Self {
             cells: vec![Cell::EMPTY],
             entries: Vec::new(),
         };
-        // The last items of the stack are those of the current cell; on the way down, the items of
-        // a quarter are pushed behind them.
+        // The last items of the stack are those of the current cell. For each quarter, its items
+        // are pushed behind them and removed afterwards.
         let mut stack = items;
         tree.divide(0, CellSquare::ROOT, &mut stack, 0, cancel);
         tree.cells.shrink_to_fit();
@@ -47,7 +48,7 @@ impl Cells {
         tree
     }
 
-    /// Fills a cell and all cells below it with the items from `start` on.
+    /// Fills a cell and all cells below it with the items on the stack from `start` on.
     fn divide(
         &mut self,
         cell: usize,
@@ -85,7 +86,7 @@ impl Cells {
         }
     }
 
-    /// Appends the list of a cell to the entries.
+    /// Appends items to the entries as the list of a cell, sorted by nearness.
     fn list(&mut self, cell: usize, items: &[BoundedObject]) {
         let start = self.entries.len();
         self.entries.extend_from_slice(items);
@@ -122,7 +123,7 @@ impl CellSquare {
         level: LEVELS,
     };
 
-    /// Returns the whole square.
+    /// Returns the square as a rectangle in units of the grid.
     #[inline]
     pub(super) fn bounds(self) -> Rectangle {
         Rectangle {
@@ -131,14 +132,15 @@ impl CellSquare {
         }
     }
 
-    /// Whether an object is at least as large as the cell's quarters, and therefore not listed
-    /// below it: a smaller one meets at most two of them along each axis.
+    /// Returns whether an object is larger than the cell's quarters. It is then not listed below
+    /// the cell. A smaller object intersects at most two quarters along each axis.
     fn keeps(self, item: &BoundedObject) -> bool {
         let Rectangle { low, high } = item.bounds;
         (0..2).any(|axis| high[axis] - low[axis] >= 1 << (self.level - 1))
     }
 
-    /// Returns a quarter: right of the first for 1 and 3, below it for 2 and 3.
+    /// Returns a quarter of the square: 0 is at the top left, 1 at the top right, 2 at the bottom
+    /// left, 3 at the bottom right.
     pub(super) fn quarter(self, quarter: u32) -> Self {
         let level = self.level - 1;
         let [x, y] = self.corner;

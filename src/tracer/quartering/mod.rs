@@ -1,15 +1,16 @@
-//! The picture divided into parts that certainly show one colour, pixels in which more may be seen,
-//! and parts with too many candidates.
+//! The picture divided into parts that certainly show one colour, pixels that may show several, and
+//! parts with too many candidates.
 //!
 //! In: the world, and an area of its picture. Out: the parts of that area, one after the other. The
 //! method is Warnock's subdivision ("A hidden surface algorithm for computer generated halftone
 //! pictures", 1969): an area is quartered until it shows one colour, is a single pixel, or has more
-//! candidates than its samples are worth. The samples of a pixel are then traced among its
-//! candidates; if those are too many, one by one among the objects nearby. Sampled and exact
-//! pictures share this method: what is certain of a part holds for every ray through it.
+//! candidates than its samples are worth. The samples of a pixel are then tested only against its
+//! candidates. If there are too many candidates, each sample is tested against the objects nearby.
+//! Sampled and exact pictures share this method: what is certain for a part holds for every ray
+//! through it.
 //!
-//! Areas are those of one fixed grid over the whole picture, whatever part of it is asked for, so
-//! that a pixel's candidates do not depend on the part.
+//! Areas are those of one fixed grid over the whole picture, whatever part of it is wanted, so that
+//! a pixel's candidates do not depend on the part.
 
 #[cfg(test)]
 mod tests;
@@ -28,27 +29,27 @@ use crate::area::Area;
 /// squares.
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
-/// Minimum number of samples per candidate in an area that is quartered. Measured: 4 and 8 are
-/// within a tenth of each other on 10³ and 10⁵ spheres, and 2 is up to a quarter slower; 3000
-/// slivers with one sample per pixel take half as long with 4 as with 8.
+/// Minimum number of samples per candidate in an area that is quartered further. Measured: with 8,
+/// the time for 10³ and 10⁵ spheres changes by less than a tenth, and 3000 slivers with one sample
+/// per pixel take twice as long. With 2, the time rises by up to a quarter.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
-/// Cost of finding where one candidate is seen, from a square of the grid down, in object tests of
-/// samples that are traced one by one. A sample tests the objects whose bounds contain it; its way
-/// down the quadtree counts as one more. Measured: with 80, 10⁴ spheres on 320×180 pixels take a
-/// tenth longer, and with 200 on 640×360 a fiftieth.
+/// Cost of finding where one candidate is seen, from a square of the grid down. The unit is one
+/// object test of a sample that is traced one by one. Such a sample tests the objects whose bounds
+/// contain it; its search of the quadtree counts as one more test. Measured: with 80, 10⁴ spheres
+/// on 320×180 pixels take a tenth longer; with 200, on 640×360 pixels a fiftieth longer.
 const ASKED_A_CANDIDATE: f64 = 120.0;
 
 /// Divides one picture into parts.
 #[derive(Debug)]
 pub struct Quartering<'a> {
     world: &'a World,
-    /// Mean number of samples per pixel; infinite for a picture that must be known exactly at any
-    /// cost.
+    /// Mean number of samples per pixel; infinite for a picture that must be computed exactly at
+    /// any cost.
     samples: f64,
 }
 
-/// A part of the picture.
+/// A part of the picture, by what is seen in it.
 #[derive(Clone, Copy, Debug)]
 pub enum PicturePart<'a> {
     /// One colour is seen in all of it.
@@ -60,17 +61,17 @@ pub enum PicturePart<'a> {
     },
     /// A pixel in which more than one colour may be seen.
     Pixel {
-        /// Its column.
+        /// The pixel's column.
         x: u32,
-        /// Its row.
+        /// The pixel's row.
         y: u32,
-        /// The objects that may be seen there, in file order.
+        /// The objects that may be seen in the pixel, in file order.
         candidates: &'a [VisibilityCandidate],
-        /// The squares that it shows of a board, if a board is all that is seen and they are
-        /// known.
+        /// The squares of a checkerboard that the pixel shows, if nothing else is seen there and
+        /// the squares are known.
         checks: Option<&'a CheckerPixel>,
     },
-    /// An area with more candidates than it is worth to tell apart: its samples are traced one by
+    /// An area with more candidates than it is worth to tell apart. Its samples are traced one by
     /// one.
     Crowded {
         /// The part's area.
@@ -78,25 +79,27 @@ pub enum PicturePart<'a> {
     },
 }
 
-/// Lists that are reused from area to area: the candidates at each depth of the quartering.
+/// Buffers that are reused from area to area: the list of candidates at each depth of the
+/// quartering.
 #[derive(Debug, Default)]
 pub struct Scratch {
     candidates: Vec<Vec<VisibilityCandidate>>,
 }
 
 impl<'a> Quartering<'a> {
-    /// Quarters a picture that must be known exactly: no part is [`Crowded`](PicturePart::Crowded).
+    /// Prepares the quartering of a picture that must be computed exactly: no part is
+    /// [`Crowded`](PicturePart::Crowded).
     pub fn new(world: &'a World) -> Self {
         Self::for_samples(world, f64::INFINITY)
     }
 
-    /// Quarters a picture with this mean number of samples per pixel.
+    /// Prepares the quartering of a picture with `samples` samples per pixel on average.
     pub fn for_samples(world: &'a World, samples: f64) -> Self {
         Self { world, samples }
     }
 
-    /// Calls `visit` with the parts of an area until it breaks. The parts cover the area, and each
-    /// pixel once.
+    /// Calls `visit` with the parts of the area `wanted` until it breaks. The parts cover each
+    /// pixel of the area exactly once.
     pub fn parts(
         &self,
         wanted: Area,
@@ -125,15 +128,16 @@ impl<'a> Quartering<'a> {
         })
     }
 
-    /// Whether telling the objects of an area apart costs less than tracing its samples one by one;
-    /// `asked` is the mean number of objects that one sample tests.
+    /// Returns whether it costs less to tell the objects of an area apart than to trace the area's
+    /// samples one by one. `objects` is their number, and `asked` the mean number of objects that
+    /// one sample tests.
     fn is_worth_cutting(&self, area: Area, objects: usize, asked: f64) -> bool {
         let samples = self.samples * area.pixels() as f64;
         objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64
     }
 
-    /// Returns the maximum number of candidates that are worth telling apart in an area: one for
-    /// each sample in a single pixel, where quartering ends.
+    /// Returns the maximum number of candidates that are worth telling apart in an area. In a
+    /// single pixel, where quartering ends, it is one candidate per sample.
     fn most(&self, area: Area) -> usize {
         let shared = area.pixels() as f64 / SAMPLES_A_CANDIDATE;
         (self.samples * shared.max(1.0)) as usize
@@ -143,15 +147,15 @@ impl<'a> Quartering<'a> {
 /// One square of the grid while it is divided.
 struct Cut<'a, 'b, V> {
     quartering: &'a Quartering<'a>,
-    /// The part of the picture that is asked for.
+    /// The part of the picture that is wanted.
     wanted: Area,
-    /// Whether the whole square is asked for.
+    /// Whether the whole square is wanted.
     is_all_wanted: bool,
     visit: &'b mut V,
 }
 
 impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
-    /// Divides an area by what may be seen in it.
+    /// Shows an area, or quarters it, depending on the candidates in it. Stops if `visit` breaks.
     fn cut(
         &mut self,
         area: Area,
@@ -177,7 +181,7 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
                             let slot = slots[usize::from(odd)];
                             return self.show(PicturePart::OneColor { area, slot });
                         }
-                        // Samples need certain squares, exact areas do not.
+                        // Samples need certain squares; exact areas allow for uncertain ones.
                         ShownSquares::Squares(checks) => {
                             let is_exact = self.quartering.samples.is_infinite();
                             (checks.is_certain || is_exact).then_some(checks)
@@ -198,7 +202,8 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
             _ => {}
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
-        // A cell of the quadtree lists as many, and each sample would test those instead.
+        // Up to as many candidates as a cell of the quadtree lists, testing the candidates is no
+        // slower, since each sample would otherwise test that list.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
             return self.show(PicturePart::Crowded { area });
         }
@@ -224,7 +229,7 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
         flow
     }
 
-    /// Calls `visit` with the wanted pixels of a part.
+    /// Calls `visit` with the wanted pixels of a part, if there are any.
     #[inline]
     fn show(&mut self, part: PicturePart) -> ControlFlow<()> {
         if self.is_all_wanted {
@@ -250,7 +255,7 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
     }
 }
 
-/// Takes the list of a depth, which is to be put back there.
+/// Takes the list of a depth out of `scratch`. The caller puts it back after use.
 fn take(scratch: &mut Scratch, depth: usize) -> Vec<VisibilityCandidate> {
     if scratch.candidates.len() <= depth {
         scratch.candidates.resize_with(depth + 1, Vec::new);

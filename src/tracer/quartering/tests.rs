@@ -1,4 +1,4 @@
-//! The parts of a picture and their candidates.
+//! Tests of the parts that a picture is divided into, and of their candidates.
 
 use std::ops::ControlFlow;
 
@@ -26,7 +26,8 @@ fn thousand_spheres(depth: f64) -> Vec<Shape> {
     (0..1000).map(sphere).collect()
 }
 
-/// Large triangles in parallel planes, in any order; no other object lies in front of the first.
+/// Returns a world of large triangles in parallel planes, in arbitrary order. Each hides all
+/// triangles behind it.
 fn triangles_in_layers(count: usize) -> World {
     let layer = |index: usize| {
         let depth = 10.0 + (index * 37 % count) as f64 / 64.0;
@@ -36,8 +37,8 @@ fn triangles_in_layers(count: usize) -> World {
     world(&(0..count).map(layer).collect::<Vec<_>>())
 }
 
-/// Single-coloured boards below and above each other, in any order; the horizon lies in the
-/// picture.
+/// Returns a world of single-coloured boards below and above each other, in arbitrary order. The
+/// horizon lies in the picture.
 fn boards_in_layers(count: usize) -> World {
     let layer = |index: usize| {
         let height = 1.0 + (index * 37 % count) as f64 / 64.0;
@@ -94,7 +95,8 @@ fn what_a_wall_hides_is_not_found() {
         assert!(all_within(whole, usize::MAX, &mut found));
         assert_eq!(found.len() == 1, behind);
         assert!(behind || found.len() == 1001, "{}", found.len());
-        // Nor is anything found behind the wall where it lies across several cells of the quadtree.
+        // Behind the wall, nothing is found either in parts where several cells of the quadtree
+        // list the wall.
         for part in whole.tiles(7) {
             assert!(all_within(part, usize::MAX, &mut found));
             assert!(found.len() == 1 || !behind, "{part:?}");
@@ -102,8 +104,8 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// Around every square of a crowd the nearby objects are known, and for some pixels their only
-/// colour; at all points they show what the quadtree shows.
+/// Nearby objects are found around every square of a crowd, and some pixels are known to show only
+/// one colour. At all points, the nearby objects give the same colour as the quadtree.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

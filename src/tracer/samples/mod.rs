@@ -1,13 +1,15 @@
 //! Many samples of one pixel at once.
 //!
-//! In: a pixel, its candidates, and where its samples lie. Out: how often each colour is seen.
+//! In: a pixel, its candidates, and the positions of its samples. Out: how often each colour is
+//! seen.
 //!
 //! In a pixel, every boundary is a linear or a quadratic form of the offset from the pixel's
 //! centre, with one error bound for all its values there. The objects that may be seen in the pixel
-//! are therefore written as a few forms; forms with one sign all over it are left out, and the
+//! are therefore described by a few forms. Forms with one sign in the whole pixel are left out; the
 //! others are evaluated for all samples in plain arrays, which the compiler vectorizes. A form is
-//! divided by its error bound, so that beyond ±1 its sign is certain. An uncertain sample is traced
-//! again on its own, exactly: this module cannot change what is seen, it only finds it sooner.
+//! divided by its error bound, so that its sign is certain where its value is above 1 or below −1.
+//! An uncertain sample is traced again on its own, exactly. This module therefore cannot change
+//! what is seen, but only find it faster.
 
 mod pixel;
 mod prepare;
@@ -21,8 +23,9 @@ use crate::math::SimdWidth;
 
 pub use self::pixel::PreparedPixel;
 
-/// Prepares a pixel from the objects that may be seen there, in file order. If a checkerboard is
-/// all that is seen and its squares are known, they are given as `checks`.
+/// Prepares `pixel` for the pixel in column `x` and row `y`, from the objects that may be seen
+/// there, in file order. If a checkerboard is all that is seen there and its squares are known,
+/// they are given as `checks`. Sets `is_hard` if the samples must be traced one by one.
 pub fn prepare(
     world: &World,
     [x, y]: [u32; 2],
@@ -44,9 +47,9 @@ pub fn prepare(
     pixel.is_hard = prepared.is_err();
 }
 
-/// Calls `count` with the palette slots that the samples of a pixel see, and how many samples see
-/// each; a slot may occur several times. The samples are given by their offsets from the pixel's
-/// centre, as one list for each coordinate, padded to a multiple of eight.
+/// Calls `count` with a palette slot and the number of samples that see it, for all colours that
+/// the samples of a pixel see; a slot may occur several times. `x` and `y` are the samples' offsets
+/// from the pixel's centre, padded to a multiple of eight; the first `samples` of them count.
 pub fn count(
     world: &World,
     pixel: &mut PreparedPixel,
@@ -84,7 +87,7 @@ pub fn count(
     }
 }
 
-/// Lists the colours that may be seen in a pixel.
+/// Lists the colours that may be seen in a pixel, each with its count set to 0.
 fn may_see(world: &World, pixel: &mut PreparedPixel) {
     let color = |code: f64, slot: usize| ColorCount {
         code,

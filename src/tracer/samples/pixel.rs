@@ -1,4 +1,4 @@
-//! A prepared pixel: its surfaces as forms, and the samples of one chunk.
+//! A prepared pixel: its surfaces as forms, and buffers for the samples of one chunk.
 
 use super::super::{
     candidates::VisibilityCandidate,
@@ -6,18 +6,18 @@ use super::super::{
     local_form::{LocalForm, LocalQuadratic, ScaledLine},
 };
 
-/// Number of samples that are evaluated at a time. Their six [`Lanes`], 3 KiB, and their
+/// Maximum number of samples that are evaluated at a time. Their six [`Lanes`], 3 KiB, and their
 /// coordinates stay in the first-level cache.
 pub(super) const CHUNK_SAMPLES: usize = 64;
 
-/// Code of a sample that meets nothing. Object i of the pixel has the code 2i + 1, its second
-/// colour 2i + 2.
+/// Code of a sample that hits no object. The first colour of the pixel's object i has the code 2i +
+/// 1, its second colour 2i + 2.
 pub(super) const BACKGROUND: f64 = 0.0;
-/// Code of a sample that is not certain.
+/// Code of an uncertain sample, which is traced again on its own.
 pub(super) const DOUBT: f64 = -1.0;
 
-/// The objects of one pixel, prepared for many samples. It is reused from pixel to pixel, to keep
-/// its allocations.
+/// The objects of one pixel, prepared for many samples. The value is reused from pixel to pixel, to
+/// keep its allocations.
 #[derive(Debug, Default)]
 pub struct PreparedPixel {
     /// The objects that may be seen in the pixel.
@@ -25,16 +25,16 @@ pub struct PreparedPixel {
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) surfaces: Vec<PixelSurface>,
-    /// Boundary and pattern lines of all surfaces.
+    /// Boundary lines and pattern lines of all surfaces.
     pub(super) lines: Vec<ScaledLine>,
-    /// Minimum difference of inverse depths that is certain, if surfaces are compared sample by
-    /// sample.
+    /// Minimum difference of inverse depths whose sign is certain. `None` if the surfaces are
+    /// sorted from back to front and need no comparison per sample.
     pub(super) apart: Option<f64>,
-    /// Depth planes of all surfaces; filled only if surfaces are compared sample by sample.
+    /// Inverse depths of all flat faces as forms; filled only if depths are compared per sample.
     pub(super) planes: Vec<LocalForm>,
-    /// Whether samples must be traced one by one.
+    /// Whether all samples must be traced one by one.
     pub(super) is_hard: bool,
-    /// The colours that may be seen, if surfaces are decided by forms.
+    /// The colours that may be seen, if samples are not traced one by one.
     pub(super) colors: Vec<ColorCount>,
     /// Number of uncertain samples in the last chunk.
     pub(super) doubts: u64,
@@ -48,45 +48,48 @@ pub(super) struct ColorCount {
     pub(super) code: f64,
     /// The colour's slot in the palette.
     pub(super) slot: usize,
-    /// Number of samples that have seen the colour.
+    /// Number of samples that see the colour.
     pub(super) count: u64,
 }
 
-/// One object as a pixel shows it.
+/// One object as it is seen in a pixel.
 #[derive(Debug)]
 pub(super) struct PixelSurface {
     /// The object's index among the candidates.
     pub(super) index: usize,
-    /// Start and end of its boundaries among all lines; each form is ≥ 0 where the object is met.
+    /// Start and end of the object's boundaries among all lines. Each form is ≥ 0 where rays hit
+    /// the object.
     pub(super) edges: [usize; 2],
-    /// The boundary of a sphere.
+    /// The silhouette of a sphere, if it may cross the pixel: the form is > 0 where rays hit the
+    /// sphere.
     pub(super) conic: Option<LocalQuadratic>,
     pub(super) pattern: ColorPattern,
     pub(super) depth: Depth,
 }
 
-/// Which of its two colours an object shows.
+/// How the colour of an object varies over a pixel.
 #[derive(Debug)]
 pub(super) enum ColorPattern {
-    /// One colour, by its code.
+    /// One colour, given by its code.
     Plain(f64),
-    /// Two colours, separated by the lines from the end of the edges up to `end`: where the product
-    /// of their forms is positive, the first colour is shown, or the second if `odd`.
+    /// Two colours, separated by lines: those from the end of the surface's edges up to `end`.
+    /// Where the product of the lines' forms is positive, the first colour is shown, or the second
+    /// one if `odd`.
     Lines { end: usize, odd: bool },
-    /// Squares of a checkerboard, by division.
+    /// The squares of a checkerboard, found for each sample by a division.
     Squares(CheckerForms),
 }
 
 /// How the inverse depth of a surface is computed.
 #[derive(Debug)]
 pub(super) enum Depth {
-    /// Not needed.
+    /// The inverse depth is not needed.
     Unknown,
-    /// The least of a range of planes.
+    /// The least inverse depth of a range of `planes`, given by its start and end.
     Least([usize; 2]),
-    /// The greatest of a range of planes.
+    /// The greatest inverse depth of a range of `planes`, given by its start and end.
     Greatest([usize; 2]),
-    /// The near side of a sphere, (b + √Q) · factor.
+    /// The near side of a sphere: (b + √q) · factor.
     Sphere {
         q: LocalQuadratic,
         b: LocalForm,
@@ -94,20 +97,20 @@ pub(super) enum Depth {
     },
 }
 
-/// Values of the samples of a chunk, one array per quantity.
+/// Values of the samples of a chunk, with one array per quantity.
 #[derive(Debug)]
 pub(super) struct Lanes {
-    /// Code of what is seen so far.
+    /// Code of the nearest surface so far.
     pub(super) seen: [f64; CHUNK_SAMPLES],
-    /// Inverse depth of what is seen so far.
+    /// Inverse depth of the nearest surface so far.
     pub(super) nearest: [f64; CHUNK_SAMPLES],
-    /// Least boundary form of the current surface, in units of its error bound.
+    /// Least value of the current surface's boundary forms, in units of their error bounds.
     pub(super) margin: [f64; CHUNK_SAMPLES],
-    /// Code of what the current surface shows.
+    /// Code of the colour that the current surface shows.
     pub(super) shown: [f64; CHUNK_SAMPLES],
     /// Inverse depth of the current surface.
     pub(super) depth: [f64; CHUNK_SAMPLES],
-    /// Product of the pattern's line forms.
+    /// Product of the forms of the pattern's lines.
     pub(super) sign: [f64; CHUNK_SAMPLES],
 }
 
@@ -126,7 +129,8 @@ impl Default for Lanes {
 }
 
 impl PixelSurface {
-    /// A surface without boundaries, whose lines will begin at `start`.
+    /// Returns a surface without boundaries. `index` is its object's index among the candidates,
+    /// and `start` the number of lines so far.
     pub(super) fn new(index: usize, start: usize) -> Self {
         Self {
             index,
@@ -137,7 +141,7 @@ impl PixelSurface {
         }
     }
 
-    /// Returns the code of one of its colours.
+    /// Returns the code of the object's first colour, or of the second one if `odd`.
     pub(super) fn code(&self, odd: bool) -> f64 {
         (2 * self.index + 1 + usize::from(odd)) as f64
     }

@@ -1,9 +1,9 @@
-//! The preparation of a pixel: what it shows of its candidates, written as forms.
+//! The preparation of a pixel: what is seen of its candidates, described by forms.
 //!
 //! In: the pixel and its candidates. Out: surfaces with their boundary forms, patterns and depths,
-//! sorted from back to front if their depths do not overlap. A form whose bound gives it one sign
-//! all over the pixel is left out. Rare cases and overflows are left to the world, sample by
-//! sample.
+//! sorted from back to front if their depths do not overlap. A form is left out if its error bound
+//! proves that it has one sign in the whole pixel. In rare cases and after overflows, the world
+//! traces the samples one by one.
 
 use super::{
     super::{
@@ -21,16 +21,17 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// Error bound of a board's form above which the pixel is left to higher precisions: products of a
-/// few such factors with numbers of squares, which are below 2^53, would be infinite.
+/// Maximum error bound of a checkerboard's form; above it, the pixel's samples are traced one by
+/// one. Products of a few such factors with numbers of squares, which are below 2^53, would be
+/// infinite.
 const MAX_ERROR: f64 = 1e250;
 
-/// Maximum number of board lines through a pixel for which squares are decided by lines; beyond it
-/// they are decided by division. Measured: 3 to 12 make no difference, and division alone makes
-/// figure 9.9 a ninth slower.
+/// Maximum number of lines between squares through a pixel for which colours are decided by the
+/// lines' forms. For more lines, each sample's square is found by a division. Measured: with 3 to
+/// 12, the render time is the same; with division alone, figure 9.9 takes a ninth longer.
 const MAX_LINES: usize = 6;
 
-/// Error of a preparation that has met a case which is better traced sample by sample.
+/// Error of a preparation: the pixel is a case in which samples are better traced one by one.
 pub(super) struct Hard;
 
 impl PreparedPixel {
@@ -44,7 +45,7 @@ impl PreparedPixel {
         self.order(world, &pixel)
     }
 
-    /// Prepares a pixel that a board fills and in which nothing else may be seen.
+    /// Prepares a pixel that a checkerboard fills, where nothing else may be seen.
     pub(super) fn prepare_checks(&mut self, checks: &CheckerPixel) -> Result<(), Hard> {
         self.clear();
         let mut surface = PixelSurface::new(0, 0);
@@ -60,7 +61,8 @@ impl PreparedPixel {
         self.apart = None;
     }
 
-    /// Writes a candidate's boundaries and colours as forms.
+    /// Adds a candidate as a surface, with its boundaries and colours as forms, unless it is
+    /// certainly not seen in the pixel.
     fn add_surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
         let candidate = self.candidates[index];
         let object = &*f64::object(&world.geometry, candidate.object);
@@ -87,8 +89,9 @@ impl PreparedPixel {
         Ok(())
     }
 
-    /// Adds forms that are all ≥ 0 where an object is met. Returns whether the object may be met at
-    /// all.
+    /// Adds forms that are all ≥ 0 where an object is hit to the pixel's lines, except those that
+    /// are positive in the whole pixel. Returns `false` if no ray through the pixel hits the
+    /// object. Fails if a form has overflowed.
     fn add_boundaries(&mut self, forms: &[Form<f64>], pixel: &Patch) -> Result<bool, Hard> {
         for form in forms {
             if !self.add_boundary(form.local(pixel))? {
@@ -110,7 +113,9 @@ impl PreparedPixel {
         }
     }
 
-    /// Adds the outline of a sphere. Returns whether the sphere may be met at all.
+    /// Adds the silhouette of a sphere to the surface and to the pixel's lines. Returns `false` if
+    /// no ray through the pixel hits the sphere. Fails if the eye is not outside the sphere or a
+    /// form has overflowed.
     fn add_silhouette(
         &mut self,
         sphere: &Sphere<f64>,
@@ -118,8 +123,8 @@ impl PreparedPixel {
         surface: &mut PixelSurface,
     ) -> Result<bool, Hard> {
         if !sphere.is_outside() {
-            // The eye is on the surface or inside: too rarely seen in part to deserve a rule of its
-            // own.
+            // The eye is on the surface or inside. A part of such a sphere is too rarely seen to
+            // deserve a rule of its own.
             return Err(Hard);
         }
         let (q, b) = sphere.local(pixel);
@@ -132,8 +137,9 @@ impl PreparedPixel {
         self.add_boundary(b)
     }
 
-    /// Adds the near and the far plane as boundaries of an object with a single surface. Returns
-    /// whether the object may be met at all.
+    /// Adds the near and the far plane as boundaries of an object. Returns `false` if the object is
+    /// certainly clipped in the whole pixel. Fails if a plane may cut an object that has more than
+    /// one surface, or if a form has overflowed.
     fn add_clips(
         &mut self,
         world: &World,
@@ -168,7 +174,8 @@ impl PreparedPixel {
         Ok(met)
     }
 
-    /// Decides which squares a board shows.
+    /// Computes the pattern of a checkerboard in a pixel: by lines if the squares are known and
+    /// few, otherwise by division. Fails if an error bound is too large.
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
@@ -187,7 +194,9 @@ impl PreparedPixel {
         }
     }
 
-    /// Writes the lines between a board's squares as forms.
+    /// Adds the lines between a board's squares that may cross the pixel. `x0` to `x1` and `z0` to
+    /// `z1` are the squares in the pixel. Returns the pattern; it is by division if there are too
+    /// many lines.
     fn lines(
         &mut self,
         squares: &CheckerForms,
@@ -203,14 +212,16 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // Its sign is that of x/square − k, which is ≥ 0 in the upper square: one more
-                // change of parity.
+                // The form of line k has the sign of x/square − k (for the second family, z/square
+                // − k). If it is positive in the whole pixel, the pixel lies beyond the line, where
+                // the parity is the other one.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // On the negative side there is no change: count from the other side.
+                        // Patterns count parity from the side where a form is positive; a negative
+                        // form changes it back.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),
@@ -226,8 +237,8 @@ impl PreparedPixel {
         })
     }
 
-    /// Sorts the surfaces from back to front, or prepares their depths for a comparison at every
-    /// sample.
+    /// Sorts the surfaces by depth, from back to front. If their depths overlap, also prepares the
+    /// forms of their depths for a comparison at every sample.
     fn order(&mut self, world: &World, pixel: &Patch) -> Result<(), Hard> {
         let candidates = &self.candidates;
         let range = |surface: &PixelSurface| candidates[surface.index].inverse_depth;
@@ -270,7 +281,8 @@ impl PreparedPixel {
         for plane in &self.planes {
             rad = rad.max(plane.rad);
         }
-        // The errors of both sides of a comparison; its own rounding is within theirs.
+        // `apart` covers the errors of both sides of a comparison. The comparison's own rounding is
+        // included in these errors.
         let apart = 2.0 * rad * UP;
         if !apart.is_finite() {
             return Err(Hard);

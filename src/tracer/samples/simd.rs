@@ -1,9 +1,10 @@
-//! Samples by the chunk: loops over plain arrays, which the compiler vectorizes.
+//! The evaluation of samples, chunk by chunk: loops over plain arrays, which the compiler
+//! vectorizes.
 //!
 //! In: a prepared pixel, and a chunk of its samples. Out: what each sample sees, and how often each
 //! colour is seen. For each surface in turn, its boundary forms are evaluated at all samples, then
 //! its pattern and its depth. Errors: a sample is in doubt, and traced again by the world, if a
-//! value is within its form's error bound of 0, or two depths are within theirs of each other.
+//! form's value is within its error bound of 0, or if two depths differ by at most their errors.
 
 use multiversion::multiversion;
 
@@ -26,13 +27,13 @@ fn see_simd(pixel: &mut PreparedPixel, points: At, count: usize) {
     pixel.see(points, count);
 }
 
-/// Offsets of samples: one list for each coordinate, its length a multiple of eight for the widest
-/// vectors.
+/// Offsets of samples from the pixel's centre: one list for each coordinate, whose length is a
+/// multiple of eight, the number of lanes of the widest vectors.
 pub(super) type At<'a> = [&'a [f64]; 2];
 
 impl PreparedPixel {
-    /// Decides what the first `count` samples of a chunk see, and counts how often each colour is
-    /// seen.
+    /// Finds what the first `count` samples of a chunk see, counts how often each colour is seen,
+    /// and sets `doubts` to the number of uncertain samples.
     pub(super) fn chunk(&mut self, points: At, count: usize, vectors: SimdWidth) {
         match vectors {
             SimdWidth::Widest if HAS_WIDER => see_simd(self, points, count),
@@ -45,7 +46,7 @@ impl PreparedPixel {
         let length = points[0].len();
         let lanes = &mut self.lanes;
         match self.surfaces.as_slice() {
-            // A single surface that fills the pixel.
+            // A single surface fills the pixel.
             [surface] if surface.edges[0] == surface.edges[1] && surface.conic.is_none() => {
                 surface.show(&self.lines, points, &mut lanes.sign, &mut lanes.seen);
             }
@@ -85,7 +86,8 @@ impl PreparedPixel {
 }
 
 impl PixelSurface {
-    /// Writes which colour each sample shows, if it meets the surface.
+    /// Writes the code of the colour that each sample shows if it hits the surface, or that of
+    /// doubt, to `shown`.
     #[inline(always)]
     fn show(
         &self,
@@ -109,7 +111,8 @@ impl PixelSurface {
     }
 }
 
-/// Decides whether a sample lies beyond an even or an odd number of lines.
+/// Writes the code `even` for each sample on the positive side of an even number of negative forms,
+/// and `odd` otherwise. Writes the code of doubt if a form's sign is uncertain.
 #[inline(always)]
 fn between(
     lines: &[ScaledLine],
@@ -147,7 +150,8 @@ fn between(
     }
 }
 
-/// Decides in which squares of a board the samples lie.
+/// Writes the code of the colour of the square in which each sample lies, or that of doubt, to
+/// `shown`.
 #[inline(always)]
 fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
     const ONE: u64 = 1.0f64.to_bits();
@@ -160,7 +164,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let double = 2.0 * UP * inverse;
         let square = |n: [f64; 3], own: f64| {
             let value = (n[0] * x + n[1] * y + n[2]) * inverse;
-            // |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ| |ℓ' − ℓ|)/ℓ', and ℓ' is at least ℓ/2.
+            // |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ|·|ℓ' − ℓ|)/ℓ', where N' and ℓ' are the true values
+            // and ℓ' is at least ℓ/2.
             let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * LOCAL_ROUNDING;
             let middle = value - 0.5;
             let rounded = middle + ROUND;
@@ -170,8 +175,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let ((bits0, margin0), (bits1, margin1)) = (square(n0, rads[0]), square(n1, rads[1]));
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
-        // NaN fails the comparisons, too; and a number too large for the rounding has too large an
-        // error.
+        // These comparisons also fail for NaN. A number too large for the rounding has a large
+        // error, so they fail for it, too.
         let first = if margin0 > 0.0 { code } else { DOUBT };
         let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {
@@ -183,7 +188,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
 }
 
 impl Lanes {
-    /// Computes the least of the boundary forms, in units of their error bounds.
+    /// Computes the least of the boundary forms at each sample, in units of the forms' error
+    /// bounds.
     #[inline(always)]
     fn margin(&mut self, edges: &[ScaledLine], conic: Option<&LocalQuadratic>, [x, y]: At) {
         let margin = &mut self.margin[..x.len()];
@@ -203,7 +209,8 @@ impl Lanes {
         }
     }
 
-    /// Draws a surface over everything seen so far.
+    /// Draws the current surface over everything seen so far. Samples near its boundary become
+    /// uncertain.
     #[inline(always)]
     fn cover(&mut self, length: usize) {
         let surface = self.margin[..length].iter().zip(&self.shown[..length]);
@@ -213,7 +220,7 @@ impl Lanes {
         }
     }
 
-    /// Computes the inverse depths of a surface.
+    /// Computes the inverse depths of the current surface at each sample.
     #[inline(always)]
     fn depths(&mut self, depth: &Depth, planes: &[LocalForm], [x, y]: At) {
         let out = &mut self.depth[..x.len()];
@@ -247,8 +254,8 @@ impl Lanes {
         }
     }
 
-    /// Merges a surface with what is seen so far, by depth; `apart` is the minimum difference of
-    /// depths that is certain.
+    /// Merges the current surface with what is seen so far: the surface with the greater inverse
+    /// depth is seen. `apart` is the minimum difference of inverse depths whose sign is certain.
     #[inline(always)]
     fn merge(&mut self, apart: f64, length: usize) {
         let surface = self.margin[..length]

@@ -10,9 +10,9 @@ use crate::{color::Color, scene};
 /// The colours of the objects.
 #[derive(Debug)]
 pub(super) struct Colors {
-    /// The distinct colours in file order, and the background last.
+    /// The distinct colours: those of the objects in file order, then the background.
     pub palette: Vec<Color>,
-    /// The slots of each object's colour and of a checkerboard's second colour.
+    /// For each object, the slots of its colour and of a checkerboard's second colour.
     pub of_objects: Vec<[u32; 2]>,
 }
 
@@ -25,7 +25,8 @@ impl Colors {
                 .entry(color.srgb.map(f64::to_bits))
                 .or_insert_with(|| {
                     palette.push(color);
-                    // At most twice the number of objects, which fit into memory.
+                    // A slot fits, since there are at most two per object, and 2^31 objects do not
+                    // fit into memory.
                     (palette.len() - 1) as u32
                 })
         };
@@ -41,7 +42,8 @@ impl Colors {
         }
     }
 
-    /// Gives each object a slot of its own; a piece gets the slot of the object that it belongs to.
+    /// Gives each object a slot of its own, with an arbitrary colour. A face of a box gets the
+    /// box's slot.
     pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
         let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
         let count = of_objects

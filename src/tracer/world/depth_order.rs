@@ -3,8 +3,8 @@
 //! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Computed depths
 //! of one surface would be in doubt at every sample point, and forms of higher precision take long
 //! to prepare. If depths are in doubt, the objects' planes are therefore compared by the numbers of
-//! the scene, without rounding; the near and the far plane, which are not among these numbers, by
-//! their forms.
+//! the scene, without rounding. The near and the far plane, which are not given by such numbers,
+//! are compared by their forms.
 
 use std::cmp::Ordering;
 
@@ -18,8 +18,8 @@ use crate::{
     },
 };
 
-/// Compares the inverse depths of two crossings. Crossings in one surface are equal, whatever their
-/// computed values.
+/// Compares the inverse depths of two crossings. Two crossings in one surface are equal even if
+/// their computed depths leave doubt.
 #[inline]
 pub(in crate::tracer) fn order<T: Real>(
     geometry: &Geometry,
@@ -33,7 +33,8 @@ pub(in crate::tracer) fn order<T: Real>(
     }
 }
 
-/// Compares the inverse depth of a crossing with that of the near or the far plane.
+/// Compares the inverse depth of a crossing with that of `clip`, the near or the far plane. Returns
+/// `Equal` if the surface lies in that plane and the computed depths leave doubt.
 #[inline]
 pub(super) fn order_to_clip<T: Real>(
     geometry: &Geometry,
@@ -49,16 +50,16 @@ pub(super) fn order_to_clip<T: Real>(
     // A surface that lies in one of the two planes can be in doubt about the other only if the
     // planes are equal.
     let at = (index, crossing.part);
-    // Planes that differ by hundreds of bits need the higher precision, which takes time to
-    // prepare.
+    // Planes may differ only after hundreds of bits. This needs the higher precision, which takes
+    // time to prepare and is therefore asked last.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }
     order
 }
 
-/// Whether two parts of objects are one surface: parts of one plane, or the same side of equal
-/// spheres.
+/// Returns whether two parts of objects are one surface: parts of one plane, or the same side of
+/// equal spheres.
 #[cold]
 fn is_same_surface(
     geometry: &Geometry,
@@ -73,9 +74,9 @@ fn is_same_surface(
     }
 }
 
-/// Whether two flat parts of objects lie in one plane, decided by the numbers of the scene without
-/// rounding. If surfaces lie in one plane, this is asked at every sample point; no forms need to be
-/// prepared for it.
+/// Returns whether two flat parts of objects lie in one plane. This is decided by the numbers of
+/// the scene, without rounding and without preparing forms: if surfaces lie in one plane, the test
+/// is needed at every sample point.
 pub(in crate::tracer) fn is_one_plane(
     geometry: &Geometry,
     (i, a): (usize, SurfacePart),
@@ -87,7 +88,8 @@ pub(in crate::tracer) fn is_one_plane(
     }
 }
 
-/// Whether a flat part of an object lies in the near or in the far plane.
+/// Returns whether a flat part of an object lies in the near or in the far plane, by the forms in
+/// one precision.
 #[cold]
 fn is_in_clip<T: Precision>(geometry: &Geometry, (index, part): (usize, SurfacePart)) -> bool {
     let frame = T::frame(geometry);

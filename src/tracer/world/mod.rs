@@ -1,8 +1,9 @@
 //! The scene prepared for one picture, and the nearest surface at a point of it.
 //!
-//! In: a scene, and then sample points. Out: the slot of the colour that is seen there. A ray tests
-//! the objects on its way down the quadtree, or those that are known to be nearby. If `f64` leaves
-//! the nearest in doubt, double-double decides, and in the end big numbers.
+//! In: a scene, and then sample points. Out: the palette slot of the colour that is seen at a
+//! point. A ray is tested against the objects that the quadtree lists for it, or against those that
+//! are known to be nearby. If `f64` leaves doubt, double-double decides, and if that fails, big
+//! numbers.
 
 mod colors;
 pub(super) mod depth_order;
@@ -35,8 +36,8 @@ use crate::{
     scene::Scene,
 };
 
-/// The scene prepared for one picture. It is built once and may then be asked at any sample point
-/// from any thread.
+/// The scene prepared for one picture. It is built once and can then be queried at any sample
+/// point, from any thread.
 #[derive(Debug)]
 pub struct World {
     basis: Basis,
@@ -50,9 +51,9 @@ pub struct World {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct VisibleCrossing {
     pub(super) object: usize,
-    /// Whether it is the object's second crossing, the first one being before the near plane.
+    /// Whether the crossing is the object's second one, because the near plane cuts off the first.
     pub(super) second: bool,
-    /// Whether it shows a checkerboard's second colour.
+    /// Whether the crossing shows a checkerboard's second colour.
     odd: bool,
 }
 
@@ -60,7 +61,7 @@ pub(super) struct VisibleCrossing {
 #[derive(Debug)]
 struct Nearest<T: Real> {
     object: usize,
-    /// Whether it is the object's second crossing.
+    /// Whether the crossing is the object's second one.
     second: bool,
     crossing: Crossing<T>,
 }
@@ -71,7 +72,8 @@ impl World {
         Self::build(scene, Faces::Seen, reach(scene), &cancel::NEVER)
     }
 
-    /// Prepares a scene for the sample points of its picture; gives up soon after the flag is set.
+    /// Prepares a scene for the sample points of its picture. Stops soon after the flag `cancel` is
+    /// set.
     ///
     /// # Errors
     ///
@@ -81,14 +83,15 @@ impl World {
         cancel::unless_set(cancel, world)
     }
 
-    /// Prepares a scene for [`ray`](super::ray()): for all crossings of rays through points of its
-    /// picture plane at most `reach` pixels from the picture's centre.
+    /// Prepares a scene for [`ray`](super::ray()), which returns all crossings of a ray. Rays may
+    /// go through points of the picture plane at most `reach` pixels from the picture's centre in x
+    /// and y.
     pub fn for_rays(scene: &Scene, reach: DVec2) -> Self {
         Self::build(scene, Faces::All, reach, &cancel::NEVER)
     }
 
-    /// Prepares a scene as if each object had one colour of its own, checkerboards included: the
-    /// slot is the object's index in the file.
+    /// Prepares a scene as if each object, checkerboards included, had one colour of its own. The
+    /// slot of that colour is the object's index in the file.
     pub fn by_object(scene: &Scene) -> Self {
         let mut world = Self::new(scene);
         let pieces = 0..world.object_count();
@@ -110,33 +113,33 @@ impl World {
         }
     }
 
-    /// The camera's axes.
+    /// Returns the camera's axes and scale.
     pub fn basis(&self) -> &Basis {
         &self.basis
     }
 
-    /// The area of all pixels of the picture.
+    /// Returns the area of all pixels of the picture.
     pub fn picture(&self) -> Area {
         let half = self.geometry.fast.camera.half;
         Area::whole((2.0 * half.x) as u32, (2.0 * half.y) as u32)
     }
 
-    /// The distinct colours that can be seen: those of the objects in file order, the background
-    /// last.
+    /// Returns the distinct colours that can be seen: those of the objects in file order, then the
+    /// background.
     pub fn palette(&self) -> &[Color] {
         &self.colors.palette
     }
 
-    /// Returns the palette slot that is seen at a sample point: in the pixel in column `x` and row
-    /// `y` from the top left, at an offset from its centre, x to the right and y down, each in
-    /// [−1/2, 1/2).
+    /// Returns the palette slot that is seen at a sample point. The point lies in the pixel in
+    /// column `x` and row `y`, at `offset` from the pixel's centre in pixels, x to the right and y
+    /// down, each in [−1/2, 1/2).
     #[inline]
     pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
         self.slot_near(x, y, offset, None)
     }
 
-    /// Returns what [`slot_at`](World::slot_at) returns, faster if the objects
-    /// [`nearby`](super::nearby) are known.
+    /// Returns the same as [`slot_at`](World::slot_at), faster if the objects `nearby` (see
+    /// [`nearby`](super::nearby)) are given.
     #[inline]
     pub(crate) fn slot_near(
         &self,
@@ -152,7 +155,8 @@ impl World {
         }
     }
 
-    /// Returns the index in the file of the object that is seen at the centre of a pixel.
+    /// Returns the index in the file of the object that is seen at the centre of a pixel. Returns
+    /// `None` for the background.
     pub fn object_at(&self, x: u32, y: u32) -> Option<usize> {
         let point = self.geometry.fast.camera.sample_point(x, y, DVec2::ZERO);
         let seen = match self.seen_fast(&point, None) {
@@ -165,13 +169,14 @@ impl World {
         seen.map(|piece| self.owner(piece))
     }
 
-    /// Returns the index in the file of an object that may be a face of a box.
+    /// Returns the index in the file of the object that a piece comes from: itself, or a face of a
+    /// box.
     pub(super) fn owner(&self, piece: usize) -> usize {
         self.pieces.owner(piece)
     }
 
-    /// Returns what [`slot_at`](World::slot_at) returns, if only the given objects, in file order,
-    /// may be seen.
+    /// Returns the palette slot that is seen at a sample point, as [`slot_at`](World::slot_at)
+    /// does, if only the objects `among`, in file order, may be seen.
     pub fn slot_among(
         &self,
         x: u32,
@@ -187,8 +192,11 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // An object that the last precision cannot decide counts as met, unless its bounds
-            // exclude it. With this the answer does not depend on which objects were tested.
+            // Only the last precision gave an answer. In it, an object counts as hit if the ray
+            // cannot be told from one that hits it, even if the ray lies outside of the object's
+            // bounds in the quadtree. Some callers pass only objects whose bounds contain the ray,
+            // others pass all. The others are therefore left out here, so that all callers get the
+            // same answer.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {
@@ -199,8 +207,8 @@ impl World {
         self.slot(seen)
     }
 
-    /// Returns the object that is seen at a point, among the given ones in file order; and whether
-    /// the answer was found before the last precision.
+    /// Returns which of the objects `among`, in file order, is seen at a point, and whether the
+    /// answer was found before the last precision.
     pub(super) fn object_among(
         &self,
         point: &PicturePoint,
@@ -229,8 +237,8 @@ impl World {
         self.geometry.objects.len()
     }
 
-    /// Returns the crossing that is seen, as far as `f64` can decide, among the objects nearby or
-    /// on the way down the quadtree.
+    /// Returns the crossing that is seen, among the objects `nearby` or those that the quadtree
+    /// lists for the ray. Fails if `f64` leaves doubt.
     #[inline]
     fn seen_fast(
         &self,
@@ -239,7 +247,7 @@ impl World {
     ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // Everything farther than this is hidden.
+        // Nearness at and below which objects are hidden.
         let mut hidden = Nearness::NONE;
         let visit = |index| {
             if self.meet(&r, index, &mut nearest)?
@@ -262,7 +270,7 @@ impl World {
         self.slot_of(point, self.candidates(point).iter().copied())
     }
 
-    /// Returns the objects that the ray through a point may meet, in file order.
+    /// Returns the objects that the ray through a point may hit, in file order.
     pub(super) fn candidates(&self, point: &PicturePoint) -> Vec<usize> {
         let r = self.geometry.fast.camera.direction(point);
         let mut candidates = Vec::new();
@@ -277,8 +285,8 @@ impl World {
         candidates
     }
 
-    /// Returns the nearest crossing between the near and the far plane, among the given objects in
-    /// file order; of equal crossings that of the first object.
+    /// Returns the nearest crossing between the near and the far plane with the objects `among`, in
+    /// file order. Of equal crossings, that of the first object is returned.
     #[inline]
     pub(super) fn seen<T: Precision>(
         &self,
@@ -289,7 +297,8 @@ impl World {
         self.with_color(r, nearest)
     }
 
-    /// Adds which of an object's two colours is seen.
+    /// Converts the nearest crossing to one that also tells which of the object's two colours is
+    /// seen.
     #[inline]
     fn with_color<T: Precision>(
         &self,
@@ -320,8 +329,8 @@ impl World {
         Ok(nearest)
     }
 
-    /// Tests an object. If its crossing is nearer than the nearest so far, or equal and of an
-    /// object earlier in the file, stores it as the nearest and returns `true`.
+    /// Tests an object. If its crossing is nearer than `nearest`, or equally near and of an object
+    /// earlier in the file, stores it in `nearest` and returns `true`. Otherwise returns `false`.
     #[inline]
     fn meet<T: Precision>(
         &self,
@@ -355,8 +364,8 @@ impl World {
         Ok(true)
     }
 
-    /// Returns the first of an object's crossings that lies between the near and the far plane, and
-    /// whether it is the second one.
+    /// Returns the first of an object's two crossings that lies between the near and the far plane,
+    /// and whether it is the second one. Returns `None` if neither lies there.
     #[inline]
     fn clip<T: Precision>(
         &self,

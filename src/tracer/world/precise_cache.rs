@@ -1,7 +1,6 @@
 //! The cache of objects in a higher precision.
-//!
-//! In: an object's index, and how to prepare it. Out: the object, prepared now or cached from an
-//! earlier request.
+//! In: an object's index, and a function that prepares the object. Out: the object, either prepared
+//! now or cached from an earlier request.
 
 use std::{
     ops::Deref,
@@ -10,21 +9,21 @@ use std::{
 
 use crate::{lock::lock, math::Real, tracer::object::Object};
 
-/// Maximum number of cached objects: as many as people write by hand and more. It is a prime
-/// number, so that objects in rows, whose indices are often a power of two or of ten apart, do not
+/// Maximum number of cached objects: no scene written by hand has more. It is a prime number:
+/// indices of objects in rows are often a power of two or of ten apart, and such objects must not
 /// evict each other.
 pub const CACHE_SLOTS: usize = 4093;
 
-/// Objects in one precision. Each is prepared when it is first requested, and kept until another
-/// object takes its slot.
+/// A cache of objects in one precision. Each object is prepared when it is first requested, and
+/// kept until another object takes its slot.
 ///
-/// Preparing an object takes far longer than testing a ray against it; but if one sample point is
-/// in doubt, its neighbours often are, about the same objects. The slots bound the memory, however
-/// many objects a scene has.
+/// Preparing an object takes far longer than testing a ray against it. If one sample point is in
+/// doubt, its neighbours often are, too, about the same objects. The fixed number of slots bounds
+/// the memory, however many objects a scene has.
 #[derive(Debug)]
 pub struct ObjectCache<T: Real>(Vec<Mutex<Option<Arc<CachedObject<T>>>>>);
 
-/// A prepared object.
+/// A cached object.
 #[derive(Debug)]
 pub struct CachedObject<T: Real> {
     /// The object's index in the file.
@@ -58,7 +57,7 @@ impl<T: Real> ObjectCache<T> {
         Self((0..slots).map(|_| Mutex::default()).collect())
     }
 
-    /// Returns the object with an index, and prepares it if it is not cached.
+    /// Returns the object with the given index. Calls `prepare` if the object is not cached.
     pub fn object(&self, index: usize, prepare: impl FnOnce() -> Object<T>) -> ObjectRef<'_, T> {
         let slot = &self.0[index % self.0.len()];
         let cached = lock(slot).clone();
@@ -67,8 +66,8 @@ impl<T: Real> ObjectCache<T> {
         {
             return ObjectRef::Shared(cached);
         }
-        // The slot is not locked meanwhile, so that no thread waits; two threads that want the same
-        // object may both prepare it.
+        // The slot is not locked while the object is prepared, so that no thread waits. Two threads
+        // that need the same object may both prepare it.
         let object = prepare();
         let prepared = Arc::new(CachedObject { index, object });
         *lock(slot) = Some(prepared.clone());

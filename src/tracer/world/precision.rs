@@ -1,9 +1,9 @@
 //! The camera and the objects in each precision: `f64`, double-double, and big numbers, which
 //! decide everything.
 //!
-//! In: the numbers of the scene. Out: frames and objects in the requested precision; beyond `f64`,
-//! objects are prepared when they are first requested. What a decision in one precision leaves in
-//! doubt, by its error bounds, is decided in the next.
+//! In: the numbers of the scene. Out: frames and objects in the requested precision. Beyond `f64`,
+//! objects are prepared when they are first requested. A decision that one precision leaves in
+//! doubt, by its error bounds, is made in the next precision.
 
 use glam::{DVec2, DVec3};
 
@@ -21,9 +21,10 @@ use crate::{
     },
 };
 
-/// Evaluates an expression about a ray, which gets the direction in each precision, in the first
-/// precision that is certain. Yields the answer, and whether it was found before the last
-/// precision, in which what cannot be told apart counts as equal, so that it is never in doubt.
+/// Evaluates `$answer` for a ray's direction `$r`, in one precision after the other until the
+/// answer is certain. Yields the answer, and whether it was found before the last precision. In the
+/// last precision, numbers that cannot be told apart count as equal, so that its answer is never in
+/// doubt.
 macro_rules! first_certain {
     ($geometry:expr, $point:expr, |$r:ident| $answer:expr) => {{
         let (geometry, point): (&Geometry, &PicturePoint) = ($geometry, $point);
@@ -50,7 +51,7 @@ pub(super) use first_certain;
 pub enum Numbers {
     /// A sphere's centre and radius.
     Sphere(DVec3, f64),
-    /// All numbers of any other shape; and which face of a box that was taken apart it is.
+    /// All numbers of any other shape; and the face, if the object is a single face of a box.
     Other(Box<(Shape, Option<u8>)>),
 }
 
@@ -70,14 +71,15 @@ pub struct Geometry {
 #[derive(Debug)]
 pub struct SceneFrame<T: Real> {
     pub camera: Camera<T>,
-    /// Cached objects; none for `f64`, in which all objects are kept in [`Geometry::objects`].
+    /// Cached objects. It has no slots for `f64`, whose objects are all in [`Geometry::objects`].
     pub(in crate::tracer) cache: ObjectCache<T>,
     pub near: Option<Form<T>>,
     pub far: Option<Form<T>>,
 }
 
 impl<T: Real> SceneFrame<T> {
-    /// Prepares a frame with this number of cache slots.
+    /// Prepares the camera and the clip planes in one precision, with a cache of at most `slots`
+    /// objects.
     pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, slots: usize) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
@@ -96,11 +98,11 @@ impl<T: Real> SceneFrame<T> {
     }
 }
 
-/// A precision in which the world is prepared.
+/// A precision in which the scene is prepared.
 pub trait Precision: Real {
     fn frame(geometry: &Geometry) -> &SceneFrame<Self>;
 
-    /// Returns an object in this precision, prepared on request.
+    /// Returns an object in this precision. Prepares the object if it is not cached.
     fn object(geometry: &Geometry, index: usize) -> ObjectRef<'_, Self> {
         let SceneFrame { camera, cache, .. } = Self::frame(geometry);
         let prepare = || geometry.numbers[index].object(camera);
@@ -116,7 +118,7 @@ impl Numbers {
         }
     }
 
-    /// Returns the exact plane of a flat part.
+    /// Returns the exact plane of a flat part. Returns `None` for a part that is not flat.
     pub(super) fn plane(&self, part: SurfacePart) -> Option<Plane> {
         let (Self::Other(other), SurfacePart::Plane(index)) = (self, part) else {
             return None;

@@ -1,4 +1,4 @@
-//! The preparation of a scene.
+//! The preparation of a scene for one picture.
 //!
 //! In: a scene. Out: its geometry, prepared block by block on all threads, and the quadtree over
 //! its objects' bounds.
@@ -19,16 +19,17 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Minimum number of objects for which threads are started. Fewer objects take less than a
-/// millisecond, at 0.7 µs each (benches/README.md).
+/// Minimum number of objects for which threads are started. To prepare fewer objects takes less
+/// than a millisecond, at 0.7 µs each (benches/README.md).
 const OBJECTS_WORTH_THREADS: usize = 1 << 10;
 
-/// Number of objects that are prepared between two checks for cancellation: 6 ms at most.
+/// Number of objects that are prepared between two checks for cancellation. A block takes at most 6
+/// ms.
 const BLOCK: usize = 1 << 13;
 
-/// Prepares the geometry of a scene for the points of its picture plane at most `reach` pixels from
-/// the picture's centre, and the quadtree over its objects. If it is cancelled, the result is of no
-/// use.
+/// Prepares the geometry of a scene, and the quadtree over its objects, for points of the picture
+/// plane at most `reach` pixels from the picture's centre. If `cancel` is set meanwhile, the result
+/// is incomplete and must not be used.
 pub fn prepare(
     scene: &Scene,
     pieces: &Pieces,
@@ -49,7 +50,7 @@ pub fn prepare(
         );
         (object, extent.and_then(|extent| grid.item(index, &extent)))
     };
-    // `None` also if the system starts no threads.
+    // Also `None` if the system cannot start threads.
     let threads = (count >= OBJECTS_WORTH_THREADS)
         .then(|| Threads::new(None).ok())
         .flatten();
@@ -71,7 +72,8 @@ pub fn prepare(
         objects.append(&mut more);
         items.extend(seen.drain(..).flatten());
     }
-    // Built before the rest, which then reuses the memory of the lists that this has freed.
+    // The quadtree is built first, so that the rest reuses the memory of the lists that it has
+    // freed.
     let quadtree = Quadtree::new(grid, items, cancel);
     let rest = if cancel::is_set(cancel) {
         &[]

@@ -1,5 +1,5 @@
-// The fragment of the page's address: `key=value`, joined by `&`. Browsers do not send it. This
-// module is loaded before all others, so that none of them sees the token in the address.
+// The fragment of the page's address: `key=value` pairs joined by `&`, which browsers never send.
+// Loaded before all other modules, so that none of them sees the token in the address.
 
 import { remember, remembered } from "./dom";
 
@@ -7,15 +7,15 @@ import { remember, remembered } from "./dom";
 const TOKEN = "token";
 const parts = () => new URLSearchParams(location.hash.slice(1));
 
-/** Returns the value of a key, or null if the address does not have it. */
+/** Returns the value of `key` in the fragment, or null if the fragment lacks the key. */
 export function inAddress(key: string): string | null { return parts().get(key); }
 
-/** Returns the page's address with a fragment of one key and its value. */
+/** Returns the page's address with the fragment `key=value`. */
 export function addressWith(key: string, value: string): string {
   return `${location.origin}${location.pathname}#${key}=${value}`;
 }
 
-/** Removes the token alone from the address and returns it, or null if there is none. */
+/** Removes only the token from the address and returns it, or null if there is none. */
 export function takeToken(): string | null {
   const rest = parts();
   const token = rest.get(TOKEN);
@@ -26,16 +26,16 @@ export function takeToken(): string | null {
   return token;
 }
 
-/** Token by which the host knows this tab. Reloading keeps it; another tab has its own. */
+/** Token by which the host recognizes this tab. It survives a reload; each tab has its own. */
 export const session = {
   token: remembered(TOKEN, "sessionStorage"),
-  /** Whether the token comes from an address opened just now. */
+  /** Whether the token was taken from the address, not from the host or the tab's storage. */
   isFresh: false,
 
   /** Stores the token given by the host or by an address. */
   keep(token: string, from: "host" | "address"): void {
     Object.assign(this, { token, isFresh: from === "address" });
-    // A browser without storage needs the printed address after reloading.
+    // Without storage, the user has to open the printed address again after a reload.
     remember(TOKEN, token, "sessionStorage");
   },
 };

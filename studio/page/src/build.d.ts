@@ -1,4 +1,4 @@
-// What the build adds: the module that `npm run site` makes from studio/engine, and scenes.
+// Declarations for the build: the module that `npm run site` makes from studio/engine; constants.
 
 declare module "pinhole-engine" {
   export class Engine {

@@ -1,44 +1,44 @@
-// The connection to the engine: a web socket to the host, or a web worker, with a JSON-RPC message
-// per text. A lost one is reopened after growing pauses, unless the host refuses this page.
+// The connection to the engine: a WebSocket to the host, or a web worker, with one JSON-RPC message
+// per text. A lost connection is reopened after growing pauses, unless the host refuses this page.
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
 import { meta } from "./dom";
 import { Refusal } from "./protocol";
 
-/** Carrier of texts. */
+/** Open channel that sends texts to the engine. */
 interface Wire { send(text: string): void }
 
 /** Why there is no connection. After `lost`, `ended` (by the host) and `failed` (a worker), the
- *  page connects again; after the others, only when an address of the host is opened. */
+ *  page reconnects by itself; after the others, only when an address of the host is opened. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
-/** State of the connection; `silent` is one that has been lost for long. */
+/** State of the connection; `silent` means lost, with all pauses of [`PAUSES`] used up. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
-/** Opens a wire, and calls the functions when it opens, receives a text, and closes. */
+/** Opens a `Wire`. Calls `opened` once it is open, `receive` for each text, `closed` at its end. */
 type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
   closed: (why: Closed) => void) => void;
 
 /** Pauses before attempts to reconnect, in milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
-/** Silence after which the server is asked for a sign of life, and the time to answer, in ms. */
+/** Silence in ms before the server gets a test request, and the maximum wait for its reply. */
 const QUIET = 700;
 const HANGING = 1200;
 
-/** Prefix of the identifiers of the page's own requests. */
+/** Prefix of the ids of the page's own requests, as opposed to those of the language client. */
 const OWN = "page-";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
-/** Meanings of the codes with which the host closes a web socket. */
+/** Meanings of the close codes that the host uses for a WebSocket. */
 const CLOSED: Partial<Record<number, Closed>> = { 1001: "ended", 4002: "late", 4003: "twice" };
 const UNKNOWN = 4001;
 
 class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
-  /** Called when the server has been silent for long, and when it answers again. */
+  /** Called with true when the server does not reply in time, and with false when it replies. */
   onHang: (isHanging: boolean) => void = () => {};
   /** Resolves when the client is initialized and all earlier messages are sent. */
   ready: () => Promise<unknown> = () => Promise.resolve();
@@ -50,20 +50,20 @@ class Connection implements Transport {
   private requests = 0;
   private attempts = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  /** Number of attempts to connect; events of older ones are ignored. */
+  /** Number of attempts to connect; events of earlier attempts are ignored. */
   private current = 0;
-  /** Times of the last message and of the pending question, and whether it is overdue. */
+  /** Times of the last message and of the pending test request; whether its reply is overdue. */
   private heard = 0;
   private asked = 0;
   private hangs = false;
 
   constructor(private readonly connector: Connector) {
     setInterval(() => this.listen(), 250);
-    // A browser stops the timers of hidden pages.
+    // Browsers stop the timers of hidden pages, so a test request pending then counts for nothing.
     document.addEventListener("visibilitychange", () => (this.asked = 0));
   }
 
-  /** Asks a silent server for a sign of life. */
+  /** Sends a test request if the server is silent, and reports an overdue reply. */
   private listen(): void {
     const now = performance.now();
     if (this.wire === null || document.hidden) return;
@@ -84,7 +84,7 @@ class Connection implements Transport {
     }, text => isCurrent() && this.receive(text), why => isCurrent() && this.lose(why));
   }
 
-  /** Connects at once; for a caller with a new reason to try, such as a new token. */
+  /** Reconnects at once; called if there is a new reason to try, such as a new token. */
   retry(): void {
     clearTimeout(this.timer);
     this.attempts = 0;
@@ -97,18 +97,18 @@ class Connection implements Transport {
     this.wire.send(text);
   }
 
-  /** The language client gets all messages except the answers to `request`. */
+  /** Sets the language client's handler, which gets all messages except answers to `request`. */
   subscribe(handler: (text: string) => void): void { this.handle = handler; }
   unsubscribe(): void { this.handle = () => {}; }
 
-  /** Asks the server. Rejects with its `Refusal`, or with an `Error` if lost or aborted. */
+  /** Sends a request. Rejects with the server's `Refusal`, or an `Error` if lost or aborted. */
   async request<Result>(method: string, params: unknown, wanted?: AbortSignal): Promise<Result> {
     // Without a server, `ready` would never resolve.
     if (this.wire === null) throw new Error(NO_CONNECTION);
     const id = OWN + ++this.requests;
     return new Promise<Result>((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
-      // Until then, the connection may be lost or the request aborted.
+      // Before `ready` resolves, the connection may be lost or the request aborted.
       this.ready().then(() => {
         if (!this.waiting.has(id)) return;
         this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -122,7 +122,7 @@ class Connection implements Transport {
   }
 
   private receive(text: string): void {
-    // Only a message, not an open wire, shows that the server is back.
+    // An open wire is not enough: only a message shows that the server is back.
     this.attempts = 0;
     this.heard = performance.now();
     this.asked = 0;
@@ -157,7 +157,7 @@ class Connection implements Transport {
   }
 }
 
-/** A web socket. Its first message is the token, and the host's first one the next token. */
+/** Opens a WebSocket. The page first sends its token; the host first sends the next token. */
 const webSocket: Connector = (opened, receive, closed) => {
   const { token } = session;
   if (token === null) return closed("keyless");
@@ -174,7 +174,7 @@ const webSocket: Connector = (opened, receive, closed) => {
     ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
 };
 
-/** A web worker with the engine, open at its first message. One that fails is replaced. */
+/** Starts the engine in a web worker, which is open at its first message; replaced if it fails. */
 const worker: Connector = (opened, receive, closed) => {
   const engine = new Worker(new URL("engine.js", location.href), { type: "module" });
   let isOpen = false;

@@ -1,4 +1,4 @@
-// Problems of the text: the server's diagnostics in the editor, with their fixes as buttons.
+// The server's diagnostics, in the editor and in a list below the text, with fixes as buttons.
 
 import { forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
   Diagnostic } from "@codemirror/lint";
@@ -9,22 +9,22 @@ import { byId, create, createButton } from "./dom";
 import { editor } from "./editor";
 import { setText, visible } from "./visible";
 
-/** Shows diagnostics and fixes in one update, as another one would close an open tooltip. */
+/** Shows diagnostics and fixes in one update, because a second update closes an open tooltip. */
 export async function publishDiagnostics(published: PublishDiagnosticsParams): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
-  // During a drag, every text gets a list of diagnostics, mostly an empty one.
+  // During a drag, each new text gets a list of diagnostics, which is mostly empty.
   const isRight = published.diagnostics.length === 0;
   if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
     { range: editor.range(), context: { diagnostics: [] } });
-  // Without an answer, diagnostics are shown without fixes.
+  // If the server does not answer, the diagnostics are shown without fixes.
   if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
 
-/** Whether the editor may have marks of problems, including ones whose text is gone. */
+/** Whether the editor may have marks of diagnostics, including those whose text was deleted. */
 let hasMarks = false;
 
 function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
@@ -36,7 +36,7 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   const ofAll = actions.filter(action => action.diagnostics === undefined);
   const shown = diagnostics.map((diagnostic): Diagnostic => {
     const fixes = mending.get(keyOf(diagnostic)) ?? [];
-    // An action for all problems is listed once, with the first problem that has fixes.
+    // An action that fixes all problems is listed once, at the first problem with a fix.
     const all = fixes.length > 0 ? ofAll.splice(0) : [];
     return {
       from: editor.offset(diagnostic.range.start),
@@ -49,7 +49,7 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   editor.view.dispatch(setDiagnostics(editor.view.state, shown));
 }
 
-/** Key that a diagnostic has in common with the one that an action names. */
+/** Returns a key by which a code action is matched with its diagnostic. */
 const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message, range]);
 
 function fix(action: CodeAction): Action {
@@ -60,9 +60,9 @@ function fix(action: CodeAction): Action {
   return {
     name: visible(action.title),
     apply(view) {
-      // The edits are for the text that was checked; a newer one is being checked.
+      // The edits are for the checked text. If it has changed, new diagnostics are on the way.
       if (view.state.doc !== doc) return;
-      // A placeholder is selected, to type over. It is ASCII.
+      // Select a placeholder, so that typing replaces it. It is ASCII: all units are equal.
       const at = edits[0] ? editor.offset(edits[0].range.start) : 0;
       const made = value && { selection: { anchor: at + value[0], head: at + value[1] } };
       const changes = editor.changes(edits);
@@ -72,7 +72,7 @@ function fix(action: CodeAction): Action {
   };
 }
 
-/** Shows the problems again when an update of the editor changes or moves them. */
+/** Updates the problem list when the editor's text or diagnostics change. */
 export const problemsFollow = EditorView.updateListener.of(({ docChanged, transactions }) => {
   const areOther = transactions.some(it => it.effects.some(it => it.is(setDiagnosticsEffect)));
   if (docChanged || areOther) showProblems();
@@ -85,14 +85,14 @@ button.addEventListener("click", () => {
   showProblems();
 });
 
-/** Returns the diagnostics with their ranges. */
+/** Returns the editor's diagnostics, each with its current range. */
 function diagnosed(): [Diagnostic, number, number][] {
   const found: [Diagnostic, number, number][] = [];
   forEachDiagnostic(editor.view.state, (...it) => found.push(it));
   return found;
 }
 
-/** Shows the problems below the text: the first one, or all. */
+/** Lists the problems below the text: only the first one, or all if the list is expanded. */
 export function showProblems(): void {
   const found = diagnosed();
   const { length } = found;
@@ -103,7 +103,7 @@ export function showProblems(): void {
   const isWhole = isOpen();
   list.hidden = length === 0;
   list.toggleAttribute("data-all", isWhole);
-  // Hidden items are not created, as a drag changes the text many times a second.
+  // Hidden items are not created, because a drag changes the text many times a second.
   list.replaceChildren(...found.slice(0, isWhole ? length : 1).map(it => item(...it)));
 }
 

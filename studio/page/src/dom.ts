@@ -1,20 +1,20 @@
-// Elements of the page: finding and creating them, pointers, downloads and storage.
+// Helpers for the document: finding and creating elements, pointers, downloads and storage.
 
 import { setText } from "./visible";
 
-/** Returns an element of index.html by its id. */
+/** Returns the element of index.html with this id; throws if there is none. */
 export function byId<E extends HTMLElement = HTMLElement>(id: string): E {
   const element = document.getElementById(id);
   if (element === null) throw new Error(`the page has no element #${id}`);
   return element as E;
 }
 
-/** Returns a value that the host has written into the page's head. */
+/** Returns a value that the host wrote into the page's head, or undefined if it is absent. */
 export function meta(name: string): string | undefined {
   return document.querySelector<HTMLMetaElement>(`meta[name="pinhole-${name}"]`)?.content;
 }
 
-/** Creates an element with a class and a text, which is never read as HTML. */
+/** Creates an element with a class and a text. The text is never parsed as HTML. */
 export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className = "",
   text = ""): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag);
@@ -23,7 +23,7 @@ export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className 
   return element;
 }
 
-/** Creates a button, which may have another name than its text. */
+/** Creates a button; `name`, if not null, is its accessible name in place of its text. */
 export function createButton(text: string, className: string, press: () => void,
   name: string | null = null): HTMLButtonElement {
   const button = create("button", className, text);
@@ -40,11 +40,11 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K,
   return element;
 }
 
-/** Follows a pointer until it is released, or cancelled by Escape or the returned function. */
+/** Follows a pointer until it is released, or until Escape or the returned function cancels. */
 export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void,
   end: () => void, cancel: () => void): () => void {
   const following = new AbortController();
-  // In the capture phase, so that the key is not also a command.
+  // Listen in the capture phase, so that Escape does not also trigger another command.
   const how = { capture: true, signal: following.signal };
   const hear = (type: "pointermove" | "pointerup" | "pointercancel",
     act: (event: PointerEvent) => void) => document.addEventListener(type,
@@ -64,7 +64,7 @@ export function followPointer(pressed: PointerEvent, move: (event: PointerEvent)
   return () => over(cancel);
 }
 
-/** Runs one task after the other; while one runs, only the newest of the others waits. */
+/** Wraps `act` so that calls run one at a time; of the calls that wait, only the newest runs. */
 export function newestOf<T>(act: (it: T) => Promise<void>): (it: T) => Promise<void> {
   let next: { it: T } | null = null;
   let work: Promise<void> | null = null;
@@ -82,7 +82,7 @@ export function newestOf<T>(act: (it: T) => Promise<void>): (it: T) => Promise<v
   };
 }
 
-/** Has the browser save a file. */
+/** Makes the browser save `content` as a file. */
 export function download(name: string, content: BlobPart, type: string): void {
   const link = create("a");
   link.href = URL.createObjectURL(new Blob([content], { type }));
@@ -91,15 +91,15 @@ export function download(name: string, content: BlobPart, type: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Native decoding of base64, which is many times faster. */
+/** Browser's own base64 decoder, where it exists; it is many times faster than `atob`. */
 const native = Uint8Array as unknown as { fromBase64?(text: string): Uint8Array<ArrayBuffer> };
 
-/** Decodes base64. */
+/** Decodes base64 to bytes. */
 export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
   return native.fromBase64?.(text) ?? Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 }
 
-/** Returns a stored setting of the browser or the tab, or null without storage. */
+/** Returns a stored setting of the browser or the tab, or null if there is none or no storage. */
 export function remembered(key: string, where: Store = "localStorage"): string | null {
   try {
     return window[where].getItem(`pinhole-${key}`);

@@ -1,6 +1,6 @@
-// Drafts: unsaved texts, stored while one types and offered again after a reload, a crash, or the
-// loss of the host. Each page has its own key, or that of the draft that it continues without a
-// host. The browser stores drafts until the host has them, or for good if there is no host.
+// Drafts: unsaved texts, stored during typing and offered again after a reload, a crash, or loss of
+// the host. Each page has its own key; if it continues a draft without a host, the draft's key.
+// The browser stores drafts until the host has stored them, or for good if there is no host.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
 import { connection, isServed } from "./connection";
@@ -11,9 +11,9 @@ import { Refusal, type Draft } from "./protocol";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** Delay before a changed text is stored, in milliseconds, however fast one types. */
+/** Delay from the first unstored change to storing the text, in milliseconds. */
 const BEHIND = 500;
-/** Maximum number of drafts in the browser. */
+/** Maximum number of drafts stored in the browser. */
 const MOST = 10;
 /** Maximum number of drafts offered at once. */
 const OFFERED = 3;
@@ -25,11 +25,11 @@ const freshId = () => `${Date.now()} ${Math.random()}`;
 let id = freshId();
 /** Whether a draft is stored under this page's key. */
 let isKept = false;
-/** Drafts still to be stored, by key; null for one to be deleted. */
+/** Drafts yet to be stored, by key; null if the stored draft is to be deleted. */
 const due = new Map<string, Draft | null>();
-/** The draft restored last, kept until it is saved, so that Undo does not lose it. */
+/** Draft restored last. It stays stored until it is saved, so that Undo does not lose it. */
 let restored: Draft | null = null;
-/** Drafts offered and not answered yet, the newest first. */
+/** Drafts offered but neither restored nor discarded yet, the newest first. */
 let offers: Draft[] = [];
 const bar = byId("draft-bar");
 const kept = byId("connection-kept");
@@ -40,10 +40,10 @@ for (const type of ["beforeunload", "pagehide"]) addEventListener(type, () => vo
 files.onLeave = leave;
 files.onSaved = text => void keepDraft(text);
 
-/** Schedules storing the changed text. */
+/** Schedules storing of the changed text. */
 export function draftChanged(): void { timer ||= setTimeout(() => void keepDraft(), BEHIND); }
 
-/** Stores the text unless it is saved. Drafts equal to it or to a saved text are deleted. */
+/** Stores the text if it is unsaved. Deletes offered drafts equal to it or to `saved`. */
 async function keepDraft(saved?: string): Promise<void> {
   clearTimeout(timer);
   timer = 0;
@@ -53,7 +53,7 @@ async function keepDraft(saved?: string): Promise<void> {
   const isNew = isUnsaved && textToSave !== restored?.text;
   if (isNew || isKept) due.set(id, isNew ? newDraft() : id === restored?.id ? restored : null);
   isKept = isNew;
-  // A text shown before there is a scene is still a draft.
+  // Until the server has the scene, an offered draft is kept even if it equals the text.
   const there = [saved, editor.uri === "" ? undefined : textToSave];
   for (const it of offers) if (there.includes(it.text)) forget(it);
   await Promise.all([...due].map(async ([id, draft]) => {
@@ -63,7 +63,7 @@ async function keepDraft(saved?: string): Promise<void> {
       due.delete(id);
       if (isServed) await del(id, store);
     } catch (error) {
-      // Without a connection, the host gets the draft later.
+      // Without a connection, the draft is sent to the host later.
       if (error instanceof Refusal) say(`No draft is kept: ${error.message}`, "warning");
     }
   }));
@@ -74,7 +74,7 @@ function newDraft(): Draft {
   return { id, name, text, base, time: Math.floor(Date.now() / 1000) };
 }
 
-/** Offers the drafts of other pages: those in this browser, which are newer, and the host's. */
+/** Offers drafts of other pages: at once the host's, then also this browser's, which are newer. */
 export async function offerDrafts(hosts: Draft[] = []): Promise<void> {
   offers = hosts;
   show();
@@ -106,7 +106,7 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // The host may have the draft, too, and is told when there is a connection.
+    // The host may have this draft under the same id; it gets the changes once connected.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }
@@ -120,7 +120,7 @@ function forget(draft: Draft): void {
   show();
 }
 
-/** Offers the unsaved text as a draft, because another scene replaces it. */
+/** Offers the unsaved text as a draft, because another scene is about to replace the text. */
 function leave(): void {
   if (!files.isUnsaved) return void keepDraft();
   const left = files.textToSave === restored?.text ? restored : newDraft();
@@ -133,9 +133,9 @@ function leave(): void {
 
 const all = async () => (await values<Draft>(store)).sort((a, b) => b.time - a.time);
 
-/** Stores a draft under its key, or deletes it. */
+/** Stores a draft under `id`, or deletes the stored one if `draft` is null. */
 async function stored(id: string, draft: Draft | null): Promise<void> {
-  // The host gets the draft even if this browser refuses it, or is slow.
+  // Send the draft to the host without waiting: this browser's storage may fail or be slow.
   const here = storedHere(id, draft).catch(error => { if (!isServed) throw error; });
   await (isServed ? connection.request("studio/draft", draft ?? { id, text: null }) : here);
 }

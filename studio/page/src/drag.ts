@@ -1,5 +1,5 @@
-// A drag of an object's handle or of the camera. It depends on the text at the press, which the
-// server has under a URI of its own, and on the first and the latest point, not on the path.
+// A drag of an object's handle or of the camera. Its result depends on the text at the press, which
+// the server has under its own URI, and on the first and the latest point, not on the path.
 
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -10,7 +10,7 @@ import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
 import { tools } from "./tools";
 import { setText } from "./visible";
 
-/** Held handle with its point at the press; without an object, it is the camera's. */
+/** Held handle and its point at the press. `object` is null for a handle of the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
@@ -18,7 +18,7 @@ const WAITING = "Waiting for Studio…";
 const SLOW = 400; // delay of an answer until a note says so, in milliseconds
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
-// The note of a drag stands beside the pointer while the drag lasts.
+// The note of a drag is shown beside the pointer while the drag lasts.
 const note = byId("drag-note");
 
 function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void {
@@ -31,16 +31,16 @@ function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void 
 }
 
 const clearNote = () => showNote("", "plain", [0, 0]);
-// The reason of a refused drag stays readable until the next action.
+// The reason why a drag was refused stays visible until the next press or key.
 for (const type of ["pointerdown", "keydown"]) addEventListener(type, () => {
   if (!(frames.dragging instanceof Drag)) clearNote();
 }, { capture: true });
 
 let count = 0;
-/** Settles when all earlier drags have ended. */
+/** Settles when all earlier drags have finished. */
 let ended: Promise<unknown> = Promise.resolve();
 
-/** Drag that requests one edit at a time, for the newest point of the pointer. */
+/** Drag that requests one edit at a time, always for the newest point of the pointer. */
 export class Drag {
   private readonly uri = `drag:${++count}`;
   /** Newest point of the pointer. */
@@ -57,7 +57,7 @@ export class Drag {
   private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
-  /** `hold` may find out only after the press what is held. */
+  /** `hold` returns what is held, or a promise if that is only found out after the press. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = press;
     frames.dragging = this;
@@ -80,7 +80,7 @@ export class Drag {
 
   by([dx, dy]: Point): void { this.to([this.target[0] + dx, this.target[1] + dy]); }
 
-  /** Ends after the edit for the last point, without waiting for pictures. */
+  /** Finishes the drag after the edit for the last point, without waiting for pictures. */
   end(): void {
     this.letGo();
     void this.work.then(() => this.finish());
@@ -101,7 +101,7 @@ export class Drag {
     const { gesture, gesture: { base }, press, uri } = this;
     if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
-    // An object's handle keeps its distance from the pointer. The camera follows the movement.
+    // An object's handle keeps its offset from the pointer; the camera gets the pointer's movement.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
     const about = { textDocument: { uri }, object, handle, from: press, to, along: tools.along,
       step: tools.step };

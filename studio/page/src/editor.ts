@@ -1,4 +1,4 @@
-// The editor: CodeMirror with the features of the server, through the language client.
+// The editor: CodeMirror, with the language server's features through the language client.
 
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
@@ -20,13 +20,13 @@ import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-/** Maximum time to compare two texts, in milliseconds. */
+/** Maximum time for comparing two texts, in milliseconds. */
 const DIFF_TIME = 100;
 
-/** Halves of surrogate pairs, which no file and no message can hold. */
+/** Unpaired surrogates, which UTF-8, and so a file or a message, cannot represent. */
 const HALVES = /\p{Surrogate}/gu;
 
-/** Replaces typed or pasted surrogate halves by the replacement character. */
+/** Replaces typed or pasted unpaired surrogates by U+FFFD, the replacement character. */
 const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   const changes: ChangeSpec[] = [];
   transaction.changes.iterChanges((_fromA, _toA, from, _toB, inserted) => {
@@ -36,7 +36,7 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Replaces several lines itself, as browsers would add styles, which the policy forbids. */
+/** Replaces a selection of several lines; browsers would add styles, which the CSP forbids. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -51,7 +51,7 @@ const replacedLines = EditorView.domEventHandlers({
   },
 });
 
-/** A typed brace replaces the closing brace of its block if only space is between them. */
+/** Lets a typed `}` replace the block's closing `}` if only white space is between them. */
 const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed) => {
   const { doc } = view.state;
   const space = typed === "}" ? /^\s*(?=\})/.exec(doc.sliceString(to, doc.length))?.[0] : undefined;
@@ -65,7 +65,7 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
   return true;
 }));
 
-/** Scrolls changes into view without moving the page, while the focus is elsewhere. */
+/** Scrolls a change into view without moving the page, if the editor is not focused. */
 function withinText(view: EditorView, { head }: SelectionRange): boolean {
   if (view.hasFocus) return false;
   const { scrollDOM, documentPadding } = view;
@@ -75,7 +75,7 @@ function withinText(view: EditorView, { head }: SelectionRange): boolean {
   return true;
 }
 
-/** Returns a text with LF line ends, as the editor has them. */
+/** Returns `text` with LF line ends, which the editor uses. */
 export function withLf(text: string): string {
   return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
 }
@@ -100,7 +100,7 @@ class SceneEditor {
 
   constructor(parent: HTMLElement, nonce: string | undefined) {
     this.client = new SceneClient({
-      // A busy machine may be slow; a lost connection is reported by `connection`.
+      // A busy machine may answer slowly, so wait long; `connection` reports a lost connection.
       timeout: 60_000,
       sanitizeHTML: sanitized,
       unhandledNotification: (_, method, params) => this.onNotification(method, params),
@@ -111,12 +111,12 @@ class SceneEditor {
       parent,
       extensions: [
         nonce === undefined ? [] : EditorView.cspNonce.of(nonce),
-        // Text typed before the scene is there would be lost.
+        // Text typed before the scene has arrived would be lost.
         EditorState.readOnly.of(true),
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
         highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
-        // Tooltips do not cover the tools above the text.
+        // Keep tooltips from covering the tools above the text.
         tooltips({ tooltipSpace: ({ dom }) => ({ left: 0, right: innerWidth, bottom: innerHeight,
           top: dom.getBoundingClientRect().top }) }),
         EditorView.scrollHandler.of(withinText),
@@ -140,7 +140,7 @@ class SceneEditor {
     });
   }
 
-  /** Adds an extension of another part of the page, with precedence over the editor's own. */
+  /** Adds an extension of another module, with precedence over the editor's own extensions. */
   extend(extension: Extension): void {
     this.view.dispatch({ effects: StateEffect.appendConfig.of(Prec.high(extension)) });
   }
@@ -148,12 +148,12 @@ class SceneEditor {
   /** The text, with LF line ends. */
   get text(): string { return this.view.state.doc.toString(); }
 
-  /** Asks the server about the scene, as `Connection.request` does. */
+  /** Sends a request about the scene, as `Connection.request` does. */
   request<Result>(method: string, params: object): Promise<Result> {
     return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** Asks the server about the scene; null if there is no answer, as for a text with errors. */
+  /** Sends a request about the scene. Resolves to null if it fails, as for a text with errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -163,25 +163,25 @@ class SceneEditor {
     }
   }
 
-  /** Asks the server about the scene; null also if the text has changed meanwhile. */
+  /** Sends a request about the scene. Resolves to null also if the text changed meanwhile. */
   async askCurrent<Result>(method: string, params: object): Promise<Result | null> {
     const { doc } = this.view.state;
     const answer = await this.ask<Result>(method, params);
     return this.view.state.doc === doc ? answer : null;
   }
 
-  /** Returns the range of the whole text, or of a part of it. */
+  /** Returns the LSP range of the offsets `from` to `to`, by default of the whole text. */
   range(from = 0, to = this.view.state.doc.length): Range {
     return { start: this.position(from), end: this.position(to) };
   }
 
-  /** Replaces the text and its history, so that Undo cannot remove the new text. */
+  /** Replaces the text and starts a new history, so that Undo cannot remove the new text. */
   open(text: string): void {
     const changes = { from: 0, to: this.view.state.doc.length, insert: text };
     rewrite(this.view, { changes, selection: { anchor: 0 } });
   }
 
-  /** Opens another text at the server, under its own URI. */
+  /** Opens another text at the server under its own URI, without showing it. */
   openAside(uri: string, doc: Text): void {
     const file = { uri, languageId: "pinhole", version: 0, doc, getView: () => null };
     if (connection.state === "open") this.client.didOpen(file);
@@ -189,7 +189,7 @@ class SceneEditor {
 
   closeAside(uri: string): void { if (connection.state === "open") this.client.didClose(uri); }
 
-  /** Opens the scene at the server and makes the editor writable, once. */
+  /** Opens the scene at the server and makes the editor writable. Later calls do nothing. */
   start(): void {
     if (this.uri !== "") return;
     this.uri = "studio:///scene.scn";
@@ -197,8 +197,8 @@ class SceneEditor {
       Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
-  /** Replaces the text by changing only the differences, so that the cursor stays. Pure insertions
-   *  and deletions are moved to the start of their line if possible, so that blocks stay whole. */
+  /** Replaces the text by changing only the differences, so that the cursor stays. Moves a pure
+   *  insertion or deletion to the start of its line if possible, so that it covers whole blocks. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;
@@ -214,7 +214,7 @@ class SceneEditor {
     if (old !== text) this.view.dispatch({ changes, userEvent: "input.replace" });
   }
 
-  /** Connects to a new server, which has no text yet. */
+  /** Connects the client to a new server, which does not have the text yet. */
   connected(): void {
     this.client.workspace.syncFiles();
     this.client.connect(connection);
@@ -231,7 +231,7 @@ class SceneEditor {
     return { line: line.number - 1, character: offset - line.from };
   }
 
-  /** Converts LSP edits of a text, by default of the scene, to changes. */
+  /** Converts LSP edits of `doc`, by default the scene, to editor changes. */
   changes(edits: readonly TextEdit[], doc = this.view.state.doc): ChangeSet {
     const change = ({ range: { start, end }, newText }: TextEdit) =>
       ({ from: this.offset(start, doc), to: this.offset(end, doc), insert: newText });

@@ -1,5 +1,5 @@
-// The scene's file: the host's, which other editors may change at the same time, or a local file
-// that the browser opens and saves.
+// The scene's file: either the host's, which other editors may change at the same time, or a local
+// file that the browser opens and saves.
 
 import { diffArrays } from "diff";
 import { invertedEffects, isolateHistory } from "@codemirror/commands";
@@ -11,58 +11,58 @@ import { Refusal, type HostedFile, type Saved } from "./protocol";
 import { say, unsay } from "./status";
 import { setText, visibleLine } from "./visible";
 
-/** Scene of a page without a file. */
+/** Scene shown by a page without a file. */
 const FIGURE = EXAMPLES.find(([name]) => name === "figure_9_9")?.[1] ?? EMPTY;
-/** File pickers, which some browsers lack. */
+/** File pickers; undefined in browsers without them. */
 const pickers: Partial<Pick<typeof window, `show${"Open" | "Save"}FilePicker`>> = window;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": ".scn" as const } }] };
 
 /** A scene and its file. */
 class Scene {
-  /** Content of the file when it was last seen; null if there was none. */
+  /** Content of the file when it was last read; null if there was no file. */
   seen: string | null = null;
-  /** Text that the page's text is based on: Save asks if the file has another one. */
+  /** Text that the page's text is based on. If the file has a different text, Save asks. */
   base: string | null = null;
-  /** Whether the file has been removed since. */
+  /** Whether the file was removed after it was read. */
   isGone = false;
   handle: FileSystemFileHandle | null = null;
   copy: Scene | null = null; // the copy that has replaced it by Save as
-  /** Whether the host has no file of it yet; Save asks for a name then. */
+  /** Whether the host has no file for this scene yet, so that Save asks for a name. */
   isNew = isServed;
-  /** Initial text, which need not be saved; null for a file. */
+  /** Initial text, which need not be saved; null if the scene comes from a file. */
   untouched: string | null = null;
 
-  /** `of` is the scene that an unsaved copy replaces when it is saved. */
+  /** `of` is the scene that this copy replaces once the copy is saved. */
   constructor(public name = "scene.scn", readonly of: Scene | null = null) {}
 
-  /** The known content of its file, or its initial text. */
+  /** Last known content of the file, or the initial text if there is no file. */
   get held(): string { return this.seen ?? this.untouched ?? ""; }
 }
 
-/** Effect that replaces a scene by another one, and is reverted by Undo. */
+/** Effect that replaces one scene by another. Undo reverts it. */
 const turns = StateEffect.define<{ from: Scene; to: Scene }>();
 
 export const sceneHistory: Extension = invertedEffects.of(({ effects }) => effects
   .filter(it => it.is(turns)).map(({ value: { from, to } }) => turns.of({ from: to, to: from })));
 
-/** Time after which a pending save is reported, in milliseconds. */
+/** Time after which a save still in progress is reported, in milliseconds. */
 const SLOW = 800;
 const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 
-/** Maximum number of changed lines for which unchanged ones are found. */
+/** Maximum number of changed lines; above it, two texts count as wholly different. */
 const MOST_CHANGES = 3000;
 
-/** The host's file and others; a static page has only local files. */
+/** The host's file and local files; a static page has only local ones. */
 class Files {
   onSaved: (text: string) => void = () => {};
   /** Called before another scene replaces the current one. */
   onLeave: () => void = () => {};
-  /** Whether the host has sent its scene. */
+  /** Whether the host has sent its scene to this page. */
   isTold = false;
-  /** Text restored before the host has sent its scene, with its base. */
+  /** Text, with its base, that was restored before the host sent its scene. */
   private early: { base: string | null | undefined; text: string } | null = null;
-  /** The host's scene, and the one that the page shows. */
+  /** The host's scene, and (`at`) the scene that the page shows. */
   private hosts = new Scene();
   at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
@@ -84,7 +84,7 @@ class Files {
     addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
 
-  /** Replaces the scene by another one; Undo brings it back. */
+  /** Replaces the shown scene by `to` with this text; Undo brings the old scene back. */
   private begin(text: string, to = new Scene()): void {
     if (!this.isTold) return say("Studio is not ready yet.", "warning");
     this.onLeave();
@@ -95,7 +95,7 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** Switches to the scene that the text belongs to, after Undo or a new scene. */
+  /** Switches to the scene that the text belongs to after Undo, Redo or a new scene. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
       if (it.is(turns)) for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
@@ -111,10 +111,10 @@ class Files {
       && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
   }
 
-  /** The text with its file's line ends. */
+  /** The text with the line ends of its file. */
   get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
 
-  /** Restores a draft, or the scene of a link, whose base is unknown. */
+  /** Restores a draft, or the scene of a link, for which `base` is undefined. */
   restore(text: string, base?: string | null, name = this.at.name): void {
     if (!this.isTold) {
       this.early = { base, text };
@@ -126,11 +126,11 @@ class Files {
     this.show();
   }
 
-  /** Takes the host's file: at first, after reconnecting, when it is named, when it changes. */
+  /** Handles the host's message about its file: at first, on reconnection, naming, and change. */
   hosted({ name, text, reason, saved }: HostedFile): void {
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
-    // Changes of the host's file are handled when its scene is shown again and saved.
+    // If another scene is shown, changes of the host's file are handled once it is shown again.
     if (this.at !== this.hosts) return this.show();
     if (!this.isTold) {
       const [early, { view: { state: { selection } } }] = [editor.text, editor];
@@ -143,7 +143,7 @@ class Files {
       if (this.early !== null) {
         this.restore(early, this.early.base);
         editor.view.dispatch({ selection });
-        // The link still has the scene, so it need not be saved.
+        // The link still contains the scene, so the scene need not be saved.
         if (!isServed && this.early.base === undefined) this.at.untouched = this.early.text;
       }
       if (saved && text === null) this.tellGone(reason);
@@ -155,14 +155,14 @@ class Files {
     this.show();
   }
 
-  /** Handles a file that another program has changed, removed or restored. */
+  /** Handles a file that another program has changed, removed (`text` is null) or restored. */
   private changed(text: string | null, reason?: string | null): void {
     const { seen, isGone } = this.at;
     this.at.isGone = text === null;
     if (text === null) {
       if (!isGone) this.tellGone(reason);
     } else if (text === seen) {
-      // The file equals the page's base again, so there is nothing to decide.
+      // The file is again what the page is based on, so there is nothing to decide.
       this.conflict.close();
       if (isGone) say(`${this.shownName} is there again.`);
     } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
@@ -175,7 +175,7 @@ class Files {
     this.show();
   }
 
-  /** Warns of carriage returns alone, which the page cannot show and Save replaces. */
+  /** Warns of lone carriage returns, which the page cannot show and Save replaces by LF. */
   private tellLone(): void {
     if (LONE.test(this.at.held)) say(`${this.shownName} has carriage returns `
       + "alone, which end no line in a scene; Save writes line feeds in their place.", "warning");
@@ -187,7 +187,7 @@ class Files {
       : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
 
-  /** Shows whether everything is saved. */
+  /** Shows the file's name, and whether the text is unsaved. */
   show(): void {
     setText(byId("file-name"), this.shownName);
     const { isUnsaved } = this;
@@ -204,7 +204,7 @@ class Files {
     });
   }
 
-  /** Reports why a file was not saved or opened, unless the user cancelled. */
+  /** Runs `act` and reports why it failed, unless the user cancelled it. */
   private async attempt(act: () => Promise<void>): Promise<void> {
     await act().catch(({ name, message }: Error) => {
       if (name !== "AbortError") say(message, "warning");
@@ -225,12 +225,12 @@ class Files {
     try {
       const answer = await connection.request<Saved>("studio/save", about);
       if (answer.ok) this.saved(scene, name, text);
-      // Meanwhile another scene may have replaced this one.
+      // Another scene may have replaced this one during the request.
       else if (this.at !== scene) throw new Refusal(0, `${name} is not saved: it was changed.`);
       else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
     } catch (error) {
-      // A restarted host does not know the files that it made, so Save asks for another name.
+      // A restarted host does not know the files that it made before, so Save asks for a new name.
       scene.isNew ||= scene !== hosts && error instanceof Refusal && error.code !== 0;
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
     } finally { clearTimeout(slow); }
@@ -240,13 +240,13 @@ class Files {
     scene.seen = scene.base = text;
     Object.assign(scene, { name, isGone: false, isNew: false, untouched: null });
     if (scene.of === this.at) this.at = this.at.copy = scene;
-    // A host without a file takes this one.
+    // If the host has no file yet, this scene becomes the host's.
     if (this.hosts.isNew) this.hosts = scene;
     say(`${visibleLine(name)} is saved.`);
     this.onSaved(text);
   }
 
-  /** Asks for the name of a new file and saves it. The dialog stays until that succeeds. */
+  /** Asks for a new file's name and saves it. The dialog stays open until saving succeeds. */
   private askName(scene: Scene): void {
     const dialog = byId<HTMLDialogElement>("name-dialog");
     const field = byId<HTMLInputElement>("name-field");
@@ -277,7 +277,7 @@ class Files {
     scene.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
     if (scene.handle === null) download(scene.name, text, "text/plain");
     else {
-      // The browser writes a copy, which replaces the file on closing.
+      // The browser writes to a copy, which replaces the file when it is closed.
       const file = await scene.handle.createWritable();
       await file.write(text);
       await file.close();
@@ -293,7 +293,7 @@ class Files {
 
   private async take(file: File, handle: FileSystemFileHandle | null): Promise<void> {
     try {
-      // Save would change a text in another encoding.
+      // Refuse invalid UTF-8: Save would change a text in another encoding.
       const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
         .decode(await file.arrayBuffer());
       const scene = new Scene(file.name);
@@ -305,7 +305,7 @@ class Files {
     this.show();
   }
 
-  /** Shows how page and file differ, and asks which to keep. Undo restores the other one. */
+  /** Shows how page and file differ and asks which to keep. Undo brings back the page's text. */
   private ask(theirs: string): void {
     const lines = difference(withLf(theirs), editor.text)
       .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));
@@ -314,7 +314,7 @@ class Files {
     this.conflict.returnValue = "";
     this.conflict.onclose = () => {
       const { returnValue: choice } = this.conflict;
-      // The next save asks again, because the page's base is still the older text.
+      // Nothing was chosen: the base stays the older text, so the next save asks again.
       if (choice === "") return;
       this.at.seen = this.at.base = theirs;
       if (choice === "page") void this.save();
@@ -325,7 +325,7 @@ class Files {
   }
 }
 
-/** Returns a text with a file's line ends; a new line ends as the one before it. */
+/** Returns `text` with the line ends of `file`; a new line gets that of the line before it. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
   const ends = file.match(/\r\n?|\n/g)?.map(end => end === "\r" ? "\n" : end) ?? [];
@@ -342,14 +342,14 @@ export function withEndsOf(file: string, text: string): string {
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
-/** Returns the lines that differ, with up to two lines of context. */
+/** Returns the range of lines from the first to the last difference, and two lines around it. */
 export function difference(one: string, other: string): DifferenceLine[] {
   const lines = compared(one.split("\n"), other.split("\n"));
   const differs = ({ sign }: DifferenceLine) => sign !== " ";
   return lines.slice(Math.max(0, lines.findIndex(differs) - 2), lines.findLastIndex(differs) + 3);
 }
 
-/** Compares the lines of two texts: - for lines of the first only, + of the second only. */
+/** Compares lines. The sign is `-` for lines only in `a`, `+` only in `b`, else a space. */
 function compared(a: string[], b: string[]): DifferenceLine[] {
   const parts = diffArrays(a, b, { maxEditLength: MOST_CHANGES })
     ?? [{ value: a, removed: true, added: false }, { value: b, removed: false, added: true }];

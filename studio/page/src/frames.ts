@@ -1,5 +1,5 @@
-// Pictures of the newest text: a coarse one at once, then finer ones, up to the scene's samples.
-// A newer text supersedes older ones. While it has errors, the last good text has the pictures.
+// Pictures of the newest text: first a coarse one, then finer ones, up to the scene's samples. A
+// newer text supersedes older ones; while it has errors, the last good text keeps its picture.
 
 import type { Text } from "@codemirror/state";
 import { connection } from "./connection";
@@ -7,56 +7,56 @@ import { fromBase64 } from "./dom";
 import { editor } from "./editor";
 import { isSuperseded, type Frame } from "./protocol";
 
-/** Fineness of a picture. */
+/** Quality of a picture, the worst first. */
 export type Fineness = "coarse" | "sharp" | "final";
 
 export interface Shown {
   bitmap: ImageBitmap;
   size: [number, number];
   fineness: Fineness;
-  /** Version of the text that it shows. */
+  /** Version of the text that the picture shows. */
   version: number;
 }
 
 /** Maximum number of pixels of a coarse picture: a sixteenth of 1280 × 720. */
 const COARSE_PIXELS = 320 * 180;
 
-/** Largest canvas that every browser supports. */
+/** Maximum size of a canvas in every browser, in pixels. */
 const MOST = { pixels: 16_000_000, side: 8192 };
-/** Delay of finer pictures during a drag, in milliseconds. */
+/** Time without a change after which a drag requests finer pictures, in milliseconds. */
 const HAND_RESTS = 20;
-/** If a finished picture takes less time, in milliseconds, the sharp one is skipped. */
+/** Time of a final picture in milliseconds, below which the sharp picture is skipped. */
 const SOON = 200;
 
-/** Text of a requested picture, and the number of the request. */
+/** Text that a requested picture shows, and the number of the request. */
 interface Asked { doc: Text | null; generation: number }
 
 class Frames {
   onShow: (shown: Shown) => void = () => {};
-  /** Called with whether the newest text has a picture, or the error that prevented it. */
+  /** Called with `good` or `broken` for the newest text, or with the error of the request. */
   onState: (state: "good" | "broken" | Error) => void = () => {};
   /** Called when a drag ends. */
   onRest: () => void = () => {};
-  /** Current drag. */
+  /** Current drag, or null. */
   dragging: object | null = null;
-  /** Settles when the newest text's coarse picture has arrived, or will not arrive. */
+  /** Settles when the newest text's coarse picture has arrived or failed. */
   coarse: Promise<unknown> = Promise.resolve();
 
-  /** The newest picture with its request; the text may have changed since. */
+  /** Picture shown, with its request; the text may have changed since. */
   shown: Shown & Asked | null = null;
 
   private generation = 0;
-  /** Whether the newest answered text has errors. */
+  /** Whether the newest text that was answered has errors. */
   private isBroken = false;
   private lastTook = Infinity;
 
-  /** Ends a drag, unless another one has begun. */
+  /** Ends a drag, unless another drag has begun. */
   released(dragged: object): void {
     if (this.dragging === dragged) this.dragging = null;
     this.onRest();
   }
 
-  /** Requests pictures, as the text or the server has changed. */
+  /** Requests new pictures after a change of the text or of the server. */
   changed(): void {
     if (editor.uri === "" || connection.state !== "open") return;
     const answer = this.ask({ pixels: COARSE_PIXELS, samples: 1 });
@@ -82,7 +82,7 @@ class Frames {
     return editor.request<Frame | null>("pinhole/frame", { ...MOST, ...how });
   }
 
-  /** Shows a requested picture, and returns it if its text is still the newest. */
+  /** Shows a requested picture when it arrives; returns it if its text is still the newest. */
   private async present(asked: Asked, fineness: Fineness,
     answer: Promise<Frame | null>): Promise<Frame | null> {
     const isNewest = () => asked.generation === this.generation;
@@ -95,7 +95,7 @@ class Frames {
         const before = { doc: null, generation: asked.generation - 1 };
         const isDone = this.shown?.fineness === "final"
           && this.shown.generation === before.generation;
-        // The last good picture is still finished. Further errors do not restart it.
+        // The picture of the last good text is still finished; further errors do not restart it.
         if (isFirst && !isDone) void this.present(before, "final", this.ask({ last: true }));
         return null;
       }
@@ -119,7 +119,7 @@ class Frames {
   }
 }
 
-/** Decodes a PNG. `ImageDecoder` is some milliseconds faster than `createImageBitmap`. */
+/** Decodes a PNG; `ImageDecoder` is a few milliseconds faster than `createImageBitmap`. */
 async function decoded(data: Uint8Array<ArrayBuffer>): Promise<ImageBitmap> {
   const how = { type: "image/png", colorSpaceConversion: "none" } as const;
   if (!("ImageDecoder" in window)) return createImageBitmap(new Blob([data], how), how);

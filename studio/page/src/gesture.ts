@@ -1,19 +1,19 @@
-// A gesture: many small changes of the text, by a drag, a slider or a colour picker, that one Undo
-// reverts. The changed numbers are highlighted.
+// A gesture: many small changes of the text (by a drag, a slider or a colour picker) that a single
+// Undo reverts. The changed numbers are highlighted.
 
 import { history, historyField, isolateHistory } from "@codemirror/commands";
 import { Annotation, ChangeSet, Compartment, EditorState, StateField, type ChangeSpec, type
   Extension, type Range, type Text, type TransactionSpec } from "@codemirror/state";
 import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 
-/** Marks a change that belongs to a gesture: its first one, or one that continues it. */
+/** Marks a change of a gesture as the gesture's `first`, or as one of the `next`. */
 const step = Annotation.define<"first" | "next">();
 
-/** Pause in typing after which a new undo step begins, in milliseconds. */
+/** Pause in typing that begins a new undo step, in milliseconds. */
 const TYPING_PAUSE = 500;
 const touched = Decoration.mark({ class: "touched" });
 
-/** Highlights the last change of a gesture until another change of the text. */
+/** Highlights what a gesture changed last, until the text changes again. */
 const touchedField = StateField.define<DecorationSet>({
   create: () => Decoration.none,
   update(marks, transaction) {
@@ -28,14 +28,14 @@ const touchedField = StateField.define<DecorationSet>({
   provide: field => EditorView.decorations.from(field),
 });
 
-/** Compartment of the history, so that it can be restored. */
+/** Compartment of the history, by which `rewrite` replaces the history. */
 const kept = new Compartment();
 
 function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // Joins all changes except isolated ones, which have the time 0: longer ago than this.
+      // Join all changes except isolated ones: their time is 0, longer ago than this delay.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -48,20 +48,20 @@ function grouped(past: Extension = []): Extension {
   ];
 }
 
-/** History of changes, which groups typing by pauses and a gesture as a whole. */
+/** Returns a history that groups typing by pauses and makes each gesture one undo step. */
 export function gestureHistory(): Extension { return [kept.of(grouped()), touchedField]; }
 
-/** Changes the text and sets its history to a past one, or to a new one. */
+/** Changes the text and replaces its history by `past`, or by an empty one. */
 export function rewrite(view: EditorView, change: TransactionSpec, past: Extension = []): void {
   view.dispatch({ effects: kept.reconfigure([]) });
   view.dispatch(change);
   view.dispatch({ effects: kept.reconfigure(grouped(past)) });
 }
 
-/** Depends on the text at the start and the last change, but not on the changes in between. After
- *  a foreign change of the text, a gesture changes nothing more. */
+/** The result depends on the text at the start and on the last change, not on those in between.
+ *  After another change of the text, a gesture changes nothing more. */
 export class Gesture {
-  /** The text at the start, the current text, and the changes between them. */
+  /** Text at the start, text now, and (`written`) the changes from one to the other. */
   readonly base: Text;
   private current: Text;
   private written: ChangeSet;
@@ -75,10 +75,10 @@ export class Gesture {
     this.written = ChangeSet.empty(this.base.length);
   }
 
-  /** Whether nothing else has changed the text. */
+  /** Whether the text has changed only by this gesture. */
   get isAlone(): boolean { return this.view.state.doc === this.current; }
 
-  /** Replaces the last change by another change of the original text, and scrolls to it. */
+  /** Replaces the last change by another change of the initial text, and scrolls to it. */
   write(spec: ChangeSpec): void {
     if (this.over || !this.isAlone) return;
     const { base, current, view, written } = this;
@@ -94,7 +94,7 @@ export class Gesture {
     this.current = view.state.doc;
   }
 
-  /** Ends the gesture. One that has restored the original text leaves no history. */
+  /** Ends the gesture. If the text is the initial one again, the history forgets the gesture. */
   end(): void {
     if (this.over) return;
     if (this.isAlone && this.current.eq(this.base)) return this.cancel();
@@ -102,7 +102,7 @@ export class Gesture {
     if (this.current !== this.base) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
-  /** Reverts the gesture, without a trace in Undo or Redo. */
+  /** Reverts the gesture without a trace in Undo or Redo; after foreign changes, only ends it. */
   cancel(): void {
     if (this.over) return;
     if (!this.isAlone) return this.end();

@@ -1,4 +1,4 @@
-// The object under the pointer is named in the footer and outlined.
+// Names the object under the pointer in the footer, and outlines it.
 
 import { newestOf } from "./dom";
 import { editor } from "./editor";
@@ -7,7 +7,7 @@ import { picture } from "./picture";
 import type { Pick, Point, Samples } from "./protocol";
 import { point as tell } from "./status";
 
-/** Position of the pointer on the stage. */
+/** Position of the pointer on the stage, in screen pixels; null if it is elsewhere. */
 let place: Point | null = null;
 
 picture.stage.addEventListener("pointermove", event => {
@@ -20,7 +20,7 @@ picture.stage.addEventListener("pointerleave", () => {
   void hover(null);
 });
 
-/** Updates what is under the pointer, as the picture may have changed. */
+/** Updates what is under the pointer, because the picture may have changed. */
 export function hoverAgain(): void { if (place !== null) void hover(picture.toPicture(place)); }
 
 const hover = newestOf(async (at: Point | null) => {

@@ -1,4 +1,4 @@
-// Keys for the picture, which work unless the focus is in a text field.
+// Keyboard control of the picture; it works unless the focus is in a text field.
 
 import { byId } from "./dom";
 import { Drag } from "./drag";
@@ -9,26 +9,26 @@ import { selection } from "./selection";
 import { say } from "./status";
 import { tools, type Tool } from "./tools";
 
-/** Step of an arrow key, in pixels of the picture; with the control key, a tenth of it. */
+/** Step of an arrow key, in pixels of the picture. The Control key divides it by 10. */
 const KEY_STEP = 10;
-/** Pause after which an arrow key or a turn of the wheel begins a new drag, in ms. */
+/** Pause that ends a drag by arrow keys or the wheel, in milliseconds. */
 const KEY_PAUSE = 500;
 
 const ARROWS: Record<string, Point> =
   { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** Elements with their own use of all keys, or of the arrow keys, Space and Escape. */
+/** Elements that use all keys (`TEXT`), or the arrow keys, Space and Escape (`CONTROL`). */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
 const SAVE = ["Control+s", "Control+Shift+s"]; // work there, too
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
-/** Returns a key in the notation of `data-key`. */
+/** Returns the name of a pressed key in the notation of `data-key`. */
 function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   if (!ctrlKey && !metaKey) return key;
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the control of a key; that of the current constraint releases it. */
+/** Returns the control of a key, or undefined. The key of the active constraint releases it. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
@@ -48,7 +48,7 @@ picture.onDolly = turned => {
   rest();
 };
 picture.stage.addEventListener("focusout", event => {
-  // Moving the focus between handles does not end a drag.
+  // Moving the focus from one handle to another does not end a drag.
   if (event.relatedTarget instanceof Node && picture.stage.contains(event.relatedTarget)) return;
   endKeys();
   freeSpace();
@@ -78,7 +78,7 @@ function down(event: KeyboardEvent): void {
     drag ??= begin(on);
     drag?.by([arrow[0] * step, arrow[1] * step]);
   } else if (whole === "Escape") {
-    // Also a drag that is released and waits for the server.
+    // This also cancels a released drag that still waits for the server.
     if (frames.dragging instanceof Drag) frames.dragging.cancel();
     else selection.select(null);
     drag = null;
@@ -99,7 +99,7 @@ function up(event: KeyboardEvent): void {
   if (event.key in ARROWS) rest();
 }
 
-/** Ends the drag after a pause, so that repeated keys are one drag. */
+/** Ends the drag after a pause, so that repeated keys belong to one drag. */
 function rest(): void {
   clearTimeout(pause);
   pause = setTimeout(endKeys, KEY_PAUSE);
@@ -112,12 +112,12 @@ function freeSpace(): void {
 
 function ofCamera(handle: Tool): Drag {
   const { size: [width, height] } = picture;
-  // A roll turns about the centre, so it is held beside the centre.
+  // A roll turns about the centre, so its handle has to be beside the centre.
   const at: Point = [handle === "roll" ? 0.75 * width : width / 2, height / 2];
   return new Drag(at, () => ({ object: null, handle, at }));
 }
 
-/** Begins a drag of the focused handle, or else of the selected object or the camera. */
+/** Begins a drag of the focused handle, or else of the selected object, or of the camera. */
 function begin(focused: Element): Drag | null {
   const { tool } = tools;
   const isHandle = focused.closest(".handle") !== null;

@@ -1,4 +1,4 @@
-// The layout: the divider between text and picture, the zoom buttons, the menus, and the colours.
+// The layout: the divider between text and picture, the phone's tabs, the menus, and the theme.
 
 import { Compartment } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** Limits of the text's share of the width, or of the height on narrow screens, in per cent. */
+/** Minimum and maximum share of the text in the width (on narrow screens, height), in per cent. */
 const LEAST = 20;
 const MOST = 80;
 
@@ -29,7 +29,7 @@ divider.addEventListener("pointerdown", event => {
   divider.setPointerCapture(event.pointerId);
   event.preventDefault();
   const { left, top, width, height } = panes.getBoundingClientRect();
-  // On narrow screens the picture is above the text.
+  // On narrow screens the picture is above the text, so the text's share counts from below.
   const move = ({ clientX, clientY }: PointerEvent) =>
     share(100 * (isNarrow.matches ? 1 - (clientY - top) / height : (clientX - left) / width));
   const before = Number(divider.getAttribute("aria-valuenow"));
@@ -42,7 +42,7 @@ divider.addEventListener("keydown", event => {
   share(Number(divider.getAttribute("aria-valuenow")) + 2 * direction);
 });
 
-// A phone shows the text or the picture.
+// On a phone, tabs choose whether the text or the picture is shown.
 const tabs = document.querySelectorAll<HTMLButtonElement>("#tabs button");
 const showTab = (tab: string) => {
   panes.dataset["tab"] = tab;
@@ -58,7 +58,7 @@ byId("zoom-actual").addEventListener("click", () => picture.actualSize());
 for (const id of ["keys", "language"]) byId(id).addEventListener("click", () =>
   byId<HTMLDialogElement>(`${id}-dialog`).showModal());
 
-// A menu closes by a click elsewhere, by Escape, and after a choice.
+// A menu closes on a click elsewhere, on Escape, and after a choice.
 const menus = [...document.querySelectorAll<HTMLDetailsElement>("details.menu")];
 const closeMenus = (except?: EventTarget | null) => {
   for (const menu of menus) if (!menu.contains(except as Node | null)) menu.open = false;
@@ -75,7 +75,7 @@ for (const menu of menus) {
   });
 }
 
-// The theme follows the system until one is chosen. Its colours are variables of page.css.
+// The theme follows the system until the user chooses one. Its colours are variables of page.css.
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
 const editorTheme = new Compartment();
 const colors = () => remembered("theme") ?? (systemIsDark.matches ? "dark" : "light");

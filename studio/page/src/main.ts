@@ -1,4 +1,4 @@
-// Pinhole Studio's page: a text and its picture. This module connects the parts.
+// The page of Pinhole Studio: a text and its picture. This module connects the parts.
 
 import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
@@ -72,14 +72,14 @@ function changed(): void {
   void refreshOutlines();
   files.show();
   draftChanged();
-  // These are not needed during a drag.
+  // Hints, sliders and objects are not needed during a drag.
   if (frames.dragging === null) rested();
   status.changed();
 }
 
 let resting: ReturnType<typeof setTimeout>;
 
-/** Requests hints, sliders and objects after a delay. */
+/** Requests hints, sliders and objects after a delay without changes. */
 function rested(): void {
   clearTimeout(resting);
   resting = setTimeout(() => {
@@ -117,13 +117,13 @@ editor.onNotification = (method, params) => {
   if (method === "studio/file") void hosted(params);
 };
 
-/** The host's file received during a drag, until the drag ends. */
+/** File that the host sent during a drag; it is handled when the drag ends. */
 let waiting: HostedFile | null = null;
 
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
   const first = !files.isTold;
-  // A number that is being played would delay the file for ever.
+  // A number that is playing counts as a drag and would delay the file for ever.
   stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;
@@ -143,7 +143,7 @@ addEventListener("hashchange", async () => {
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
-// The editor only has the visible lines in the page.
+// The editor creates only the visible lines, so printing needs a copy of the whole text.
 addEventListener("beforeprint", () => {
   picture.fit();
   setText(byId("print-text"), `${files.at.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);

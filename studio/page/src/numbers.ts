@@ -1,4 +1,4 @@
-// Changing numbers in the text by a drag with the Alt key, and by a slider below them.
+// Changing a number in the text by a drag with the Alt key held, or by a slider below the number.
 
 import { syntaxTree } from "@codemirror/language";
 import { StateEffect, StateField, type Extension } from "@codemirror/state";
@@ -10,13 +10,13 @@ import { Gesture } from "./gesture";
 import { NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
-/** Number literal with its sign, and the end of its unit. */
+/** Number literal from its sign to `to`; its unit, if any, reaches to `end`. */
 interface Literal { from: number; to: number; end: number; value: number }
 
-/** Screen pixels of a drag per step. */
+/** Screen pixels of a horizontal drag per step of the number. */
 const DRAG_PIXELS = 4;
 
-/** Minus sign of a negative number, as opposed to a subtraction. */
+/** Matches text that ends with a sign of a number, as opposed to a subtraction. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
 export function literalAt(at: number): Literal | null {
@@ -34,32 +34,32 @@ export function literalAt(at: number): Literal | null {
     end: node.to, value };
 }
 
-/** Returns the limits of the number at an offset, or null if there are none. */
+/** Returns the limits of the number at an offset, or null if it has none. */
 function limitsOf(at: number): Promise<Limits | null> {
   return editor.ask("pinhole/limits", { position: editor.position(at) });
 }
 
-/** Changes one number by a gesture, within limits from the server. */
+/** Changes a number within limits from the server, as one gesture. */
 export class Turn {
   readonly gesture = new Gesture(editor.view);
 
   constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
 
-  /** Sets the value, which may depend on the step. */
+  /** Sets the number, rounded and clamped to its limits; `value` gets the step of the number. */
   async set(value: (step: number) => number): Promise<void> {
     const { from, to } = this.literal;
     const limits = await this.limits;
     if (limits === null) return;
     const { least, most, step, decimals } = limits;
     const right = Math.min(most ?? Infinity, Math.max(least ?? -Infinity, value(step)));
-    // Adding 0 turns −0 into 0.
+    // Adding 0 turns −0 into 0, which is printed without a sign.
     this.gesture.write({ from, to, insert: String(Number(right.toFixed(decimals)) + 0) });
   }
 
   end(): void { void this.limits.then(() => this.gesture.end()); }
 }
 
-/** Slider of a number, which may be gone. Its changes until release are one `Turn`. */
+/** Slider of a number, which may vanish from the text. Changes until release are one `Turn`. */
 export class Dial {
   readonly range = create("input");
   turn: Turn | null = null;
@@ -68,7 +68,7 @@ export class Dial {
   constructor(readonly literal: () => Literal | null) {
     const { range } = this;
     range.type = "range";
-    // After Escape, the browser continues its drag until the pointer is released.
+    // After Escape, the browser goes on dragging until the pointer is released; ignore that.
     let isOff = false;
     range.addEventListener("input", () => isOff ? this.show() : void this.set(Number(range.value)));
     range.addEventListener("change", () => this.end());
@@ -95,7 +95,7 @@ export class Dial {
     frames.released(this);
   }
 
-  /** Shows the number within its limits, unless it is being changed. */
+  /** Shows the number unless it is being changed. Returns its literal, or null if it is gone. */
   show(): Literal | null {
     const found = this.literal();
     if (found === null || this.turn !== null || this.limits === null) return found;
@@ -107,14 +107,14 @@ export class Dial {
 
 const openSlider = StateEffect.define<number | null>();
 
-/** Start of the number whose slider is open. */
+/** Offset of the number whose slider is open; null if none is. */
 const sliderField = StateField.define<number | null>({
   create: () => null,
   update(open, transaction) {
     const { changes, docChanged, effects, selection } = transaction;
     const next = effects.findLast(it => it.is(openSlider));
     if (next !== undefined) return next.value;
-    // Typing closes the slider; its own changes do not.
+    // Typing closes the slider; the slider's own changes do not.
     const isTyped = docChanged && transaction.isUserEvent("input");
     return open === null || isTyped || selection !== undefined ? null : changes.mapPos(open, -1);
   },
@@ -124,10 +124,10 @@ const sliderField = StateField.define<number | null>({
 
 const show = (pos: number | null) => editor.view.dispatch({ effects: openSlider.of(pos) });
 
-/** Limits of the number whose slider was opened. */
+/** Limits of the number whose slider was opened last. */
 let opened: Limits | null = null;
 
-/** Opens the slider of a number if the cursor is still there when its limits are known. */
+/** Requests limits and opens the slider of the number at `at`, if the cursor is still there. */
 async function open(at: number): Promise<void> {
   opened = await limitsOf(at + 1);
   if (opened !== null && atCursor()?.from === at) show(at);
@@ -162,7 +162,7 @@ function createSlider(): TooltipView {
   } };
 }
 
-/** Changes a number by the horizontal movement of the pointer until its release. */
+/** Changes `literal` by the pointer's horizontal movement until release. Returns false for null. */
 function scrub(event: PointerEvent, literal: Literal | null): boolean {
   if (literal === null) return false;
   event.preventDefault();
@@ -178,7 +178,7 @@ function scrub(event: PointerEvent, literal: Literal | null): boolean {
   return true;
 }
 
-/** Changes a number by a step. Returns whether there is a number. */
+/** Changes `literal` by one step in a direction, ±1. Returns false if `literal` is null. */
 function turnOnce(literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
   const turn = new Turn(literal);
@@ -197,7 +197,7 @@ export const numberControls: Extension = [
       const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
       return scrub(event, at === null ? null : literalAt(at));
     },
-    // With the Alt key, the editor would begin a selection.
+    // Stop the editor from starting a selection when the Alt key is held.
     mousedown: event => event.altKey,
     click({ altKey }, { state }) {
       const literal = state.selection.main.empty && !altKey ? atCursor() : null;
@@ -206,7 +206,7 @@ export const numberControls: Extension = [
     },
   }),
   keymap.of([
-    // Away from a number, these keys keep their usual function.
+    // If there is no number at the cursor, these keys keep their usual function.
     { key: "Alt-ArrowUp", run: () => turnOnce(atCursor(), 1) },
     { key: "Alt-ArrowDown", run: () => turnOnce(atCursor(), -1) },
     { key: "Alt-Enter", run: ({ dom }) => {

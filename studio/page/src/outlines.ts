@@ -1,4 +1,4 @@
-// Requests the overlays of the newest text, and only those that are shown.
+// Requests the overlays (outlines, handles and layers) that are shown, for the newest text.
 
 import { connection } from "./connection";
 import { byId, newestOf } from "./dom";
@@ -10,21 +10,21 @@ import type { ListedObject, Overlays } from "./protocol";
 import { selection } from "./selection";
 import { setText } from "./visible";
 
-/** Maximum number of objects in the description for screen readers. */
+/** Maximum number of objects that the description for screen readers names. */
 const DESCRIBED = 6;
 
 let described = "";
 
-/** Describes the visible objects and their places; changes are announced. */
+/** Describes the visible objects and their places for screen readers; announces changes. */
 function describe(objects: readonly ListedObject[]): void {
-  // Objects in the same place are named together.
+  // Objects with the same description of place are listed together.
   const there: Record<string, string[]> = {};
   for (const { label, place } of objects.slice(0, DESCRIBED)) {
     (there[place ?? ""] ??= []).push(label);
   }
   const places = Object.entries(there)
     .map(([place, names]) => names.join(", ") + (place && `: ${place}`));
-  // The list has at most a thousand objects.
+  // The server lists at most 1000 objects, so 1000 may mean more.
   const more = objects.length < 1000 ? objects.length - DESCRIBED : "many";
   if (objects.length > DESCRIBED) places.push(`${more} more`);
   const text = places.join("; ") || "A scene without objects";
@@ -34,7 +34,7 @@ function describe(objects: readonly ListedObject[]): void {
   picture.canvas.setAttribute("aria-label", text);
 }
 
-/** Lists the objects of a text at rest, with their names and places. */
+/** Lists the objects of the current text, with names and places, unless a drag is under way. */
 export async function listObjects(): Promise<void> {
   if (frames.dragging !== null || connection.state !== "open") return;
   const about = { object: selection.index };
@@ -44,7 +44,7 @@ export async function listObjects(): Promise<void> {
   describe(objects);
 }
 
-/** Requests the shown overlays, one request at a time, after the coarse picture. */
+/** Requests the shown overlays, one request at a time, after the coarse picture has arrived. */
 export const refreshOutlines = newestOf<void>(async () => {
   for (let its; its !== frames.coarse; await its) its = frames.coarse;
   const shown = [selection.index, overlays.hovered].filter(it => it !== null);
@@ -53,7 +53,7 @@ export const refreshOutlines = newestOf<void>(async () => {
   const { doc } = editor.view.state;
   const about = { object: selection.index, only: overlays.needsAll ? null : shown };
   const answer = await editor.ask<Overlays>("pinhole/overlays", about);
-  // A text with errors has the last good picture, in which nothing can be dragged.
+  // If the text has errors, the picture shows the last good text; nothing can be dragged.
   overlays.isTrue = answer !== null;
   if (answer !== null && editor.view.state.doc === doc) overlays.data = answer;
   overlays.draw();

@@ -5,24 +5,24 @@ import { picture } from "./picture";
 import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
 
-/** Optional layers, by the names of their checkboxes in the menu. */
+/** Optional layers, named as their checkboxes in the menu. */
 export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "near" | "samples";
 
 const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 
-/** Zooms from which the pixel grid and the samples of a pixel are drawn. */
+/** Minimum zooms at which the pixel grid, and the samples of a pixel, are drawn. */
 const GRID_ZOOM = 6;
 const SAMPLES_ZOOM = 4;
 /** Distance of arrows from the stage's border, in screen pixels. */
 const EDGE = 14;
 
 class OverlayLayer {
-  /** The newest overlays, or those of the last good text. */
+  /** Overlays of the newest text, or of the last good text. */
   data: Overlays | null = null;
-  /** Whether the overlays are those of the current text. */
+  /** Whether `data` belongs to the current text. */
   isTrue = true;
   hovered: number | null = null;
-  /** Called when overlays are needed that may not be known yet. */
+  /** Called when more overlays are to be drawn, which `data` may lack. */
   onNeed: () => void = () => {};
   selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
@@ -41,10 +41,10 @@ class OverlayLayer {
 
   isOn(layer: Layer): boolean { return boxes.some(it => it.name === layer && it.checked); }
 
-  /** Whether a layer is on that needs data from the server. */
+  /** Whether an enabled layer needs data from the server. */
   get needsAny(): boolean { return this.needsAll || this.isOn("horizon") || this.isOn("near"); }
 
-  /** Whether a layer is on that needs all objects. */
+  /** Whether an enabled layer needs data about all objects. */
   get needsAll(): boolean { return this.isOn("outlines") || this.isOn("vanishing"); }
 
   hover(hovered: number | null): void {
@@ -85,12 +85,12 @@ class OverlayLayer {
     if (this.isOn("samples")) this.drawSamples();
   }
 
-  /** Marks a point with its coordinates, or by an arrow at the border if it is outside. */
+  /** Marks a point and its coordinates; if it is outside, an arrow at the border points to it. */
   private mark(point: Point, name: string, text: string): void {
     const [x, y] = picture.toScreen(point);
     const { clientWidth: width, clientHeight: height } = picture.stage;
     const [middleX, middleY] = [width / 2, height / 2];
-    // Distance from the centre, where 1 is the border.
+    // Distance from the centre, relative to the border's: above 1, the point is outside.
     const out = Math.max(Math.abs(x - middleX) / (middleX - EDGE),
       Math.abs(y - middleY) / (middleY - EDGE));
     const part = Math.max(1, out);
@@ -106,7 +106,7 @@ class OverlayLayer {
     this.svg.append(...twice(shape, name), label);
   }
 
-  /** Yields the reasons why layers that are on cannot be seen. */
+  /** Yields messages that explain why enabled layers are not visible. */
   private *unseen(data: Overlays): Generator<string> {
     const { zoom } = picture;
     if (this.isOn("grid") && zoom < GRID_ZOOM) yield "The pixel grid shows when you zoom in.";
@@ -134,7 +134,7 @@ class OverlayLayer {
   }
 }
 
-/** Returns a light line over a dark one, which is visible on any background. */
+/** Returns a light line over a dark one, so that one is visible on any background. */
 function twice(shape: Record<string, string>, name: string): SVGElement[] {
   return ["under ", ""].map(it => createSvg("path", { ...shape, class: `line ${it}${name}` }));
 }

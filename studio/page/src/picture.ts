@@ -1,19 +1,19 @@
-// The picture: a canvas in a stage, with a view that zooms down to single pixels.
+// The picture: a canvas in the stage, with a view that can be panned, and zoomed up to pixels.
 
 import { byId } from "./dom";
 import type { Shown } from "./frames";
 import type { Point } from "./protocol";
 
-/** Zoom from which pixels are shown as squares, in screen pixels per pixel. */
+/** Minimum zoom, in screen pixels per pixel, at which pixels are drawn as sharp squares. */
 const SQUARES = 3;
 const MOST_ZOOM = 64;
-/** Space between the picture and the stage's border, in screen pixels. */
+/** Margin between the whole picture and the stage's border, in screen pixels. */
 const MARGIN = 12;
 
 class Picture {
-  /** Called when the view or the size of the picture has changed. */
+  /** Called when the view or the picture's size has changed. */
   onView: () => void = () => {};
-  /** Called when the wheel moves the camera; 1 is a turn of 300 pixels. */
+  /** Called when the wheel moves the camera; `turned` is 1 for 300 pixels of scrolling. */
   onDolly: (turned: number) => void = () => {};
   size: [number, number] = [1280, 720];
   zoom = 1;
@@ -31,7 +31,7 @@ class Picture {
     stage.addEventListener("wheel", event => {
       event.preventDefault();
       if (event.buttons !== 0) return; // a drag is under way
-      // With the Shift key, browsers scroll horizontally.
+      // With the Shift key, browsers report the movement as `deltaX`.
       const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
       if (event.shiftKey) this.onDolly(turned);
       else this.zoomBy(2 ** -turned, this.local(event));
@@ -60,23 +60,23 @@ class Picture {
   /** Whether no picture has been shown yet. */
   get isEmpty(): boolean { return this.canvas.dataset["fineness"] === undefined; }
 
-  /** Converts a point of the picture to one of the stage, in screen pixels. */
+  /** Converts a point of the picture to screen pixels from the stage's top left corner. */
   toScreen([x, y]: Point): Point { return [this.left + x * this.zoom, this.top + y * this.zoom]; }
 
   toPicture([x, y]: Point): Point {
     return [(x - this.left) / this.zoom, (y - this.top) / this.zoom];
   }
 
-  /** Returns the point of the stage where an event is. */
+  /** Returns an event's position in screen pixels from the stage's top left corner. */
   local(event: { clientX: number; clientY: number }): Point {
     const { left, top } = this.stage.getBoundingClientRect();
     return [event.clientX - left, event.clientY - top];
   }
 
-  /** The SVG matrix from the picture to the stage. */
+  /** SVG transform from the picture's pixels to the stage. */
   get matrix(): string { return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`; }
 
-  /** Shows the whole picture, as large as the stage allows. */
+  /** Zooms so that the whole picture fits the stage, as large as possible. */
   fit(): void {
     const { clientWidth, clientHeight } = this.stage;
     const [width, height] = this.size;
@@ -85,7 +85,7 @@ class Picture {
     this.fitted = true;
   }
 
-  /** Shows one pixel of the picture per pixel of the screen. */
+  /** Zooms so that one pixel of the picture is one device pixel of the screen. */
   actualSize(): void { this.center(1 / devicePixelRatio); }
 
   zoomBy(factor: number, about?: Point): void {
@@ -103,7 +103,7 @@ class Picture {
     this.place();
   }
 
-  /** Centres the picture in the stage, with a zoom. */
+  /** Centres the picture in the stage at a zoom, in screen pixels per pixel. */
   private center(zoom: number): void {
     const [width, height] = this.size;
     this.zoom = zoom;

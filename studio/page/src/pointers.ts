@@ -1,5 +1,5 @@
-// Mouse, pen and touch on the picture: a press begins a drag, two fingers zoom, and with the space
-// bar a drag pans the picture.
+// Mouse, pen and touch on the picture: a press begins a drag, two fingers pan and zoom, and a drag
+// with the space bar held pans.
 
 import { followPointer } from "./dom";
 import { Drag, type Held } from "./drag";
@@ -10,15 +10,15 @@ import type { Overlays, Pick, Point } from "./protocol";
 import { selection } from "./selection";
 import { tools, type Tool } from "./tools";
 
-/** Movement of a pointer from which a press is a drag, in screen pixels. */
+/** Maximum movement of a click, in screen pixels; a larger movement is a drag. */
 const CLICK = 4;
 
-/** Tools of the middle and the right button. */
+/** Tools of the middle (1) and the right (2) mouse button. */
 const BUTTONS: Record<number, Tool> = { 1: "pan", 2: "orbit" };
 
-/** Cancels the drag of a button or a finger. */
+/** Cancels the current drag by a mouse button or a finger. */
 let giveUp = (): void => {};
-/** Position of each pressed pointer. */
+/** Last position of each pressed pointer, by its id. */
 const places = new Map<number, Point>();
 const { stage } = picture;
 
@@ -34,7 +34,7 @@ function press(event: PointerEvent): void {
   stage.setPointerCapture(event.pointerId);
   stage.focus({ preventScroll: true }); // touch would leave the focus in the text
   endKeys();
-  // A second finger zooms, and cancels the drag of the first one.
+  // A second finger cancels the drag of the first; both together zoom.
   if (places.size > 1) return giveUp();
   if (space) return;
   tools.held = event;
@@ -53,7 +53,7 @@ function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | nu
   const { zoom } = picture;
   const move = (next: PointerEvent) => {
     tools.held = next;
-    // The pointer's movement counts, even if the page has moved the picture meanwhile.
+    // Use the pointer's screen movement, because the page may have moved the picture meanwhile.
     const [dx, dy] = [next.clientX - event.clientX, next.clientY - event.clientY];
     moved ||= Math.hypot(dx, dy) > CLICK;
     if (moved) drag.to([start[0] + dx / zoom, start[1] + dy / zoom]);
@@ -61,12 +61,12 @@ function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | nu
   giveUp = followPointer(event, move, () => drag.end(), () => drag.cancel());
 }
 
-/** Selects the object at a point, and holds it by its centre. */
+/** Selects the object at `point` and returns its centre handle, or null without an object. */
 async function grab(point: Point): Promise<Held | null> {
   const { choices } = selection;
   const pick = await editor.ask<Pick>("pinhole/pick", { point });
   const object = pick?.object ?? null;
-  // A selection made before the answer is kept.
+  // If the user selected something before the answer came, that selection is kept.
   if (choices === selection.choices) selection.select(object);
   if (object === null) return null;
   const only = [object.index];
@@ -77,7 +77,7 @@ async function grab(point: Point): Promise<Held | null> {
   return { object: object.index, handle: middle.handle, at: middle.at };
 }
 
-/** Pans and zooms the picture. */
+/** Pans the picture with one pressed pointer, or pans and zooms it with two. */
 function shift(event: PointerEvent): void {
   const before = places.get(event.pointerId);
   if (before === undefined) return;

@@ -1,11 +1,11 @@
-// The answers of `pinhole/…` and `studio/…`, as docs/protocol.md describes them.
+// The results of the methods `pinhole/…` and `studio/…`; docs/protocol.md describes them.
 
 import type { Range, TextEdit } from "vscode-languageserver-protocol";
 
-/** A point of the picture, in pixels of the scene, from the top left corner. */
+/** A point of the picture, in its pixels, from the top left corner. */
 export type Point = readonly [number, number];
 
-/** A line through points. */
+/** A line through points in order. */
 export type Polyline = readonly Point[];
 
 export interface Frame { version: number; width: number; size: [number, number]; png: string }
@@ -18,7 +18,7 @@ export interface SceneObject {
 
 export interface Handle { handle: string; at: Point | null; label: string }
 export interface DrawnObject extends SceneObject { outline: Polyline[]; handles: Handle[] }
-/** An object and its place in the picture, in words. */
+/** An object and a description of its place in the picture; null for some checkerboards. */
 export interface ListedObject extends SceneObject { place: string | null }
 
 export interface Overlays {
@@ -31,55 +31,55 @@ export interface Overlays {
 
 export interface Pick {
   object: SceneObject | null;
-  /** The pixel and what it shows, in words; null outside the picture. */
+  /** The pixel and a description of what it shows; both null outside the picture. */
   pixel: Point | null; text: string | null;
 }
 
-/** Constraint of a drag: an axis of the world, or the plane of equal y. */
+/** Constraint of a drag: one axis of the world, or (`floor`) a plane of constant y. */
 export type Along = "x" | "y" | "z" | "floor";
 
 export interface Dragged {
   edits: TextEdit[];
   values: string[];
-  /** Other fields that change, such as `camera.lookat`. */
+  /** Names of other fields that change as a consequence, such as `camera.lookat`. */
   also?: string[];
 }
 
-/** Limits of a number, and the `ends` of its slider. */
+/** Range, step and decimals of a number; `ends` are the ends of its slider. */
 export interface Limits {
   least: number | null; most: number | null; step: number; decimals: number; ends: [number, number];
 }
-/** A `let`, and the limits of its slider if it is a number or an angle; `note` says why the comment
- *  behind it is not a range. */
+/** A `let` definition. `limits` is null unless it is a number or an angle; `note` says why the
+ *  comment behind it is not taken as a range. */
 export interface Slider { name: string; range: Range; limits: Limits | null; note: string | null }
 
-/** A new block: the edits that write it, and the offset of its start. */
+/** The edits that add a block, its object's name, and where to put the cursor in the block. */
 export interface Added { edits: TextEdit[]; name: string | null; cursor: number }
 export interface Samples { points: Point[]; colors: string[]; color: string }
 
-/** The file that a served page edits; its text is null if there is none. */
+/** The host's file; `text` is null if it does not exist or cannot be read. */
 export interface HostedFile {
   name: string;
   text: string | null;
-  /** Reason why the path has no text, if something else is there. */
+  /** Reason why there is no text, if something other than a file has the path. */
   reason?: string | null;
   saved: boolean;
-  /** Unsaved drafts for a new page, the newest first. */
+  /** Unsaved drafts, the newest first; sent only to a new page. */
   drafts?: Draft[];
 }
 
-/** Unsaved text with its page's key and its base; the time is in seconds. */
+/** Unsaved text, with the key of its page and the text it is based on; `time` is in seconds. */
 export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
-/** Whether the file was saved; if not, its current content. */
+/** Whether the file was saved; if not, `text` is the file's current content. */
 export type Saved = { ok: true } | { ok: false; text: string | null };
 
-/** Error response of the server. */
+/** Error response from the server. */
 export class Refusal extends Error {
   constructor(readonly code: number, message: string) { super(message); }
 }
 
-/** Returns whether an error says that a newer request has superseded this one. */
+/** Returns whether the server cancelled the request in favour of a newer one. */
 export function isSuperseded(error: unknown): boolean {
   return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
 }

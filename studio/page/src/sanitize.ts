@@ -1,12 +1,12 @@
-// The language client turns the server's Markdown into HTML. It may quote any text of a scene, so
-// only plain formatting passes.
+// Sanitizes the HTML that the language client makes of the server's Markdown, which may quote any
+// text of a scene: only plain formatting passes.
 
 import { visible } from "./visible";
 
 const ALLOWED = new Set(["H1", "H2", "H3", "P", "CODE", "PRE", "EM", "STRONG", "UL", "OL", "LI",
   "BR", "HR"]);
 
-/** Reduces HTML to plain formatting: a link to its text, other elements to their source. */
+/** Reduces HTML to plain formatting. Links become their text; other elements, their source. */
 export function sanitized(html: string): string {
   // The parsed document has no window, so nothing in it runs or loads.
   const { body } = new DOMParser().parseFromString(html, "text/html");

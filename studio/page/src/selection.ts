@@ -1,5 +1,5 @@
-// The selection: the object whose block has the cursor. It has handles over the picture, is in
-// the menu of all objects, and can be duplicated and deleted. New objects are added here, too.
+// The selection: the object whose block has the cursor. Its handles are over the picture. The menu
+// lists all objects. Also adds, duplicates and deletes objects.
 
 import { isolateHistory } from "@codemirror/commands";
 import type { ChangeDesc } from "@codemirror/state";
@@ -12,25 +12,25 @@ import { tools } from "./tools";
 import type { Added, DrawnObject, Handle, Point, SceneObject } from "./protocol";
 import { say } from "./status";
 
-/** Minimum distance of two handles along x or y, in screen pixels. */
+/** Minimum distance between two handles along x or y, in screen pixels; larger for touch. */
 const APART = matchMedia("(pointer: coarse)").matches ? 45 : 25;
 
-/** Offsets of a handle whose place is taken, the nearest first. */
+/** Offsets in screen pixels to try for a handle that overlaps another, the shortest first. */
 const ASIDE: Point[] = [];
 for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) ASIDE.push([x, y]);
 ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
-/** An object and the range of its block in the text, which follows changes. */
+/** An object with its block's range in the text, which is moved with changes. */
 interface Placed { object: SceneObject; from: number; to: number }
 
 class Selection {
-  /** The selected object. */
+  /** Selected object; undefined if none is. */
   selected: Placed | undefined;
   onChange: () => void = () => {};
-  /** Number of selections made. */
+  /** Counts selections, so that a late answer can detect a newer selection. */
   choices = 0;
   private placed: Placed[] = [];
-  /** The chosen object of its block; null for none, until the cursor moves. */
+  /** Object chosen in a block that stands for many; null selects none until the cursor moves. */
   private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
@@ -57,7 +57,7 @@ class Selection {
     this.menu.replaceChildren(new Option("No object", ""), ...options);
   }
 
-  /** Moves the blocks with a change of the text, until the new objects are known. */
+  /** Moves the blocks' ranges with a change, until the objects of the new text are known. */
   mapped(changes: ChangeDesc): void {
     for (const it of this.placed) {
       it.from = changes.mapPos(it.from, 1);
@@ -66,19 +66,19 @@ class Selection {
     this.follow();
   }
 
-  /** Selects the object that the cursor has been moved into. */
+  /** Selects the object whose block the cursor was moved into. */
   cursorMoved(): void {
     this.choices++;
     if (this.chosen === null) this.chosen = undefined;
     this.follow(true);
   }
 
-  /** Selects an object and shows its line, or selects nothing for null. */
+  /** Selects an object and scrolls to its block. If `object` is null, selects nothing. */
   select(object: SceneObject | null): void {
     this.choices++;
     this.chosen = object;
     if (object === null) return this.follow();
-    // The list has only the first objects.
+    // The server's list is limited, so this object may be missing from it.
     const isListed = this.placed.some(it => it.object.index === object.index);
     if (!isListed) this.placed.push(this.place(object));
     this.name();
@@ -92,14 +92,14 @@ class Selection {
     return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
-  /** Keeps the selected block wherever it has moved, until the cursor moves. */
+  /** Selects the object at the cursor. Unless `isByCursor`, the selected block stays selected. */
   private follow(isByCursor = false): void {
     const { head } = editor.view.state.selection.main;
     const there = this.placed.filter(it => it.from < it.to);
     const { from = 0, to = 0 } = this.selected ?? {};
     const kept = isByCursor || from === to ? [] : there.filter(it => it.from === from);
     const touching = kept.length > 0 ? kept : there.filter(it => it.from <= head && head <= it.to);
-    // Between two blocks, the second is taken; of a repeated block, the chosen object.
+    // Between two touching blocks, take the second; in a repeated block, the chosen object.
     const first = touching.find(it => head < it.to) ?? touching[0];
     const isChosen = ({ from, object: { indices } }: Placed) => from === first?.from
       && String(indices) === String(this.chosen?.indices);
@@ -125,21 +125,21 @@ class Selection {
     tools.offer(this.index !== null, hasFloor);
   }
 
-  /** The overlay of the selected object, if it is known for this text. */
+  /** Overlay of the selected object, if it is known for the current text. */
   get drawn(): DrawnObject | undefined {
     const { data, isTrue } = overlays;
     const { line } = editor.position(this.selected?.from ?? 0);
-    // Until the objects of a new text are listed, another object may have this index.
+    // Until the objects of a new text are listed, this index may belong to another object.
     return isTrue ? data?.objects.find(it => it.index === this.index
       && it.range.start.line === line) : undefined;
   }
 
-  /** Places the handles of the selected object over the picture. */
+  /** Places the selected object's handles over the picture. */
   draw(): void {
     const object = this.drawn;
     const shown = object?.handles.filter(it => it.at !== null) ?? [];
     const names = JSON.stringify([object?.index, object?.label, ...shown.map(it => it.handle)]);
-    // A handle that is held must stay the same element.
+    // Keep the elements while the names stay the same: a held handle must not be replaced.
     if (names !== this.handles.dataset["names"]) this.handles.replaceChildren(
       ...shown.map(it => this.createHandle(object as DrawnObject, it)));
     this.handles.dataset["names"] = names;
@@ -160,7 +160,7 @@ class Selection {
     return button;
   }
 
-  /** Returns the handle of the selected object for an element, or its first one for null. */
+  /** Returns the handle of `element`, or for null the first handle, of the selected object. */
   held(element: Element | null): Held | null {
     const name = element?.closest<HTMLElement>(".handle")?.dataset["handle"];
     const object = this.drawn;
@@ -171,7 +171,7 @@ class Selection {
   }
 }
 
-/** Moves a handle that would overlap others beside them. */
+/** Returns a position near a handle's point where it does not overlap those in `taken`. */
 function apart([x, y]: Point, taken: readonly Point[]): Point {
   const isFree = ([x, y]: Point) =>
     taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= APART);
@@ -185,17 +185,17 @@ for (const button of document.querySelectorAll<HTMLElement>("[data-kind]"))
 byId("duplicate").addEventListener("click", () => void add({ object: selection.index }));
 byId("delete").addEventListener("click", remove);
 
-/** Adds a block written by the server: a new object of a kind, or a copy. */
+/** Adds a block that the server writes: a new object, or a copy of the selected one. */
 async function add(about: object): Promise<void> {
   const added = await editor.askCurrent<Added>("pinhole/add", about);
   if (added === null) return say("Nothing was added: the text has errors, or has changed.");
-  // The cursor within it selects it as soon as it is listed as an object.
+  // The cursor is inside the new block, so the object is selected once it is listed.
   editor.view.dispatch({ changes: editor.changes(added.edits), scrollIntoView: true,
     selection: { anchor: added.cursor }, annotations: isolateHistory.of("full") });
   say(`${added.name ?? "A copy"} is added.`);
 }
 
-/** Deletes the selected block, with its line if nothing else is on it. */
+/** Deletes the selected block, and its line if nothing else is on it. */
 function remove(): void {
   const { view, view: { state: { doc } } } = editor;
   const found = selection.selected;

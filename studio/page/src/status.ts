@@ -1,4 +1,4 @@
-// The status line, and the bar with the state of the connection.
+// The status line, and the bar that shows the state of the connection.
 
 import type { ConnectionState } from "./connection";
 import { byId } from "./dom";
@@ -8,27 +8,27 @@ import { setText, visibleLine } from "./visible";
 const FINENESS: Record<Fineness, string> =
   { coarse: "coarse", sharp: "one sample a pixel", final: "finished" };
 
-/** Names what is under the pointer. */
+/** Shows a description of what is under the pointer. */
 export function point(text: string): void { setText(byId("pointed"), text); }
 
-/** Shows a message. */
+/** Shows a message in the status line. */
 export function say(text: string, tone: "plain" | "warning" = "plain"): void {
   const said = byId("said");
   setText(said, visibleLine(text));
   said.dataset["tone"] = tone;
 }
 
-/** Removes a message if it is still shown. */
+/** Removes the message `text` if it is still shown. */
 export function unsay(text: string): void { if (byId("said").textContent === text) say(""); }
 
-/** Removes a message about an older text, unless it is a warning. */
+/** Removes the message after a change of the text, unless the message is a warning. */
 export function changed(): void { if (byId("said").dataset["tone"] !== "warning") say(""); }
 
 export function picture([width, height]: [number, number], fineness: Fineness): void {
   setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
 }
 
-/** Marks the picture as outdated with a reason, or as current for null. */
+/** Marks the picture as outdated, with the reason. If `why` is null, removes the mark. */
 export function stale(why: string | null): void {
   const note = byId("stale");
   note.hidden = why === null;
@@ -36,7 +36,7 @@ export function stale(why: string | null): void {
   byId("stage").toggleAttribute("data-stale", why !== null);
 }
 
-/** Shows what is wrong with the connection, and what happens to the text meanwhile. */
+/** Shows what is wrong with the connection, and whether the text is kept meanwhile. */
 export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
   const isKept = hasText && state !== "connecting" && state !== "open";
   byId("connection-bar").hidden = state === "open";

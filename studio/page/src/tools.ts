@@ -1,23 +1,23 @@
-// Tools for drags on the picture, and the constraint of drags of objects.
+// Tools for drags on the picture, and the constraint for drags of objects.
 
 import { byId } from "./dom";
 import { picture } from "./picture";
 import type { Along } from "./protocol";
 import { setText } from "./visible";
 
-/** What a drag moves: `move` an object, and all others the camera. */
+/** What a drag does: `move` moves an object; all other tools change the camera. */
 export type Tool = "move" | "orbit" | "pan" | "dolly" | "roll" | "view_distance" | "look";
 
-/** Step of a handle in screen pixels, unless the control key is held. */
+/** Step of drags of objects, in screen pixels; there is none while Control is held. */
 const STEP = 8;
 const radios = (name: string) =>
   [...document.querySelectorAll<HTMLInputElement>(`input[name=${name}]`)];
 
 class Tools {
   tool: Tool = "move";
-  /** Held keys, which free drags of objects from constraint and step. */
+  /** Keys held during a drag: Shift lifts the constraint, Control the step. */
   held = { shiftKey: false, ctrlKey: false };
-  /** Chosen constraint; undefined until one is chosen. */
+  /** Constraint that the user chose (`""` is none); undefined until then. */
   private chosen: Along | "" | undefined;
   private hasFloor = false;
 
@@ -32,19 +32,19 @@ class Tools {
       (this.chosen = input.value as Along | ""));
   }
 
-  /** Shows the constraints if an object is selected; `hasFloor` sets the default. */
+  /** Shows the constraints if an object is selected. `hasFloor` makes `floor` the default. */
   offer(isSelected: boolean, hasFloor: boolean): void {
     this.hasFloor = hasFloor;
     byId("along").hidden = !isSelected;
     for (const input of radios("along")) input.checked = input.value === this.kept;
   }
 
-  /** Constraint of drags, unless a key frees them. */
+  /** Constraint of drags without the Shift key; `""` is none. */
   private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
   get along(): Along | undefined { return this.held.shiftKey ? undefined : this.kept || undefined; }
 
-  /** Step of a drag, in pixels of the picture. */
+  /** Step of a drag in pixels of the picture; undefined while Control is held. */
   get step(): number | undefined { return this.held.ctrlKey ? undefined : STEP / picture.zoom; }
 }
 

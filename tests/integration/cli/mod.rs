@@ -1,4 +1,4 @@
-//! The binary from outside: arguments, files, output and exit status.
+//! Tests of the `pinhole` binary as a user runs it: arguments, files, output and exit status.
 
 mod render;
 mod sheet;
@@ -10,7 +10,7 @@ mod transcripts;
 use crate::interrupt::interrupted;
 use crate::program::Folder;
 
-/// A small scene with a byte order mark, a Windows line end, a definition and each kind of block.
+/// Small scene with a byte order mark, a CRLF line end, a definition, and each kind of block.
 const SCENE: &str = "\u{feff}// A ball on a floor.\r
 let h = 1
 image { width 64 height 36 }
@@ -20,7 +20,7 @@ sphere Ball { center (-1.6, h, 0) }
 checkerboard {}
 ";
 
-/// Returns a folder with the scene in `a.scn`.
+/// Returns a folder that has [`SCENE`] in `a.scn`.
 fn folder() -> Folder {
     Folder::with([("a.scn", SCENE)])
 }
@@ -38,7 +38,7 @@ fn ctrl_c_keeps_the_hard_cases_measured_so_far() {
     assert!((1..1_000_000_000).contains(&asked), "{asked}");
     let people = interrupted(&mut folder.command(line), 1500).errors;
     assert!(people.contains("S1a  rays that nearly touch a sphere"));
-    // On a busy machine some cases are not reached at all, and are not in the table.
+    // On a busy machine, some cases are not measured in time and are missing in the table.
     let all = folder
         .done("report --numerics --inputs 1 --format json")
         .json();

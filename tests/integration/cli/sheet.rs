@@ -1,8 +1,8 @@
-//! `sheet`: the position of each picture, and which arguments are refused.
+//! Tests of `pinhole sheet`: the position of each picture, and refused arguments.
 
 use super::*;
 
-/// Returns a folder with further scenes: `b.scn` of another size, and `wrong.scn` with errors.
+/// Returns [`folder`] with two more scenes: `b.scn` has another size, `wrong.scn` has errors.
 fn folder_with_more_scenes() -> Folder {
     let folder = folder();
     folder.write(
@@ -36,7 +36,7 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
         let (w, h) = picture.dimensions();
         let part = image::imageops::crop_imm(&sheet, x, y, w, h).to_image();
         assert!(part == *picture, "at {x}, {y}");
-        // The name below the picture has dark pixels.
+        // The name is printed below the picture, so there are dark pixels.
         let name = image::imageops::crop_imm(&sheet, x, y + h, 20, 20).to_image();
         assert!(name.pixels().any(|pixel| pixel.0[0] < 99), "at {x}, {y}");
     }
@@ -59,16 +59,17 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
         let found = said.errors.matches("pinhole::outside_picture").count();
         assert_eq!(found.min(1), told, "{command}: {}", said.errors);
     }
-    // Rows of two scenes show their names: equal scenes have equal pictures, but different labels.
+    // If rows belong to two scenes, they show the scenes' names: here the pictures are equal, but
+    // the labels differ.
     folder.write("other.scn", folder.read("b.scn"));
     folder.done("sheet b.scn other.scn --columns 2 --sweep S.radius=1..2/2 -o rows.png");
     let rows = open("rows.png");
     let row = |y, height| image::imageops::crop_imm(&rows, 12, y, 30, height).to_image();
     assert!(row(12, 40) == row(86, 40) && row(52, 22) != row(126, 22));
-    // A picture of one pixel has no room for a letter of its name.
+    // A picture one pixel wide leaves no room for any letter of its name.
     folder.done("sheet b.scn --set image.width=1 --set image.height=1 -o dot.png");
     assert_eq!(open("dot.png").dimensions(), (25, 47));
-    // Pictures of a smaller width equal those of a scene of that size, for each value of a sweep.
+    // With `--width`, each picture of the sweep equals that of a scene of that width.
     folder.done("sheet b.scn --width 20 --sweep S.center=(0,0,0)..(1,2,0)/3 -o swept.png");
     let swept = open("swept.png");
     for (i, x, y) in [

@@ -1,4 +1,4 @@
-//! Which characters of foreign texts reach a terminal.
+//! Untrusted texts reach a terminal without their control characters.
 
 use std::process::Stdio;
 
@@ -8,10 +8,11 @@ use super::{SCENE, folder};
 #[cfg(unix)]
 use crate::program::Outcome;
 
-/// Control characters that would set the window's title, colour the text and reverse its direction.
+/// Control characters that would set the terminal's title, colour the text, and reverse its
+/// direction.
 const CONTROLS: &str = "\x1b]0;pwn\x07 \u{9b}31m \u{202e}txet";
 
-/// Asserts that a message shows the control characters as escapes only.
+/// Asserts that the message `errors` has the characters of [`CONTROLS`] only as escapes.
 fn assert_escaped(errors: &str, what: &str) {
     assert!(errors.contains("\\u{202e}txet"), "{what}: {errors:?}");
     let is_control = |c: char| (c.is_control() && c != '\n') || c == '\u{202e}';
@@ -41,7 +42,7 @@ fn messages_escape_control_characters_of_texts_names_and_pictures() {
         assert_ne!(said.status, 0, "{line:?}");
         assert_escaped(&said.errors, line);
     }
-    // The same holds for the recipe in a picture.
+    // The same holds for the recipe that is stored in a picture.
     let recipe = Recipe {
         scene: SCENE.to_owned(),
         overrides: vec![format!("Ball.radius={CONTROLS}")],
@@ -76,7 +77,7 @@ fn a_full_device_is_an_error_and_a_closed_pipe_is_not() {
         let said = to(full.unwrap().into());
         assert_eq!(said.status, 2, "{line}");
         assert!(said.errors.contains("cannot write to standard output"));
-        // The reader closes the pipe, as `head` does.
+        // Now the reader closes the pipe, as `head` does.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let said = to(writer.into());

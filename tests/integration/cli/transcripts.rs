@@ -1,9 +1,9 @@
-//! Command lines with their results, in `tests/cli`: a shell command, `$`, and below it the
-//! standard output, `<`, the standard error, `!`, and the exit status unless it is 0, `=`. A last
-//! line without a line end has a `\` behind it. Each transcript runs in a folder of its own, with
-//! the scene in `a.scn`. `#` begins a remark.
+//! Transcripts of commands, in `tests/cli`. A line with `$` is a shell command. The lines below it
+//! are the expected standard output (`<`), standard error (`!`) and, unless it is 0, exit status
+//! (`=`). If the last line of an output has no line end, a `\` follows it. `#` begins a comment.
+//! Each transcript runs in its own folder, which has the scene in `a.scn`.
 //!
-//! `PINHOLE_BLESS=1 cargo test` writes the results anew.
+//! `PINHOLE_BLESS=1 cargo test` rewrites the expected results.
 
 use std::{fs, path::Path, thread};
 

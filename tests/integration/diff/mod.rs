@@ -1,4 +1,4 @@
-//! `diff`: two pictures compared, and a picture judged by a scene (`verdicts`).
+//! Tests of `pinhole diff`: comparing two pictures, and judging a picture of a scene (`verdicts`).
 
 mod verdicts;
 
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::{program::Folder, table::rows};
 
-/// A small scene whose mistakes are found soon.
+/// Small scene in which `diff` finds mistakes quickly.
 const SCENE: &str = "image { width 60 height 40 background navy }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sampler { method exact }
@@ -18,7 +18,7 @@ triangle Sail { centroid (0.8, 1, 0.6) normal (0.3, 0, 1) sides (2, 2, 1) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// Returns a folder with the scene in `a.scn` and its exact picture in `a.png`.
+/// Returns a folder that has [`SCENE`] in `a.scn` and its exact picture in `a.png`.
 fn folder() -> Folder {
     let folder = Folder::with([("a.scn", SCENE)]);
     render(&folder, "-o a.png");
@@ -29,7 +29,7 @@ fn render(folder: &Folder, arguments: &str) {
     folder.told(&format!("render a.scn {arguments}"), 0);
 }
 
-/// Returns the JSON form of a comparison.
+/// Returns the JSON output of `diff` with the arguments `compared`.
 fn json(folder: &Folder, compared: &str) -> Value {
     let said = folder.run(&format!("diff {compared} --format json"));
     assert_eq!(said.errors, "");
@@ -44,8 +44,8 @@ fn save(folder: &Folder, name: &str, picture: impl Into<DynamicImage>) {
     picture.into().save(folder.path(name)).unwrap();
 }
 
-/// Checks rows of what is compared, the exit status, and the start of the message, or a part of it
-/// behind `…`.
+/// Runs `diff` for each row of `table`: its arguments, the exit status, and the expected start of
+/// the output, or after `…`, a part of the output.
 #[track_caller]
 fn compare(folder: &Folder, table: &'static str) {
     for [compared, status, words] in rows(table) {
@@ -96,7 +96,7 @@ fn pictures_are_compared_by_content_across_formats() {
     for name in ["a.ppm", "a.bmp", "a.tiff", "a.webp", "b.jpg", "b.gif"] {
         save(&folder, name, picture.to_rgb8());
     }
-    // Half of white light is 187.5 in sRGB: alpha mixes light.
+    // Half of the light of white is 187.5 as an sRGB byte: alpha mixes linear light.
     let half = ImageBuffer::from_pixel(96, 64, Rgba([65535u16, 65535, 65535, 32768]));
     save(&folder, "half.png", half);
     let mixed = ImageBuffer::from_pixel(96, 64, Rgb([188u8; 3]));
@@ -122,7 +122,7 @@ fn pictures_are_compared_by_content_across_formats() {
 #[test]
 fn a_transfer_curve_other_than_srgb_gives_a_warning() {
     let folder = Folder::with([]);
-    // An ICC profile with one tag.
+    // This is an ICC profile with a single tag.
     let profile = |curve: &[u8]| {
         let place = [144, curve.len() as u32].map(u32::to_be_bytes).concat();
         [&[0; 128], &1u32.to_be_bytes()[..], b"rTRC", &place, curve].concat()
@@ -170,7 +170,7 @@ fn standard_input_is_a_picture_or_a_scene() {
 fn different_sizes_are_reported_with_a_remedy() {
     let folder = folder();
     save(&folder, "b.png", image::RgbImage::new(48, 32));
-    // A part of a larger picture than the scene's.
+    // This picture is a crop of a render that is larger than the scene's.
     render(&folder, "-o c.png --set image.width=200 --crop 150,5,40,30");
     compare(
         &folder,

@@ -1,4 +1,5 @@
-//! Verdicts on a picture of a scene: right, right except for noise, or wrong, and by which mistake.
+//! Verdicts on a picture of a scene: right, right except for sampling noise, or wrong because of a
+//! named mistake.
 
 use std::fs;
 
@@ -11,7 +12,7 @@ use crate::{program::Folder, table::rows};
 const RANDOM: &str = "--set sampler.method=random --set sampler.per_pixel=16";
 
 /// Rows of the arguments of `render`, the arguments of `diff`, the exit status, and the start of
-/// the first line.
+/// the first line of the output.
 const VERDICTS: &str = "
     -> -> 0 -> right: equal to the exact picture
     -> --strict -> 0 -> right: no pixel differs by more than 0.5 steps
@@ -34,7 +35,8 @@ fn diff_prints_the_verdict_first() {
             render(&folder, &format!("-o {name} {rendered}"));
             let compared = format!("diff {name} a.scn {compared}");
             let text = folder.told(&compared, status.parse().unwrap());
-            // Floats are not rounded to steps, so no half step is named.
+            // Floats are not rounded to 8-bit steps, so the verdict on them does not mention half a
+            // step.
             let first = first.strip_suffix(" than 0.5 steps").unwrap_or(first);
             assert!(text.starts_with(first), "{rendered} {compared}: {text}");
         }
@@ -106,7 +108,7 @@ fn jpeg_compression_is_not_reported_as_wrong() {
 
 #[test]
 fn a_mistake_is_found_in_front_of_pixel_sized_squares() {
-    // Behind the box the squares have about the size of a pixel.
+    // Behind the box, the squares have about the size of a pixel.
     let scene = "image { width 96 height 64 }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sampler { method exact }
@@ -131,7 +133,7 @@ fn objects_are_judged_by_their_own_pixels() {
     let found = json(&folder, "b.png a.scn");
     assert_eq!(found["mistakes"][0]["id"], "mirrored", "{found:#}");
     all_are(&found, false);
-    // A few wrong pixels in the background.
+    // Change a few pixels of the background.
     let mut picture = open(&folder, "a.png").to_rgb8();
     for (x, y) in [(3, 3), (5, 3), (9, 4), (4, 7)] {
         picture.put_pixel(x, y, Rgb([(20 * x) as u8, 255, 7]));
@@ -157,10 +159,10 @@ fn a_scribbled_picture_is_wrong_and_not_noise() {
     assert_ne!(json(&folder, "b.png a.scn")["verdict"], "noise");
 }
 
-/// Function that changes a pixel, given its row.
+/// Function that returns the new value of a pixel, given its value and its row.
 type Change = fn(Rgba<u8>, u32) -> Rgba<u8>;
 
-/// Identifiers of obvious defects with the change of a pixel that makes each of them.
+/// Identifiers of obvious defects, each with the change of every pixel that causes it.
 const PLAIN: [(&str, Change); 7] = [
     ("black", |_, _| Rgba([0, 0, 0, 255])),
     ("one_colour", |_, _| Rgba([90, 120, 30, 255])),
@@ -191,7 +193,7 @@ fn an_obvious_defect_is_the_only_mistake_reported() {
         let ids: Vec<_> = mistakes.iter().map(|mistake| &mistake["id"]).collect();
         assert_eq!(ids, [id], "{found:#}");
     }
-    // If only background is seen, the camera is the mistake.
+    // If the picture shows only background, the reported mistake is the camera.
     render(
         &folder,
         "-o b.png --set 'camera.lookat=(3, 30, 8)' --set image.background=navy",

@@ -1,4 +1,4 @@
-//! Editor answers, compared with the files in `tests/editor`; `$0` is the cursor.
+//! Compares editor answers with the files in `tests/editor`, where `$0` is the cursor.
 
 use glam::dvec2;
 use pinhole::{
@@ -18,14 +18,14 @@ use crate::{
     snapshot::assert_answers,
 };
 
-/// Start of a text in which an object is dragged.
+/// Start of a text in which an object is dragged. The camera looks along −z.
 const LEVEL: &str =
     "image { width 200 height 100 } camera { eye (0, 0, 10) direction (0, 0, -1) d 8 }\n";
 
-/// Start of a text in which the camera is moved.
+/// Start of a text in which the camera is dragged.
 const SEEN: &str = "image { width 400 height 200 }\nsphere { center (0, 1, 0) }\ncheckerboard {}\n";
 
-/// Returns the labels of completions, grouped by kind.
+/// Returns the labels of `all` completions, grouped by their kind.
 fn offered(all: &[Completion]) -> String {
     let kind = |completion: &Completion| {
         let kind = format!("{:?}", completion.kind);
@@ -38,7 +38,7 @@ fn offered(all: &[Completion]) -> String {
     groups.collect::<Vec<_>>().join(" | ")
 }
 
-/// Returns the text with a completion inserted, and its placeholders in `‹›`.
+/// Returns `text` with `completion` inserted, and with `‹›` around its placeholders.
 pub fn inserted(text: &str, completion: &Completion) -> String {
     let insert = completion.insert.iter().map(|piece| match piece {
         SnippetPart::Text(text) => text.clone(),
@@ -49,8 +49,8 @@ pub fn inserted(text: &str, completion: &Completion) -> String {
     text
 }
 
-/// Returns the text with `‹›` around each use of the name at the cursor, and `«»` around its
-/// definition; or the reason why the name cannot be changed.
+/// Returns the text with `‹›` around each use of the name at the offset `at`, and with `«»` around
+/// its definition. If the name cannot be changed, returns the reason.
 fn uses(analysis: &Analysis<'_>, at: usize) -> String {
     let mut text = analysis.text().to_owned();
     let found = occurrences(analysis, at);
@@ -69,7 +69,8 @@ fn uses(analysis: &Analysis<'_>, at: usize) -> String {
     renamable(analysis, at).map_or_else(|why| why, |_| text)
 }
 
-/// Returns the label of a call with the active parameter in `‹›`.
+/// Returns the signature of the call at the offset `at`, with `‹›` around the active parameter.
+/// Returns `None` if there is no call.
 fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
     let found = signature(analysis, at)?;
     let mut label = found.label;
@@ -80,7 +81,7 @@ fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
     Some(label)
 }
 
-/// Returns the definitions and blocks, with the fields of each block.
+/// Returns a line for each definition and block, with the fields of each block.
 fn outline(symbols: &[Symbol]) -> String {
     let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
     let lines = symbols.iter().map(|symbol| {
@@ -90,7 +91,7 @@ fn outline(symbols: &[Symbol]) -> String {
     lines.collect::<Vec<_>>().join(" | ")
 }
 
-/// Returns the text after a drag of a handle, or the reason why the drag is refused.
+/// Returns the text after the drag `moved`, or the reason why the drag is refused.
 pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     let (sources, scene) = (sources(text), read(text));
     let alone = alone(&sources, &scene, moved.object);
@@ -98,8 +99,8 @@ pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
 }
 
-/// Applies a drag to a text behind a fixed start, and returns the rest of the text. The words are
-/// the handle, the coordinates of one or two points, and the axis or plane of the movement.
+/// Applies a drag to `start` followed by `text`, and returns what then follows `start`. `words`
+/// are the handle, the coordinates of one or two points, and the axis or plane of the movement.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());
@@ -121,8 +122,8 @@ fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> St
     }
 }
 
-/// Answers a question about a text. Brackets mark the span of the question, such as that of a
-/// [`Color`] to be replaced.
+/// Returns the answer to the query `question` about `text`. Brackets in `text` mark the span that
+/// the query is about, such as that of a [`Color`] to be replaced.
 fn answer(question: &str, text: &str, other: &str) -> String {
     let at = text.find(['$', '[']).unwrap_or_default();
     let end = text.find(']').map_or(at, |end| end - 1);

@@ -1,4 +1,4 @@
-//! Random drags: a handle appears where it was dragged to, and no drag breaks a text.
+//! Random drags: a dragged handle appears at the pointer, and no drag makes a text invalid.
 
 use glam::{DVec2, DVec3, dvec2};
 use pinhole::{
@@ -15,7 +15,7 @@ use proptest::{
 use super::answers::dragged;
 use crate::scenes::{read, sources};
 
-/// Generates a scene with one object in front of the camera.
+/// Generates the text of a scene with one object in front of the camera.
 fn any_scene() -> impl Strategy<Value = String> {
     let vectors = uniform4(uniform3(-4.0..4.0));
     let turns = uniform2(-200.0..200.0);
@@ -38,7 +38,7 @@ fn any_scene() -> impl Strategy<Value = String> {
     })
 }
 
-/// Generates a point in or near the picture, or a very distant one, in fractions of the picture.
+/// Generates a point in, near or very far from the picture, in fractions of the picture's size.
 fn any_point() -> impl Strategy<Value = (f64, f64)> {
     let part = || prop_oneof![8 => -0.5..1.5, 1 => Just(1e300), 1 => Just(-1e12)];
     (part(), part())
@@ -61,9 +61,10 @@ fn camera_of(scene: &Scene) -> CameraFacts {
     inspect(scene, &sources("").file).camera
 }
 
-/// Returns the position in the world of a handle of the first object. Handles whose position
-/// depends on the picture have that of their object. The position on a board is the point at the
-/// board's height above or below the point where the view axis meets the board of `held`.
+/// Returns the position in the world of a handle of the first object. If the position of a handle
+/// depends on the picture, returns that of the handle's object. For a board, returns the point at
+/// the board's height that is above or below the intersection of the view axis with the board of
+/// `held`.
 fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -88,18 +89,18 @@ fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     }
 }
 
-/// Returns the unit direction in the picture in which a point moves that moves along an axis of the
-/// world.
+/// Returns the unit direction in the picture in which `point` is seen to move if it moves along an
+/// axis of the world.
 fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     let camera = camera_of(scene);
     let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
     let (at, by) = (turned(point - camera.eye), turned(DVec3::AXES[axis]));
-    // The derivative of (x/z, y/z), times z².
+    // This is the derivative of (x/z, y/z), multiplied by z².
     (by.truncate() * at.z - at.truncate() * by.z).normalize()
 }
 
-/// Returns the axis along which a handle moves. Returns `None` if it moves in a plane, or in its
-/// own way.
+/// Returns the axis along which a handle moves, or `None` if it moves in a plane or has its own
+/// rule.
 fn axis_of(handle: &str, word: &str) -> Option<usize> {
     let axis = match handle {
         "y" => "y",
@@ -109,14 +110,14 @@ fn axis_of(handle: &str, word: &str) -> Option<usize> {
     "xyz".find(axis).filter(|_| !axis.is_empty())
 }
 
-/// Returns whether the tip of a triangle's normal is seen at a point of the picture, or is the
-/// nearest point to the ray through it.
+/// Returns whether the tip of a triangle's normal is seen within half a pixel of the point `to`. If
+/// the tip cannot reach the ray through `to`, it has to be seen where it is nearest to that ray.
 fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let camera = camera_of(scene);
     let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
     let across = (to - dvec2(width, height) / 2.0) * (camera.view_height / (height * camera.d));
     let ray = camera.u * across.x - camera.v * across.y - camera.w;
-    // The point may be so far away that a square would be too large for a number.
+    // The point may be so far away that the square of a coordinate would overflow.
     let ray = (ray / ray.abs().max_element()).normalize();
     let center = triangle.centroid - camera.eye;
     let foot = ray * center.dot(ray) - center;
@@ -132,8 +133,8 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
     project(scene, tip).distance(goal) <= 0.5 + 1e-6
 }
 
-/// Returns whether the apex is seen in the direction of a point from the centroid, or too near to
-/// the centroid to tell.
+/// Returns whether the apex is seen from the centroid in the direction of the point `to`. Returns
+/// `true` also if the apex or `to` is less than a pixel from the centroid.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let middle = project(scene, triangle.centroid);
     let shown = overlays(scene, &ShownObjects::First(None));
@@ -145,7 +146,7 @@ fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> b
         || (across.abs() <= 0.5 + 1e-6 && wanted.dot(found) > 0.0)
 }
 
-/// Projects a point of the world to the picture, with the camera facts of `pinhole inspect`.
+/// Projects a point of the world to the picture, using the camera data of `pinhole inspect`.
 fn project(scene: &Scene, point: DVec3) -> DVec2 {
     let camera = inspect(scene, &sources("").file).camera;
     let from_eye = point - camera.eye;
@@ -178,16 +179,16 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The camera may depend on the moved value by a shared name.
+        // The camera may share a name with the moved value, and so have changed as well.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // The sphere is hit three quarters of a pixel inside the outline, and not as far
-                // outside. Where the centre is behind the eye, inside is away from the point where
-                // it would be seen.
+                // Three quarters of a pixel inside the silhouette, a ray hits the sphere; at the
+                // same distance outside, it does not. If the centre is behind the eye, "inside" is
+                // the side away from the centre's projection.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);
@@ -206,8 +207,8 @@ proptest! {
             }
             _ => match axis_of(handle, word) {
                 None => assert_near(found, to, &message),
-                // The handle comes as near as it can: the rest of the distance is across its line
-                // of movement.
+                // The handle comes as near to the pointer as its axis allows: the remaining offset
+                // is perpendicular to the handle's movement in the picture.
                 Some(axis) => {
                     let left = (to - found).dot(direction_seen(&after, place, axis));
                     prop_assert!(left.abs() <= 0.5 + 1e-6, "{}: {} left", message, left);
@@ -216,7 +217,7 @@ proptest! {
         }
     }
 
-    /// A camera drag never breaks a text.
+    /// A camera drag never makes a text invalid.
     #[test]
     fn a_camera_drag_keeps_objects_and_image_and_an_orbit_its_distance(
         text in any_scene(), from in any_point(), to in any_point(),
@@ -239,7 +240,7 @@ proptest! {
     }
 }
 
-/// Drags a handle five times, and returns the object before and after each drag.
+/// Drags a handle five times. Returns the object's shape at first and after each drag.
 fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
     let view = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }";
     let mut text = format!("{block} {view}");
@@ -267,14 +268,14 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
             along: None,
             step,
         };
-        // A face stops before the opposite one.
+        // If the drag is refused, the text stays: a face cannot pass the opposite face.
         text = dragged(&text, &moved).unwrap_or(text);
         shapes.push(read(&text).objects[0].shape);
     }
     shapes
 }
 
-/// Coordinates that are not held keep their values, except for roundings below 1e-12.
+/// Coordinates that the drag does not move keep their values, within rounding errors below 1e-12.
 #[test]
 fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
     let steps = [None, Some(8.0), Some(3.0), Some(1.0)];
@@ -291,7 +292,7 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
             .iter()
             .flat_map(move |face| steps.map(|step| (text, face, step)))
     }) {
-        // The center and the size share a name here, so both change.
+        // In this case, the centre and the size share a name, so a drag along y changes both.
         if text.starts_with("let") && handle.ends_with('y') {
             continue;
         }
@@ -342,7 +343,7 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
         assert!(shapes[0] != shapes[5]);
     }
 
-    // A pan keeps the vector from the eye to the point that the camera looks at.
+    // A pan keeps the vector from the eye to the `lookat` point.
     let text =
         "sphere { center (0, 0, 0) } camera { eye (3, 3.55, 8) lookat (0.2, 0.8, 0.125) d 2.75 }";
     let ahead = |text: &str| {

@@ -1,5 +1,5 @@
-//! Incomplete and edited texts never make a reading or an editor answer fail: prefixes of every
-//! example are asked at their ends.
+//! Reading or querying an incomplete or edited text never panics. Prefixes of every example are
+//! queried at their ends.
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
@@ -17,12 +17,12 @@ use pinhole::{
     source::{SourceId, Span},
 };
 
-/// Returns whether a span begins and ends between characters.
+/// Returns whether both ends of a span lie in the text and between characters.
 fn is_place(text: &str, span: Span) -> bool {
     text.get(span.range()).is_some()
 }
 
-/// Asks every question about an offset, and checks what every client relies on.
+/// Runs every query about the offset `at`, and checks the properties that every client relies on.
 fn ask_at(analysis: &Analysis<'_>, at: usize) {
     let text = analysis.text();
     for completion in completions(analysis, at) {
@@ -44,12 +44,12 @@ fn ask_at(analysis: &Analysis<'_>, at: usize) {
     }
 }
 
-/// Asks every question about the whole text, and checks what every client relies on.
+/// Runs every query about the whole text, and checks the properties that every client relies on.
 fn ask_about_all(analysis: &Analysis<'_>) {
     let text = analysis.text();
     let hints = hints(analysis, 0..text.len());
     for hint in hints {
-        // A hint within a line would misalign the columns of the formatter.
+        // A hint in the middle of a line would misalign the formatter's columns.
         let rest = text.get(hint.at..).expect("a place between characters");
         let is_end = rest
             .lines()
@@ -84,9 +84,9 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Asks the prefixes of each example at their ends, the whole example at every offset, and the
-/// example with a byte or a piece removed, as when a line is being rewritten. Examples have much in
-/// common, so each is asked at every other offset, alternately the even and the odd ones.
+/// Queries each prefix of an example at its end; the whole example at every offset; and the example
+/// without a byte or a piece, as while a user rewrites a line. Examples have much in common, so
+/// each is queried only at every other offset, even and odd ones in turn.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);
@@ -139,7 +139,7 @@ fn editor_requests_survive_malformed_texts() {
     for text in texts {
         let sources = sources(text);
         let analysis = Analysis::new(&sources);
-        // A client may send any offset, also within a character or behind the text.
+        // A client may send any offset, even one within a character or beyond the end of the text.
         for at in 0..text.len() + 3 {
             ask_at(&analysis, analysis.source().floor_char_boundary(at));
         }

@@ -1,4 +1,4 @@
-//! Rules for the editor answers about every block and field of the language.
+//! Rules that the editor answers about every block and every field must obey.
 
 use std::time::{Duration, Instant};
 
@@ -78,8 +78,8 @@ fn hovering_a_mistake_shows_its_explain_page() {
     assert!(text.ends_with(&end), "{text}");
 }
 
-/// One pass over the line takes some hundredths of a second. A pass for each term took half a
-/// minute.
+/// A single pass over the line takes a few hundredths of a second. An earlier formatter, with one
+/// pass per term, took half a minute.
 #[test]
 fn formatting_a_long_line_takes_linear_time() {
     let text = format!("let b = {}1\n", "1+".repeat(100_000));

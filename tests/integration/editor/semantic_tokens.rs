@@ -1,4 +1,4 @@
-//! Semantic tokens for highlighting agree with the syntax tree.
+//! The semantic tokens for highlighting agree with the syntax tree.
 
 use std::{collections::BTreeMap, fs};
 
@@ -15,7 +15,7 @@ use pinhole::{
 use super::{about_text, sources};
 use crate::scenes::scenes;
 
-/// Returns the kind of each word according to the tree. Returns `None` if the text has syntax
+/// Returns the kind of each word according to the syntax tree, or `None` if the text has syntax
 /// errors.
 fn tree_kinds(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
     let sources = sources(text);
@@ -48,7 +48,7 @@ fn tree_kinds(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
 
 fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, SemanticKind>) {
     match &value.kind {
-        // A name written as two words is a mistake.
+        // A name with a hyphen or a space is a mistake, and has no kind.
         ValueKind::Name(name) if name.contains(['-', ' ']) => {}
         ValueKind::Name(name) => {
             let kind = match schema::predefined(name) {
@@ -72,13 +72,14 @@ fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span,
     }
 }
 
-/// Tokens found by position agree with the tree wherever the tree is certain.
+/// Semantic tokens, which are derived from the positions of words, agree with the syntax tree
+/// wherever the tree is certain.
 #[test]
 fn semantic_tokens_agree_with_the_syntax_tree() {
     let mut files = 0;
     let folders = ["examples", "tests/diagnostics", "tests/syntax/ok"];
     for path in folders.into_iter().flat_map(scenes) {
-        // Some fixtures are not UTF-8.
+        // Skip fixtures that are not UTF-8: their text counts as empty.
         let text = fs::read_to_string(&path).unwrap_or_default();
         let Some(words) = tree_kinds(&text).filter(|words| !words.is_empty()) else {
             continue;

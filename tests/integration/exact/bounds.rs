@@ -1,4 +1,4 @@
-//! Bounds of exact pixels: the distance to the true mean, the certain bytes, memory and time.
+//! Error bounds of exact pixels (the distance to the true mean), certain bytes, memory and time.
 
 use std::time::{Duration, Instant};
 
@@ -21,7 +21,7 @@ fn bounds_stay_below_1e_9_and_certify_nearly_all_bytes() {
     }
 }
 
-/// The spheres pierce each other in one pixel, and most of their outlines are hidden.
+/// The spheres intersect one another within one pixel, and most of their silhouettes are hidden.
 #[test]
 fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {
     let heap = spheres(&mut Random::new(7), 40, 20.0, [2.0, 22.0]);
@@ -30,8 +30,8 @@ fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {
     ));
 }
 
-/// The horizons of parallel boards coincide, and so does the edge that the triangles of a fan
-/// share. A pixel that they pass through must not be subdivided without end.
+/// The horizons of parallel boards coincide, and so do the edges that the triangles of a fan share.
+/// A pixel that these lines cross must not be subdivided endlessly.
 #[test]
 fn coincident_lines_are_known_within_1e_9() {
     let view = "image { width 48 height 27 }
@@ -61,7 +61,7 @@ fn ten_thousand_objects_are_known_within_1e_9() {
     ));
 }
 
-/// Nearly coincident outlines of spheres are told apart as closely as rounding allows.
+/// Nearly coincident silhouettes of spheres are told apart as closely as rounding allows.
 #[test]
 fn nearly_coincident_outlines_are_known_and_add_up() {
     for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {
@@ -78,8 +78,8 @@ fn nearly_coincident_outlines_are_known_and_add_up() {
     }
 }
 
-/// Many boxes are seen in a small part of one pixel, far away or in a wide view. Only that part is
-/// subdivided, and not the whole pixel.
+/// Many boxes are seen within a small part of one pixel, because they are far away or the view is
+/// wide. Only that part is subdivided, not the whole pixel.
 #[test]
 fn distant_crowds_in_part_of_a_pixel_are_known_within_1e_9() {
     for (distance, count) in [(1e3, 40), (1e5, 40), (1e5, 100)] {
@@ -99,7 +99,7 @@ fn distant_crowds_in_part_of_a_pixel_are_known_within_1e_9() {
     }
 }
 
-/// Returns the peak memory of the program while it renders a pixel of a scene, in MiB.
+/// Returns the peak memory, in MiB, of the program while it renders the pixel `crop` of `scene`.
 #[cfg(target_os = "linux")]
 fn memory(scene: &str, crop: &str) -> u64 {
     let folder = Folder::with([("scene.scn", scene)]);
@@ -117,9 +117,9 @@ fn memory(scene: &str, crop: &str) -> u64 {
     most >> 10
 }
 
-/// In the first pixel nearly everything is seen at one point, so that the number of open pieces
-/// grows: without a limit, it takes twenty gigabytes. The second shows 65 536 objects, whose scene
-/// takes memory of its own, which a neighbouring pixel measures.
+/// In the first scene, nearly everything is seen at one point of a pixel, so the number of
+/// unfinished pieces grows: without a limit, they take 20 GB. The second scene has 65 536 objects,
+/// which need memory themselves; a neighbouring pixel measures how much.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pixel_takes_bounded_memory() {
@@ -153,9 +153,10 @@ fn a_pixel_takes_bounded_memory() {
     }
 }
 
-/// Two hundred objects pass through the same few points, in a pixel that sees half the world: many
-/// of their curves are told apart only in the last precision. A pixel takes at most a second in a
-/// release build; tests are optimised less, and others run at the same time.
+/// Two hundred objects pass through the same few points of a pixel that covers half of all
+/// directions. Many of their curves can be told apart only with the highest precision. In a release
+/// build, a pixel takes at most a second; the limit here is longer, because tests are less
+/// optimised and run in parallel.
 #[test]
 fn a_pixel_takes_bounded_time() {
     for seed in 0..4 {
@@ -193,8 +194,8 @@ fn a_pixel_takes_bounded_time() {
     }
 }
 
-/// In the scenes of `tests/exact`, the pixels of the crop given in a comment, or all pixels, are
-/// known within 1e-9 and equal the mean of their quarters.
+/// In each scene of `tests/exact`, the error bounds are at most 1e-9, and pixels equal the mean of
+/// their quarters. A comment in the scene may limit this to a crop.
 #[test]
 fn hard_scene_files_are_known_within_1e_9() {
     for path in scenes("tests/exact") {
@@ -207,7 +208,8 @@ fn hard_scene_files_are_known_within_1e_9() {
     }
 }
 
-/// The interval of an uncertain pixel lies between the darkest and the brightest of its colours.
+/// If the error bound of a pixel is large, the interval of the mean ± the bound still stays between
+/// the darkest and the brightest colour that the pixel can show.
 #[test]
 fn uncertain_pixels_stay_within_the_range_of_their_colours() {
     let mut vague = 0;

@@ -1,4 +1,4 @@
-//! The exact picture compared with closed forms, with itself at twice the resolution, with samples
+//! Compares the exact picture with closed forms, with its double-resolution version, with samples,
 //! and with rational arithmetic.
 
 mod board;
@@ -33,31 +33,32 @@ fn part(scene: &Scene, area: Area) -> Exact {
     render_exact(&World::new(scene), area, &Control::default()).unwrap()
 }
 
-/// Returns generated scenes of ordinary numbers.
+/// Returns generated scenes of `size`, in which all numbers have ordinary magnitudes.
 fn ordinary(size: [u32; 2], seed: u64) -> impl Iterator<Item = Scene> {
     generated(Numbers::Wild(0), size, seed).map(|(_, scene)| scene)
 }
 
-/// Returns a pixel's light and its bound.
+/// Returns the linear light of the pixel (x, y), and its error bound.
 pub fn pixel(picture: &Exact, x: u32, y: u32) -> ([f64; 3], f64) {
     let bound = picture.bounds[(y * picture.film.width() + x) as usize];
     (picture.film.pixel(x, y), bound.into())
 }
 
-/// Returns the largest difference between the channels of two pixels.
+/// Returns the largest absolute difference between corresponding channels of two pixels.
 pub fn difference(one: [f64; 3], other: [f64; 3]) -> f64 {
     let differences = [0, 1, 2].map(|channel| (one[channel] - other[channel]).abs());
     differences.into_iter().fold(0.0, f64::max)
 }
 
-/// Asserts that each pixel is the mean of four pixels at twice the resolution, within the bounds.
+/// Asserts that each pixel of a scene is, within the error bounds, the mean of its four quarters:
+/// the pixels of the picture at twice the resolution.
 #[track_caller]
 fn assert_adds_up(scene: &Scene) {
     assert_part_adds_up(scene, whole(scene));
 }
 
-/// Asserts that each pixel of an area is the mean of four pixels at twice the resolution, within
-/// the bounds. Returns the picture of the area.
+/// Asserts that each pixel of `area` is, within the error bounds, the mean of its four quarters:
+/// the pixels of the picture at twice the resolution. Returns the exact picture of `area`.
 #[track_caller]
 fn assert_part_adds_up(scene: &Scene, area: Area) -> Exact {
     let fine = resized(scene.clone(), 2 * scene.image.width, 2 * scene.image.height);
@@ -86,20 +87,21 @@ fn assert_part_adds_up(scene: &Scene, area: Area) -> Exact {
     coarse
 }
 
-/// Asserts that every pixel of a scene is known within 1e-9.
+/// Asserts that the error bound of every pixel of the scene is at most 1e-9.
 #[track_caller]
 fn assert_known(text: &str) {
     let bound = exact(&read(text)).bound();
     assert!(bound <= 1e-9, "{bound:e}\n{text}");
 }
 
-/// Asserts that a picture agrees with one of random samples, given their number per pixel.
+/// Asserts that an exact picture agrees with a render of `samples` random samples per pixel.
 fn assert_agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
     let scene = with_samples(scene, Method::Random, Count::PerPixel(samples));
     let sampled = sampled(&scene);
-    // For channels from 0 to 1 of mean m, the variance of the mean of n samples is at most m(1 −
-    // m)/n. By Bernstein's inequality, at most one of 10¹⁰ sums of independent samples is farther
-    // off than this.
+    // For a channel from 0 to 1 with mean m, the variance of the mean of n samples is at most
+    //     m·(1 − m)/n.
+    // By Bernstein's inequality, the mean of n independent samples is farther off than this limit
+    // with a probability of at most 10⁻¹⁰.
     let log = libm::log(2e10);
     let most = |variance: f64| (2.0 * variance * log).sqrt() + log / (1.5 * samples as f64);
     let pixels = computed.film.pixels().iter().zip(sampled.pixels());

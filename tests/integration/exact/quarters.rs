@@ -1,4 +1,4 @@
-//! The exact picture compared with itself at twice the resolution, and with samples.
+//! Compares the exact picture with itself at twice the resolution, and with samples.
 
 use super::*;
 
@@ -9,7 +9,7 @@ fn quarters_add_up_to_the_pixel_in_every_example() {
     }
 }
 
-/// The objects of generated scenes pierce each other.
+/// The objects of the generated scenes intersect one another.
 #[test]
 fn generated_scenes_add_up_by_quarters_and_agree_with_samples() {
     for scene in ordinary([24, 18], 7).take(24) {
@@ -18,7 +18,7 @@ fn generated_scenes_add_up_by_quarters_and_agree_with_samples() {
     }
 }
 
-/// Tilted triangles in rows, in one pixel: their planes intersect all over the pixel, but no
+/// Rows of tilted triangles lie in one pixel. Their planes intersect all over the pixel, but no
 /// triangle hides another.
 #[test]
 fn quarters_add_up_for_tilted_triangles_side_by_side() {
@@ -40,7 +40,8 @@ fn quarters_add_up_for_tilted_triangles_side_by_side() {
     }
 }
 
-/// Boxes and triangles pierce each other along lines that end where either of them ends.
+/// Boxes and triangles intersect along segments, each of which ends where one of the two objects
+/// ends.
 #[test]
 fn quarters_add_up_for_partly_piercing_objects() {
     let mut random = Random::new(72);
@@ -65,7 +66,7 @@ fn quarters_add_up_for_partly_piercing_objects() {
 
 sampled_and_exhaustive!(quarters_add_up_for_extreme_cameras);
 
-/// The figure with extreme numbers.
+/// Tests the scene of figure 9.9 with extreme numbers.
 fn quarters_add_up_for_extreme_cameras(effort: Effort) {
     let figure = example_text("figure_9_9").replace("checkerboard ", "checkerboard Floor ");
     let size = ["image.width=24", "image.height=16"];
@@ -97,8 +98,8 @@ fn quarters_add_up_for_extreme_cameras(effort: Effort) {
     }
 }
 
-/// A sphere goes through a face that the eye is hardly above: their common circle is seen as an
-/// ellipse that is nearly a line.
+/// A sphere passes through a face of the box, and the eye is hardly above the plane of the face.
+/// The circle in which they intersect is seen as an ellipse that is nearly a line.
 #[test]
 fn quarters_add_up_where_a_circle_is_seen_edge_on() {
     let face = "box { min (-100, -50, -100) max (100, 0, 100) color black }";
@@ -121,8 +122,8 @@ fn quarters_add_up_where_a_circle_is_seen_edge_on() {
             assert!(bound <= 1e-9, "{eye}: {bound:e}");
         }
     }
-    // The value comes from an integral along x with 50 digits, split where the outline meets the
-    // pixel's sides.
+    // The expected value is an integral along x, computed with 50 digits and split where the
+    // silhouette crosses the sides of the pixel.
     let scene = view("(0.26249413893393775, 3.1572076715858895e-08, 3)", 1, face);
     let ([red, ..], bound) = pixel(&exact(&scene), 0, 0);
     let off = (red - 0.500_000_064_227_617_3).abs();

@@ -1,4 +1,4 @@
-//! Pixels of the board compared with rational arithmetic, which has no errors.
+//! Compares pixels of the board with rational arithmetic, which has no rounding errors.
 
 use std::{array, iter::successors};
 
@@ -7,29 +7,28 @@ use dashu_ratio::RBig;
 
 use super::{exact, pixel, read};
 
-/// Camera with rational axes above a board of squares of side 1 at height 0.
+/// Camera with rational axes, above a board at height 0 whose squares have side 1.
 struct RationalView {
     eye: [RBig; 3],
-    /// Right, up and back: the directions of the picture's columns, its rows, and against the
-    /// view.
+    /// The camera's unit axes: right, up, and back (against the view direction).
     axes: [[RBig; 3]; 3],
     d: RBig,
 }
 
-/// Linear form aX + bY + c as [a, b, c], for points (X, Y) of the view plane.
+/// Linear form a·X + b·Y + c, as `[a, b, c]`, for points (X, Y) of the view plane.
 type Linear = [RBig; 3];
 type Polygon = Vec<[RBig; 2]>;
 
 impl RationalView {
-    /// Returns the component along an axis of the world of the ray through a point of the view
-    /// plane.
+    /// Returns the component along an axis of the world of the ray through (X, Y), as a linear form
+    /// of the point (X, Y) of the view plane.
     fn ray(&self, axis: usize) -> Linear {
         let [right, top, back] = [0, 1, 2].map(|of| self.axes[of][axis].clone());
         [right, top, -(back * &self.d)]
     }
 
-    /// Returns N and L such that the ray through a point meets the board at the coordinate N/L,
-    /// along x or z. L is positive below the horizon.
+    /// Returns linear forms N and L: the ray through a point hits the board at the coordinate N/L
+    /// along `axis`, which is 0 for x or 2 for z. L is positive below the horizon.
     fn place(&self, axis: usize) -> [Linear; 2] {
         let below = self.ray(1).map(|factor| -factor);
         let along = self.ray(axis);
@@ -37,8 +36,8 @@ impl RationalView {
         [place, below]
     }
 
-    /// Returns the share of white squares, whose indices have an even sum, in a pixel below the
-    /// horizon.
+    /// Returns the share of white in a pixel below the horizon. A square is white if the sum of its
+    /// two indices is even.
     fn white(&self, pixel: &Polygon) -> RBig {
         let [across, along] = [self.place(0), self.place(2)];
         let mut white = RBig::ZERO;
@@ -61,7 +60,7 @@ fn value([a, b, c]: &Linear, [x, y]: &[RBig; 2]) -> RBig {
     a * x + b * y + c
 }
 
-/// Returns the indices of the rows or columns of squares that a polygon meets.
+/// Returns the indices of the rows, or columns, of squares that a polygon overlaps.
 fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> {
     let places = polygon
         .iter()
@@ -71,7 +70,8 @@ fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> 
     successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
 }
 
-/// Returns the part of a polygon in the row or column of squares from n to n + 1.
+/// Returns the part of a polygon whose board coordinate is from `n` to `n + 1`: its part in one row
+/// or column of squares.
 fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     let line = |n: IBig| -> Linear {
         let n = RBig::from(n);
@@ -81,8 +81,8 @@ fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     cut(&cut(polygon, &line(n.clone())), &beyond)
 }
 
-/// Returns the part of a polygon where a linear form is not negative (Sutherland and Hodgman,
-/// 1974).
+/// Returns the part of `polygon` in which the linear form `line` is not negative, by the algorithm
+/// of Sutherland and Hodgman (1974).
 fn cut(polygon: &Polygon, line: &Linear) -> Polygon {
     let mut rest = Vec::new();
     for (i, to) in polygon.iter().enumerate() {
@@ -111,8 +111,8 @@ fn area(polygon: &Polygon) -> RBig {
     twice / RBig::from(2)
 }
 
-/// The cameras are level, look down to the right along (48, −25, −36)/65, or are that one rolled by
-/// the angle whose cosine is 3/5. The horizon is above all listed pixels.
+/// Some cameras are level. Others look down to the right, along (48, −25, −36)/65, either unrolled
+/// or rolled by the angle whose cosine is 3/5. All listed pixels are below the horizon.
 #[test]
 fn board_pixels_agree_with_rational_arithmetic() {
     let (width, height) = (64u32, 48u32);
@@ -150,7 +150,7 @@ fn board_pixels_agree_with_rational_arithmetic() {
             axes: axes.clone(),
             d: rational(d),
         };
-        // `view_height` is 2, and rows are counted from the top.
+        // `view_height` is 2, and rows are counted from the top of the picture.
         let pitch = RBig::from(2) / RBig::from(height);
         let [left, top] = [width, height].map(|size| RBig::from(size) / RBig::from(2));
         for at in pixels.split(' ') {

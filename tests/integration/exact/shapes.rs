@@ -6,7 +6,7 @@ use super::*;
 
 const AHEAD: &str = "eye (0, 0, 0) direction (0, 0, -1) d 1";
 
-/// Asserts the share of a picture of one pixel that a white object covers.
+/// Asserts that a white object covers the share `expected` of a picture of one pixel.
 #[track_caller]
 fn assert_coverage(camera: &str, object: &str, expected: f64) {
     let scene = read(&format!(
@@ -22,15 +22,15 @@ fn assert_coverage(camera: &str, object: &str, expected: f64) {
 
 #[test]
 fn half_plane_coverage_matches_the_closed_form() {
-    // The pixel is 2 wide at distance 1. The box's right edge is seen at x/4, or at x/5 if its
-    // right face is seen, too.
+    // The pixel is 2 wide at distance 1. The box's right edge is seen at edge/4, or at edge/5 if
+    // the right face is visible.
     for edge in [-3.5f64, -0.25, 0.0, 1.0, 3.0] {
         let object = format!("box {{ min (-100, -100, -5) max ({edge}, 100, -4) color white }}");
         let expected = 0.5 + edge / if edge < 0.0 { 10.0 } else { 8.0 };
         assert_coverage(AHEAD, &object, expected);
         assert_coverage(&format!("{AHEAD} roll 90deg"), &object, expected);
     }
-    // An edge through the pixel's centre leaves half of it, at any roll.
+    // A plane whose edge passes through the pixel's centre covers half of it, at any roll.
     for object in list(
         "
         box { min (-100, -100, -5) max (0, 100, -4) color white }
@@ -71,11 +71,11 @@ fn board_coverage_from_above_matches_the_closed_form() {
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),
-        // The colour is the sign s(x)·s(z). x goes from −3/4 to 5/4 and z from −1/2 to 3/2: two
-        // squares along each axis, so each integral is 0.
+        // The colour is given by the sign s(x)·s(z). x is from −3/4 to 5/4, z from −1/2 to 3/2:
+        // two squares along each axis, so the integral of each sign is 0.
         ("(0.25, 1, 0.5)", 1.0, 0.5),
-        // x goes from −1/2 to 1 with the integral 1 − 1/2, and z from −1/4 to 5/4 with −1/4 + 1 −
-        // 1/4, of an area of (3/2)².
+        // x is from −1/2 to 1, with the integral 1 − 1/2. z is from −1/4 to 5/4, with the integral
+        // −1/4 + 1 − 1/4. The area is (3/2)².
         ("(0.25, 0.75, 0.5)", 1.0, 0.5 + 0.5 * (0.5 * 0.5) / 2.25),
     ] {
         let camera = format!("eye {eye} direction (0, -1, 0) up (0, 0, -1) d 1");
@@ -86,8 +86,8 @@ fn board_coverage_from_above_matches_the_closed_form() {
 
 #[test]
 fn nearly_vertical_lines_are_known_and_add_up() {
-    // The camera looks at an edge of the box, which runs along the middle column, and a sphere's
-    // outline crosses it.
+    // The camera looks at an edge of the box, which runs along the middle column. The silhouette of
+    // a sphere crosses that edge.
     for [camera, objects] in rows("
         eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3 -> sphere { center (-1, 2, -1.5) radius 1.5 color white } box { min (1, -2, -1) max (2, -1.5, 0) color white }
         eye (1, 3.5, 7.5) lookat (-1.5, 1, 1) d 1 -> box { min (-1.5, 0, -1) max (-0.5, 3, 1) color white } sphere { center (-1, 1, 1) radius 1.5 color black }

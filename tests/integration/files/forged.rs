@@ -1,13 +1,12 @@
-//! Foreign names and texts: none can forge a line, a table cell or a spreadsheet formula, and none
-//! can control a terminal.
+//! Untrusted names and texts cannot forge a line, a table cell or a spreadsheet formula, and cannot
+//! control a terminal.
 
 use std::fs;
 
 use super::{SCENE, folder, hostile::run_with_deadline};
 use crate::program::Folder;
 
-/// The terminal is opened by `script`, if that is installed. A pipe gets the text of the file
-/// unchanged.
+/// `script`, if it is installed, provides the terminal. A pipe receives the text unchanged.
 #[test]
 fn scene_text_is_escaped_on_a_terminal_and_unchanged_in_a_pipe() {
     let hostile = "sphere  {} // \u{1b}]0;x\u{7} \u{9b}2J \u{202e}\n";
@@ -100,7 +99,7 @@ fn file_names_cannot_forge_lines_or_table_cells() {
             assert_eq!(said.errors.lines().count(), 1, "{:?}", said.errors);
             assert!(!said.errors.contains(forged), "{:?}", said.errors);
         }
-        // A forged line would be one more than usual.
+        // If a name could forge a line, the message would have one line more than usual.
         for arguments in [
             &["rendr", name][..],
             &["render", "a.scn", name],
@@ -166,7 +165,7 @@ fn csv_cells_never_start_a_spreadsheet_formula() {
         let mut table = csv::Reader::from_reader(csv.as_bytes());
         let cells = table.records().next().unwrap().unwrap();
         assert!(cells[2].parse::<f64>().is_ok(), "{row}");
-        // The student has the name of the file.
+        // The column of the student has the name of the file.
         assert_eq!(cells[0], cells[6], "{row}");
     }
 }

@@ -1,5 +1,5 @@
-//! Special files at the paths that a command reads or writes: it refuses them at once, in one line,
-//! and leaves every other file as it is.
+//! Special files at the paths that a command reads or writes. The command refuses them at once,
+//! with a message of one line, and changes no other file.
 
 use std::{
     fs,
@@ -14,7 +14,7 @@ use std::{
 use super::{SCENE, folder};
 use crate::program::{Folder, Outcome, command};
 
-/// Kinds of special files at a path, with the message of a command that reads it.
+/// Kinds of special files, each with the message of a command that reads such a file.
 const HOSTILE: [(&str, &str); 9] = [
     ("pipe", "it is a pipe, not a file"),
     ("link to a pipe", "it is a pipe, not a file"),
@@ -27,7 +27,7 @@ const HOSTILE: [(&str, &str); 9] = [
     ("nothing", "there is no such file or folder"),
 ];
 
-/// Creates a special file of a kind at a path.
+/// Creates a special file of the kind `what` under a name in a folder.
 fn create_special_file(what: &str, name: &str, folder: &Folder) {
     let path = &folder.path(name);
     match what {
@@ -47,7 +47,7 @@ fn create_special_file(what: &str, name: &str, folder: &Folder) {
     }
 }
 
-/// Returns every entry below a folder: its path and kind, with its link target or its content.
+/// Returns the path and kind of every entry below a folder, with its link target or its content.
 fn entries(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -70,7 +70,7 @@ fn entries(folder: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// Runs a command that must not wait for anything, and kills it after a deadline.
+/// Runs a command, and kills it if it has not ended after ten seconds.
 #[track_caller]
 pub(super) fn run_with_deadline(folder: &Folder, arguments: &[&str]) -> Outcome {
     let mut command = command(folder.path("").as_path(), arguments);
@@ -79,7 +79,7 @@ pub(super) fn run_with_deadline(folder: &Folder, arguments: &[&str]) -> Outcome 
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // It takes at most a second on an idle machine.
+    // The command takes at most a second on an idle machine.
     let end = Instant::now() + Duration::from_secs(10);
     while child.try_wait().unwrap().is_none() {
         if Instant::now() > end {
@@ -91,7 +91,7 @@ pub(super) fn run_with_deadline(folder: &Folder, arguments: &[&str]) -> Outcome 
     child.wait_with_output().unwrap().into()
 }
 
-/// Asserts that a command refuses something in one line, and changes no file.
+/// Asserts that a command fails with one line that mentions `about`, and changes no file.
 #[track_caller]
 fn assert_refused(folder: &Folder, arguments: &[&str], about: &str) {
     let before = entries(&folder.path(""));
@@ -176,9 +176,9 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
         ("link to a file outside", ""),
         ("link to a folder outside", ""),
     ]) {
-        // Default outputs, named after the scene.
+        // These outputs are named after the scene by default.
         let lines = ["render b.scn", "watch b.scn"].map(|line| (line, "b.png"));
-        // Files in an output folder.
+        // These commands write files into an output folder.
         let grade = "grade a.scn a.png -o out";
         let report = "report a.scn -o out --samples 1 --runs 1 --methods sobol";
         let both = "report a.scn b.scn -o out --samples 1 --runs 1 --methods sobol";
@@ -202,7 +202,7 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
                 "link to a folder outside" => symlink(outside.path("deep"), &path).unwrap(),
                 _ => create_special_file(what, name, &folder),
             }
-            // A folder is only in the way of a file, and a missing path is never in the way.
+            // A folder is in the way only of a file, and a missing path never is.
             if what == "nothing" || (what, name) == ("folder", "out/b") {
                 continue;
             }
@@ -288,8 +288,8 @@ fn oversized_files_and_pictures_are_refused_unless_large_is_given() {
     assert_eq!(said.status, 0, "{}", said.errors);
 }
 
-/// Asserts that a command refuses something in one line. Does not compare the folder's files, which
-/// are too large for that.
+/// Asserts that a command fails with one line that mentions `about`. The files are not compared,
+/// because they are too large.
 #[track_caller]
 fn assert_refused_without_comparing(folder: &Folder, arguments: &[&str], about: &str) {
     let said = run_with_deadline(folder, arguments);

@@ -1,4 +1,4 @@
-//! Events while the program writes: another program saves the file, the folder is read-only, or the
+//! Interruptions of writing: another program saves the same file, the folder is read-only, or the
 //! process is killed.
 
 use std::{
@@ -26,7 +26,7 @@ fn a_concurrent_save_of_another_program_is_never_overwritten() {
     let theirs = pinhole::scene::SMALLEST;
     for command in ["fmt a.scn", "check --fix a.scn"] {
         let mut left = 0;
-        // For some delay, the file has been read and not been written yet.
+        // With some of these delays, the program has read the file but not written it yet.
         for delay in 0..40 {
             let folder = Folder::with([("a.scn", &*long), ("theirs", theirs)]);
             let child = spawned(&folder, command);
@@ -48,7 +48,7 @@ fn a_concurrent_save_of_another_program_is_never_overwritten() {
     }
 }
 
-/// A user who is not root.
+/// Id of a user and group other than root (`nobody`).
 const USER: u32 = 65534;
 
 fn is_root() -> bool {
@@ -56,8 +56,8 @@ fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|found| found.uid() == 0)
 }
 
-/// Makes the subfolder `closed` read-only. If root runs the tests, gives its scene and the home to
-/// the user.
+/// Makes the subfolder `closed` read-only. If root runs the tests, gives the scene in it and the
+/// home folder to [`USER`].
 fn give_to_user(folder: &Folder) {
     for (name, mode) in [
         ("", 0o755),
@@ -99,7 +99,7 @@ fn a_file_in_a_read_only_folder_is_written_in_place() {
             let mode = fs::metadata(&state).unwrap().permissions().mode();
             assert_eq!(mode & 0o777, 0o700);
         } else {
-            // There is no folder for the backup copy.
+            // A backup copy cannot be made, because its folder cannot be created.
             let told = "error: cannot write to closed/a.scn: its permissions, or those of its folder, do not allow that\n";
             assert_eq!((said.status, &*said.errors), (2, told));
             assert_eq!(text, "sphere  {}\n");
@@ -135,7 +135,7 @@ fn a_killed_new_command_leaves_a_complete_file_or_none() {
     assert!(absent > 0 && present > 0, "{absent} {present}");
 }
 
-/// The process is killed at various times from before it writes until it has answered.
+/// Kills the process at various times, from before it writes until it has answered.
 #[cfg(feature = "studio")]
 #[test]
 fn a_killed_first_save_leaves_a_complete_file_or_none() {
@@ -208,7 +208,7 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
         let is_whole = text == old || text == new || copies.iter().any(is_copied);
         assert!(is_whole, "{delay}");
         left += copies.len();
-        // The next run names the copy, except for a file of this name in another folder.
+        // The next run mentions the copy that was left, but not for another file of this name.
         for (line, is_named) in [
             ("fmt closed/a.scn", true),
             ("fmt --check other/a.scn", false),
@@ -222,8 +222,8 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
     assert!(left > 0, "no try was in time");
 }
 
-/// If a user may write to a file but may not restore its group, that group's rights go to nobody
-/// else.
+/// A user may be allowed to write to a file but not to restore its group. Then no other group gets
+/// the rights of the old group.
 #[test]
 fn rewriting_a_file_grants_no_rights_to_another_group() {
     use std::os::unix::fs::MetadataExt;
@@ -231,7 +231,7 @@ fn rewriting_a_file_grants_no_rights_to_another_group() {
     if !is_root() {
         return;
     }
-    // A file may be given to a supplementary group of the user, and not to another group.
+    // A user may give a file to one of the user's supplementary groups, but to no other group.
     for (owner, groups, after) in [
         (1234, "--groups=1235", (USER, 1235, 0o660)),
         (USER, "--clear-groups", (USER, USER, 0o600)),

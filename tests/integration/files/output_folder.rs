@@ -1,4 +1,4 @@
-//! Output folders, in which a command replaces only files that it has made.
+//! Output folders: a command replaces only files that a command has written there.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use pinhole::files::OutputFolder;
 use super::folder;
 use crate::program::{Folder, names};
 
-/// Commands that fill a folder `out`, with some of the files that they make there.
+/// Commands that fill the folder `out`, each with some of the files that it writes there.
 const COMMANDS: [(&str, &[&str]); 3] = [
     (
         "grade a.scn a.png -o out",
@@ -36,7 +36,7 @@ fn own_output_files_are_replaced_and_listed_with_their_hashes() {
         }
         let checked = folder.shell("cd out; sha256sum --check --strict --quiet .pinhole");
         assert_eq!((checked.status, &*checked.errors), (0, ""), "{list}");
-        // A removed file is made again, and another file in the folder is left alone.
+        // The command writes a removed file again, and leaves another file in the folder alone.
         fs::remove_file(folder.path(&format!("out/{}", files[0]))).unwrap();
         folder.write("out/other.html", "mine");
         folder.told(command, 0);
@@ -62,7 +62,7 @@ fn foreign_or_changed_output_files_are_refused_before_anything_is_written() {
             fs::remove_dir_all(folder.path("out")).unwrap();
             folder.told(command, 0);
             folder.write(&path, "changed");
-            // A changed file is not read to its end, which may be very far.
+            // The file is made huge: the program does not read a changed file to its end.
             let huge = fs::OpenOptions::new().write(true).open(folder.path(&path));
             huge.unwrap().set_len(1 << 40).unwrap();
             assert!(folder.told(command, 2).contains("was changed since"));
@@ -90,7 +90,7 @@ fn concurrent_runs_both_list_their_files() {
     assert!(list.contains("  a\n") && list.contains("  b/c\n"), "{list}");
 }
 
-/// A file that is written again with the same content keeps its hash, so the list does not change.
+/// If every file is written again with the same content, the list of files stays the same.
 #[cfg(unix)]
 #[test]
 fn an_unchanged_file_list_is_not_rewritten() {

@@ -1,4 +1,4 @@
-//! Distance of two pictures: what the tests of `diff` do not cover.
+//! Tests of the comparison of two pictures that the tests of `diff` do not cover.
 
 use pinhole::{
     color::srgb_to_linear,
@@ -14,7 +14,7 @@ fn film(pixels: &[[f64; 3]]) -> Film {
     Film::from_fn(pixels.len() as u32, 1, |x, _| pixels[x as usize]).unwrap()
 }
 
-/// Returns the linear light of a step of 255.
+/// Returns the linear light of an 8-bit sRGB value, in steps from 0 to 255.
 fn light(steps: f64) -> f64 {
     srgb_to_linear(steps / 255.0)
 }
@@ -33,7 +33,7 @@ fn pixels_within_the_tolerance_plus_the_bound_compare_equal() {
     for (other, bound, is_equal, undecided) in [
         (&bright, None, false, 0),
         (&bright, Some([1e-3]), true, 1),
-        // Also where only the bound covers the difference.
+        // The same holds if only the error bound covers the difference.
         (&dark, Some([1e-3]), true, 1),
         (&dark, Some([1e-6]), true, 0),
     ] {

@@ -1,4 +1,4 @@
-//! Picture files as beginners' programs write them, and as shells and systems alter them.
+//! Picture files as beginners' programs write them, and files that shells and systems damaged.
 
 use std::io::Cursor;
 
@@ -6,11 +6,11 @@ use exr::prelude::{Image, SpecificChannels, WritableImage};
 use image::{ImageFormat, Rgb, RgbImage};
 use pinhole::film::{Coding, read_picture};
 
-/// Two rows of three pixels.
+/// Picture of two rows with three pixels each, as text.
 const TEXT: &str = "P3\n3 2\n255\n1 2 3 4 5 6 7 8 9\n10 11 12 13 14 15 16 17 18\n";
 
-/// Returns the picture of `TEXT` in binary form. Its bytes 10 and 13 are a line feed and a carriage
-/// return.
+/// Returns the picture of [`TEXT`] in binary form. Its values 10 and 13 are the bytes of a line
+/// feed and a carriage return.
 fn bytes() -> Vec<u8> {
     let numbers: Vec<u8> = (1..=18).collect();
     [b"P6\n3 2\n255\n", &numbers[..]].concat()
@@ -21,7 +21,7 @@ fn utf16(text: &str, mark: &[u8], bytes: fn(u16) -> [u8; 2]) -> Vec<u8> {
     mark.iter().copied().chain(text).collect()
 }
 
-/// Returns the bytes as a C library writes them in text mode, with two bytes per line end.
+/// Returns `bytes` as a C library on Windows writes them in text mode: a CR before each LF.
 fn in_text_mode(bytes: &[u8]) -> Vec<u8> {
     let written = |&byte: &u8| match byte {
         b'\n' => vec![b'\r', b'\n'],
@@ -87,7 +87,7 @@ fn binary_pnm_reencoded_as_utf8_is_read() {
     assert!(said.contains("as `>` of PowerShell 7 does"), "{said}");
 }
 
-/// A truncated file is an error, or has all pixels of the whole one.
+/// Reading a truncated file fails, or yields all pixels of the whole file.
 #[test]
 fn a_truncated_picture_file_never_reads_as_a_different_picture() {
     let picture = RgbImage::from_fn(24, 20, |x, y| {

@@ -1,4 +1,4 @@
-//! Light of a pixel: the mean of its samples and its encoding as bytes.
+//! The light of a pixel: the mean of its samples, and its encoding as bytes.
 
 use pinhole::{
     color::{Color, half_byte},
@@ -45,13 +45,13 @@ fn a_mean_equals_the_quotient_in_extended_precision() {
 
 #[test]
 fn a_mean_is_rounded_once() {
-    // 3 · 0.1 + 7 · 0.3, where the double 0.1 is 0.1000000000000000055511151231257827 and 0.3 is
-    // 0.299999999999999988897769753748: the mean is 0.24 within 6e-18, a quarter of the distance
-    // between neighbouring doubles.
+    // The sum is 3 · 0.1 + 7 · 0.3. The double 0.1 is 0.1000000000000000055511151231257827, and 0.3
+    // is 0.299999999999999988897769753748. So the mean is 0.24 within 6e-18, which is a quarter of
+    // the distance between neighbouring doubles.
     let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
     assert_eq!(found, [0.24; 3]);
-    // One of 2^53 samples is half a unit in the last place of the others: the mean is exact, and a
-    // running sum would lose that sample.
+    // One of 2^53 samples is black, so the mean is 1 − 2^−53 exactly. A running sum would round
+    // that sample away.
     let found = mean([((1 << 53) - 1, [1.0; 3]), (1, [0.0; 3])].into_iter());
     assert_eq!(found, [1.0 - f64::EPSILON / 2.0; 3]);
 }

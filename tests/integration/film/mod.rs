@@ -1,4 +1,4 @@
-//! Picture files: their contents, and how damaged or oversized ones are refused.
+//! Picture files: their contents, and the refusal of damaged or oversized files.
 
 mod compare;
 mod foreign;
@@ -20,7 +20,7 @@ use png::{BitDepth, ColorType};
 
 use crate::images::png;
 
-/// Returns a film of colours from dark to light.
+/// Returns a film whose colours range from dark to light.
 fn film(width: u32, height: u32) -> Film {
     Film::from_fn(width, height, |x, y| {
         let light = f64::from(y * width + x) / f64::from(width * height - 1).max(1.0);
@@ -29,7 +29,7 @@ fn film(width: u32, height: u32) -> Film {
     .unwrap()
 }
 
-/// Encodes the linear light of a channel by the definition of sRGB.
+/// Encodes the linear light of a channel by the definition of sRGB, to a number from 0 to 1.
 fn encoded(light: f64) -> f64 {
     if light <= 0.003_130_8 {
         12.92 * light
@@ -52,7 +52,7 @@ fn png_bytes(film: &Film, recipe: &Recipe) -> Vec<u8> {
     bytes
 }
 
-/// Returns the kinds and contents of a PNG's chunks.
+/// Returns the kind and the content of each chunk of a PNG file.
 fn chunks(png: &[u8]) -> Vec<(&str, &[u8])> {
     let mut rest = &png[8..];
     iter::from_fn(|| {
@@ -73,7 +73,7 @@ fn a_png_is_truecolour_with_no_unexpected_chunks() {
     let mut kinds: Vec<_> = chunks.iter().map(|(kind, _)| *kind).collect();
     kinds.dedup();
     assert_eq!(kinds, ["IHDR", "sRGB", "iTXt", "IDAT", "IEND"]);
-    // Width, height, 8 bits, truecolour, and not interlaced.
+    // The header has width, height, 8 bits per channel, truecolour, and no interlacing.
     assert_eq!(chunks[0].1, [0, 0, 0, 31, 0, 0, 0, 17, 8, 2, 0, 0, 0]);
     let read = image::load_from_memory(&png).unwrap().into_rgb8();
     for (x, y, pixel) in read.enumerate_pixels() {
@@ -123,7 +123,7 @@ fn a_recipe_beyond_the_text_limit_is_left_out() {
     assert!(!many.fits());
 }
 
-/// A decoder's error may quote a part of the file, which can have any length.
+/// A decoder's message may quote a part of the file, which can have any length.
 #[test]
 fn picture_errors_are_at_most_300_characters_long() {
     let long = "x".repeat(5000);
@@ -140,7 +140,7 @@ fn picture_errors_are_at_most_300_characters_long() {
         "\u{89}PNG\r\n\u{1a}\nLONG",
     ];
     for head in heads {
-        // Latin-1: a byte for each character.
+        // Encode the head in Latin-1: each character becomes one byte.
         let bytes: Vec<u8> = head
             .replace("LONG", &long)
             .chars()
@@ -158,8 +158,8 @@ fn a_damaged_png_never_yields_a_changed_recipe() {
     for length in 0..idat {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
-    // No wrong bit causes a panic. A wrong bit in the header is found by the checksum, and nothing
-    // behind the scene is read.
+    // No wrong bit causes a panic. The checksum reveals a wrong bit in the header. Nothing that
+    // follows the scene is read.
     for bit in 0..8 * png.len() {
         let mut flipped = png.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
@@ -171,7 +171,7 @@ fn a_damaged_png_never_yields_a_changed_recipe() {
     }
 }
 
-/// Returns the start of a PNG with text chunks of these keywords and texts.
+/// Returns the start of a PNG file that has text chunks with these keywords and texts.
 fn carrying<'a>(texts: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<u8> {
     let mut png = SIGNATURE.to_vec();
     for (keyword, text) in texts {
@@ -199,7 +199,7 @@ fn recipes_with_too_many_or_non_utf8_overrides_are_refused() {
         told.ends_with("an override that is not UTF-8 text"),
         "{told}"
     );
-    // Texts of other programs may have any content.
+    // Text chunks of other programs may have any content.
     let foreign = ("Comment", &b"\xff"[..]);
     assert!(read_recipe(&carrying([foreign, scene].into_iter())).is_ok());
 }
@@ -230,8 +230,8 @@ fn every_8_and_16_bit_srgb_value_decodes_to_its_linear_light() {
     }
 }
 
-/// Channels that are not read, such as opacity or another layer, do not affect how the colours are
-/// taken to be rounded: one file has 16-bit opacity, the other a 16-bit green channel.
+/// The rounding of the colours is detected without regard to channels that are not read, such as
+/// opacity or another layer. One file has 16-bit opacity, the other a 16-bit green channel.
 #[test]
 fn unused_exr_channels_do_not_affect_the_detected_rounding() {
     for (file, rounding) in [
@@ -252,7 +252,7 @@ fn a_small_file_of_a_huge_picture_is_refused() {
     assert!(bytes.len() < 1 << 20);
     let large = "it has 20000 × 20000 pixels, which are decoded to more than the 268435456 bytes that are read";
     assert_eq!(read_picture(&bytes).unwrap_err().to_string(), large);
-    // The limit counts four channels of the size of those in the file.
+    // The limit counts four channels per pixel, each of the size of the file's channels.
     for (depth, size) in [(BitDepth::One, 4 * 6), (BitDepth::Sixteen, 8 * 6)] {
         let bytes = png(
             [3, 2],
@@ -296,7 +296,7 @@ fn an_exr_stores_means_as_floats_and_the_position_of_the_crop() {
         let mut bytes = Cursor::new(Vec::new());
         write_exr(&film, part, whole, &mut bytes).unwrap();
         let bytes = bytes.into_inner();
-        // A film of 32-bit floats gives the same file.
+        // A film of 32-bit floats yields the same bytes.
         let floats: Film<[f32; 3]> =
             Film::from_fn(33, 70, |x, y| film.pixel(x, y).map(|light| light as f32)).unwrap();
         let mut same = Cursor::new(Vec::new());

@@ -1,12 +1,12 @@
-//! Which fixes mistakes get and how they change a text, compared with the files in `tests/fixes`.
+//! Compares the fixes of mistakes, and the texts after the fixes, with files in `tests/fixes`.
 
 use pinhole::{diagnostic::apply, source::SourceId};
 
 use super::{Trial, diagnostics};
 use crate::{diagnostics::codes, scenes::sources, snapshot::assert_answers};
 
-/// Applies the first fix again and again until no problem has one, as each fix moves later ones.
-/// Returns `None` if there is no fix.
+/// Applies the first fix repeatedly, because each fix moves later ones, until no problem has a fix.
+/// Returns the text then, or `None` if the text had no fix.
 fn mended(text: &str) -> Option<String> {
     let mut trial = Trial::default();
     trial.apply_fixes(&sources(text), |_, _| true);

@@ -1,5 +1,5 @@
-//! A missing brace or parenthesis: the first report is about it, and no fix removes what the author
-//! wrote.
+//! If a brace or a parenthesis is missing, the first diagnostic is about it, and no fix removes
+//! anything that the author wrote.
 
 use std::{collections::BTreeSet, fs};
 
@@ -8,7 +8,7 @@ use pinhole::{diagnostic::Applicability, scene};
 use super::diagnostics;
 use crate::scenes::{scenes, sources};
 
-/// Scenes with other mistakes, most of them in the heads of blocks.
+/// Scenes that also have other mistakes, most of them in the heads of blocks.
 const WITH_MISTAKES: [&str; 3] = [
     "\
 camera { eye (0, 3, 8)  lookat (0, 1, 0) }
@@ -38,7 +38,7 @@ cube for i < 3 and j < 3 { center (i, j, 0) }
 ",
 ];
 
-/// Codes that may be reported first, without `pinhole::`.
+/// Codes that may be reported first if a delimiter is missing, without `pinhole::`.
 const OF_DELIMITERS: [&str; 7] = [
     "unclosed_block",
     "unopened_block",
@@ -49,8 +49,8 @@ const OF_DELIMITERS: [&str; 7] = [
     "nested_braces",
 ];
 
-/// Returns whether a text still has all its characters, in order, after its fixes; white space is
-/// not compared.
+/// Returns whether a text keeps all its characters in order when its fixes up to `most` are
+/// applied. White space is not compared.
 fn keeps_all(text: &str, most: Applicability) -> bool {
     let fixed = scene::fix_all(&sources(text), most).text;
     let mut left = fixed.chars();

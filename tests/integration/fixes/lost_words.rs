@@ -1,6 +1,6 @@
-//! Checks what safe fixes keep: every number, and every name or the known name that is near it.
-//! Only keywords, units and punctuation may be new. The words of a text are read here by a scanner
-//! of its own, including those in comments, so that none of them gets lost.
+//! Checks what safe fixes keep: every number and every name. A name may be replaced by a similar
+//! known name. Only keywords, units and punctuation may be new. A separate scanner reads the words
+//! of a text, also those in comments, so that losses there are found too.
 
 use pinhole::{
     diagnostic::Applicability,
@@ -25,7 +25,7 @@ const UNITS: [(&str, f64); 9] = [
     ("grad grads gon", 0.9),
 ];
 
-/// Numbers and names of a text, in order. A number includes its unit.
+/// Numbers and names of a text, in order. A number is multiplied by the factor of its unit.
 #[derive(Debug, Default)]
 struct Words {
     numbers: Vec<f64>,
@@ -33,8 +33,8 @@ struct Words {
 }
 
 impl Words {
-    /// Reads the words of a text. A field's name joined with its value, as in `radius2`, or in
-    /// `centerball` if `all` has the word `ball`, is read as two words if `is_two` is true.
+    /// Reads the words of `text`. A field's name may be joined with its value, as in `radius2`, or
+    /// in `centerball` if `all` has the word `ball`. If `is_two`, such a word is read as two words.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
         // Zero-width characters are not part of a number.
@@ -57,7 +57,7 @@ impl Words {
                         .find(|c: char| !(is_letter(c) || c.is_ascii_digit()))
                         .unwrap_or(rest.len()),
                 };
-                // `0.5x1.5x2`
+                // Skip an `x` that multiplies, as in `0.5x1.5x2`.
                 let is_times = rest.starts_with(['x', 'X'])
                     && starts_number(&rest[1..])
                     && text[..text.len() - rest.len()].ends_with(|c: char| c.is_ascii_digit());
@@ -89,8 +89,8 @@ impl Words {
     }
 }
 
-/// Returns the length of the field's name at the start of a word that goes on with a value, as in
-/// `radius2`. Returns `None` if the word is a field's name or does not start with one.
+/// If a word is a field's name joined with a value, as in `radius2`, returns the length of the
+/// name. Returns `None` if the word is itself a field's name or does not start with one.
 fn joined_field(word: &str, all: &str) -> Option<usize> {
     if BLOCKS.iter().any(|block| block.field(word).is_some()) {
         return None;
@@ -117,7 +117,7 @@ fn is_letter(c: char) -> bool {
     c.is_alphabetic() || c == '_'
 }
 
-/// Returns the length of the number at the start of a text.
+/// Returns the length in bytes of the number at the start of a text.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let is_digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
@@ -149,12 +149,12 @@ fn keywords() -> impl Iterator<Item = &'static str> {
         .chain(["let", "for", "rgb", "deg", "rad"])
 }
 
-/// Returns whether two words are spelled nearly the same.
+/// Returns whether the spellings of two words are similar.
 fn is_near(new: &str, old: &str) -> bool {
     suggest::nearest(old, [new]).is_some() || suggest::is_among(old, new)
 }
 
-/// Returns whether a word is the language's equivalent of another one.
+/// Returns whether `new` is the language's word for `old`, a word of another notation.
 fn is_known_for(new: &str, old: &str) -> bool {
     let is_tried = |block: &schema::BlockRow| {
         let field = block.field_tried(old);
@@ -168,8 +168,8 @@ fn is_known_for(new: &str, old: &str) -> bool {
         || old.strip_prefix("0x") == Some(new)
 }
 
-/// Applies the safe fixes to a text. Returns the new text, and complaints about lost or new numbers
-/// and names.
+/// Applies the safe fixes to `text`. Returns the new text, and a complaint about each number or
+/// name that is lost or new.
 pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     let sources = Sources::new(Source::from_text("a.scn", text));
     let fixed = scene::fix_all(&sources, Applicability::Safe);
@@ -198,9 +198,9 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // Whether a fix joined two words, split one or replaced one is ambiguous, so every reading is
-    // tried: each of the last four pairs may have been joined or not. The reading with the fewest
-    // differences counts.
+    // It is ambiguous whether a fix joined two words, split a word, or replaced one. So every
+    // reading is tried, in which each of the last four pairs has been joined or not. The reading
+    // with the fewest differences counts.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -235,15 +235,16 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     (fixed.text, complaints)
 }
 
-/// Returns the lost and the new names. The bits of `joins` say which pairs that may have been
-/// joined were, the last pair first; its sign is that of all further pairs.
+/// Returns the lost names and the new names. Each bit of `joins` says whether a pair of words that
+/// may have been joined counts as joined, the last pair first. The sign of `joins` applies to all
+/// further pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],
     mut joins: i32,
 ) -> (Vec<String>, Vec<String>) {
     let (mut names, mut new) = (before.to_vec(), after.to_vec());
-    // `look at` stands for the field `lookat`.
+    // The two words `look at` stand for the field `lookat`.
     let is_known = |word: &String| {
         BLOCKS.iter().any(|block| block.field(word).is_some())
             || schema::css::color(word).is_some()
@@ -273,13 +274,14 @@ fn unmatched_names(
             at.map(|at| new.remove(at)).is_none()
         });
     }
-    // `let Ball = sphere {` becomes a block.
+    // The fix of `let Ball = sphere {` removes `let`, because the text becomes a block.
     names.retain(|name| name != "let");
     new.retain(|name| !keywords().any(|word| word == name));
     (names, new)
 }
 
-/// Makes a number of texts with one to four random slips each, which are the same in every run.
+/// Calls `is_tried` with `count` texts, each made from one of `texts` by one to four random
+/// mistakes. They are the same in every run.
 pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     let mut random = Random::new(1);
     for _ in 0..count {
@@ -291,8 +293,8 @@ pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     }
 }
 
-/// Makes one slip: a piece of the text is removed, doubled, moved, misspelt or replaced, or
-/// something is inserted next to it.
+/// Returns `text` with one random mistake: a piece is removed, doubled, moved, misspelled or
+/// replaced, or something is inserted next to it.
 fn slip(text: &str, random: &mut Random) -> String {
     const OTHERS: [&str; 72] = [
         "radius",
@@ -405,7 +407,7 @@ fn slip(text: &str, random: &mut Random) -> String {
     format!("{before}{changed}{after}")
 }
 
-/// Returns the ranges of a text's words, numbers and signs.
+/// Returns the ranges of the words, numbers and signs of a text.
 fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
     let mut pieces = Vec::new();
     let mut at = 0;

@@ -1,4 +1,4 @@
-//! Systematic slips in correct scenes: each fix of a problem removes it and adds no new error.
+//! Systematic mistakes in correct scenes: each fix removes its problem and adds no new error.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use pinhole::syntax::tokens::{Lexer, TokenKind};
 use super::{Trial, diagnostics};
 use crate::scenes::{examples, sources};
 
-/// Scene with the parts of the language that the examples lack.
+/// Scene with those parts of the language that the examples lack.
 const SCENE: &str = "\
 camera { eye (0, 2, 8)  lookat (0, 1, 0)  hfov 60deg  near 1  far 100 }
 sampler { method sobol  total 1_000_000 }
@@ -21,7 +21,7 @@ box D { center (0, 1, 0)  size (1, 2, 3) }
 checkerboard { square 1  colors (red, white) }
 ";
 
-/// Returns the ranges of a scene's tokens, without comments.
+/// Returns the ranges of a scene's tokens, except comments.
 fn tokens(text: &str) -> Vec<Range<usize>> {
     let mut lexer = Lexer::new(text, 0);
     let tokens = std::iter::repeat_with(|| lexer.token());
@@ -30,7 +30,7 @@ fn tokens(text: &str) -> Vec<Range<usize>> {
     tokens.map(|token| token.start..token.end).collect()
 }
 
-/// One token is removed, doubled, replaced by another one, or followed by another one.
+/// Each text lacks one token, has it twice, or has another token in its place or after it.
 #[test]
 fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     let others = "radius 2 , = ( ) { } let red - * deg # \" ;".split(' ');
@@ -44,7 +44,7 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // A field without a value is found when the tree is lowered to a scene.
+                // A field without a value is found only when the tree is lowered to a scene.
                 trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });
@@ -54,7 +54,7 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     trial.finish_with_more_than(500);
 }
 
-/// A word, a number or an innermost list is replaced by another one.
+/// In each text, a word, a number or an innermost list is replaced by another one.
 #[test]
 fn fixes_of_semantic_slips_remove_their_problem_and_add_no_error() {
     let mut trial = Trial::default();
@@ -88,7 +88,7 @@ fn fixes_of_semantic_slips_remove_their_problem_and_add_no_error() {
     trial.finish_with_more_than(500);
 }
 
-/// Returns replacements of a word, a number or an innermost list.
+/// Returns wrong replacements of `piece`, which is a word, a number or an innermost list.
 fn slips_in_meaning(piece: &str) -> Vec<String> {
     let (mut slips, fixed) = match piece.chars().next() {
         Some('(') if piece.len() > 1 => {

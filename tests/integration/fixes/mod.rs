@@ -21,7 +21,7 @@ fn diagnostics(sources: &Sources) -> Vec<Diagnostic> {
     scene::read(sources).diagnostics
 }
 
-/// Applies a fix to the file and the `--set` arguments.
+/// Returns the sources after applying `fix` to the file and to the `--set` arguments.
 fn with_fix(sources: &Sources, fix: &Fix) -> Sources {
     let sets = sources.sets();
     let sets = sets.map(|(id, set)| apply(fix, id, set.text()));
@@ -29,7 +29,7 @@ fn with_fix(sources: &Sources, fix: &Fix) -> Sources {
     Sources::new(Source::from_text("a.scn", file)).with_sets(sets)
 }
 
-/// Counts the diagnostics by code and message, without the spaces in quoted texts.
+/// Counts diagnostics by code and message. Spaces in quoted texts are ignored.
 fn counted<'d>(
     diagnostics: impl IntoIterator<Item = &'d Diagnostic>,
 ) -> BTreeMap<(&'d str, String), usize> {
@@ -44,7 +44,7 @@ fn said(diagnostic: &Diagnostic) -> (&str, String) {
     (&diagnostic.code, diagnostic.message.replace(' ', ""))
 }
 
-/// Number of fixes applied, and complaints about them.
+/// Number of fixes that were applied, and complaints about their effects.
 #[derive(Default)]
 struct Trial {
     fixes: usize,
@@ -52,8 +52,8 @@ struct Trial {
 }
 
 impl Trial {
-    /// Applies every fix of the selected problems, and complains if a problem remains or another
-    /// one appears.
+    /// Applies each fix of the problems that `is_meant` selects. Adds a complaint if the problem
+    /// remains or another one appears.
     fn apply_fixes(
         &mut self,
         before_sources: &Sources,

@@ -1,12 +1,12 @@
-//! Suggested names are valid where they are suggested: every name of the language and of the text,
-//! with every kind of misspelling, in every place.
+//! A suggested name is valid where it is suggested. Tested with every name of the language and of
+//! the text, with every kind of misspelling, in every place.
 
 use pinhole::schema::{BLOCKS, CONSTANTS, FUNCTIONS, css, method_names};
 
 use super::{Trial, diagnostics};
 use crate::scenes::sources;
 
-/// Places of a value, marked `@`.
+/// Places in which a value can be written; `@` stands for the value.
 const PLACES: [&str; 22] = [
     "let x = @",
     "let x = -@",
@@ -34,7 +34,8 @@ const PLACES: [&str; 22] = [
 
 const LETS: &str = "let number = 2\nlet angle = 30deg\nlet vector = (1, 2, 3)\nlet shade = red\nlet pair = (red, blue)\nlet negative = -2\nlet k1 = 7\n";
 
-/// Returns misspellings of a name: a letter dropped, doubled, swapped or changed, or capitals.
+/// Returns misspellings of a name: a letter is dropped, doubled, swapped or changed, or letters are
+/// capitalized.
 fn mistyped(name: &str) -> Vec<String> {
     let mut slips = vec![
         name.to_uppercase(),
@@ -74,7 +75,7 @@ fn suggested_names_are_valid_where_they_are_suggested() {
     names.extend(CONSTANTS.iter().flat_map(|(name, ..)| mistyped(name)));
     names.extend(method_names().step_by(3).flat_map(mistyped));
     names.extend(["line", "in", "ff0000", "po", "sin"].map(str::to_owned));
-    // Calls with arguments of each type and number.
+    // Add calls with arguments of each type, and of each number of arguments.
     for function in FUNCTIONS {
         let arguments = [
             "",
@@ -173,7 +174,7 @@ fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
         "k2",
         "negativ",
     ] {
-        // Whether a block's values fit together is not tested here.
+        // This test is not about values that contradict one another in a block.
         let values = values
             .into_iter()
             .filter(|value| !value.starts_with('(') || *value == "(1, 1, 9)");

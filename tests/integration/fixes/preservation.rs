@@ -1,5 +1,5 @@
-//! Safe fixes keep what the author wrote: in every example and fixture with random slips, and in
-//! files of other programs and languages.
+//! Safe fixes keep what the author wrote. Tested on every example and fixture with random mistakes,
+//! and on files of other programs and languages.
 
 use std::{fs, path::Path};
 
@@ -10,7 +10,7 @@ use crate::{
     scenes::{examples, sources},
 };
 
-/// Returns files of other programs and languages.
+/// Returns the texts of files of other programs and languages.
 fn foreign() -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/foreign");
     let names = names(&folder);
@@ -19,8 +19,8 @@ fn foreign() -> Vec<String> {
     names.into_iter().map(read).collect()
 }
 
-/// Returns each line of a file and the rest of the file from each line on, as the language of a
-/// whole file may be recognized at its start.
+/// Returns each line of a file, and the rest of the file from each line on. A file's start matters,
+/// because it may reveal the file's language.
 fn pieces(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().collect();
     let rest = (0..lines.len()).map(|at| lines[at..].join("\n"));
@@ -42,7 +42,7 @@ fn safe_fixes_keep_numbers_and_names_of_foreign_files() {
     assert_none(&complaints);
 }
 
-/// A fix may reveal a hidden mistake, but the number of errors falls nevertheless.
+/// A fix may reveal a mistake that was hidden, but the number of errors still falls.
 #[test]
 fn every_fix_of_a_foreign_file_leaves_fewer_errors() {
     let mut trial = Trial::default();
@@ -54,7 +54,7 @@ fn every_fix_of_a_foreign_file_leaves_fewer_errors() {
     trial.finish_with_more_than(30);
 }
 
-/// `PINHOLE_SLIPS=100000 cargo test` tries a hundred thousand texts.
+/// `PINHOLE_SLIPS=100000 cargo test` tries a hundred thousand texts instead of a thousand.
 #[test]
 fn safe_fixes_keep_numbers_and_names_of_mistyped_scenes() {
     let asked = std::env::var("PINHOLE_SLIPS").ok();
@@ -70,7 +70,7 @@ fn safe_fixes_keep_numbers_and_names_of_mistyped_scenes() {
     assert_none(&complaints);
 }
 
-/// Found with a hundred thousand random slips.
+/// These texts were found by a hundred thousand random mistakes.
 #[test]
 fn texts_that_once_lost_content_to_a_fix_keep_it() {
     let texts = [
@@ -78,11 +78,11 @@ fn texts_that_once_lost_content_to_a_fix_keep_it() {
         "triangle { centroid (0, 1, 0)  sides (2, 2, 1)  normal 0 0 1\n#ff8800\n}",
         "sphere { center 0 1 0 // R\n radius 2 }",
         "sphere { center 0 1 0\n-- R\n radius 2 }",
-        // One torn word is not two values.
+        // A fix must not split a word with a number attached, such as `min1.6`, into two values.
         "box { min (-3, 0, -0.1)  max (- min1.6, 2.5, ) }",
         "sphere { center (a.5, 2) }",
         "let ball = { center1.6, 1, 0 }",
-        // Products written with `x`, and units apart from their numbers.
+        // `x` is used for products, and units stand apart from their numbers.
         "let a = 30 0.5x1.5x2 deg",
         "Transform { translation -0.5x.15x21.6 1 0 }",
         "triangle { centroid (0, 1, 0)  spin 30 degrees lookat }",

@@ -1,4 +1,4 @@
-//! Generated texts: random tokens with random gaps between them.
+//! Random texts for the formatter: random tokens with random gaps between them.
 
 use proptest::{collection::vec, prelude::*, sample::select};
 
@@ -8,15 +8,15 @@ fn one_of(words: &'static str, separator: char) -> impl Strategy<Value = &'stati
     select(words.split(separator).collect::<Vec<_>>())
 }
 
-/// Generates the gaps between tokens: white space and comments.
+/// Generates the gaps between tokens, which consist of white space and comments.
 pub fn gaps() -> impl Strategy<Value = Vec<&'static str>> {
-    // Separated by bars; frequent gaps are listed twice.
+    // Bars separate the gaps. Frequent gaps are listed twice.
     let gaps = "|||| | |  |\n|\n|\n\n|\n \n\t\n|\r\n| // c \n|\n// own\n|/* b */| /* b */ |\n/* own */\n|/* two\n lines */|\n\n/* d */ /* e */\n|// f\n// g\n\n";
     vec(one_of(gaps, '|'), 200)
 }
 
-/// Joins tokens, given separated by blanks, with gaps. A blank is added where two tokens would
-/// become one, or the start of a comment.
+/// Joins `tokens`, a text separated by spaces, with `gaps`. Adds a space where two tokens would
+/// otherwise merge or begin a comment.
 pub fn spaced(tokens: &str, gaps: &[&str]) -> String {
     let mut text = String::new();
     let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
@@ -43,7 +43,7 @@ fn value() -> impl Strategy<Value = String> {
                     *open != "(" || !values.is_empty()
                 })
                 .prop_map(|(open, values)| format!("{open} {} )", values.join(" , ")));
-            // As written by hand: one element per line, with a comment beside it.
+            // This is a list as people write it: one element per line, followed by a comment.
             let remark = one_of("|\t//\tx|\t//\tof\tthe\tleft|\t/*\ty\t*/|\n//\town", '|');
             let explained = (one_of("(|max (", '|'), vec((inner.clone(), remark), 1..4)).prop_map(
                 |(open, values)| {
@@ -94,8 +94,8 @@ proptest! {
         if style == "crlf" {
             text = text.replace("\r\n", "\n").replace('\n', "\r\n");
         }
-        // `--` looks like another language's comment and is reported, although it may be a
-        // subtraction.
+        // `--` may be a subtraction, but it is reported because it looks like a comment of another
+        // language.
         prop_assume!(!text.contains("-- ") && !text.contains("--\t"));
         assert_formatter_laws(&text, &formatted(&text).unwrap());
     }

@@ -1,4 +1,4 @@
-//! Laws of the formatter: tokens, comments and tree stay the same, and formatting twice equals
+//! Laws of the formatter: it keeps tokens, comments and the tree, and formatting twice equals
 //! formatting once.
 
 use pinhole::{
@@ -9,7 +9,7 @@ use pinhole::{
 use super::{all_scenes, formatted};
 use crate::{diagnostics::diagnose, syntax::tokens};
 
-/// Returns tokens and comments in order, without the white space at line ends in comments.
+/// Returns tokens and comments in order. White space at line ends within comments is removed.
 fn words(text: &str) -> Vec<String> {
     let tidy = |token: &str| {
         let lines = token.lines();
@@ -22,7 +22,7 @@ fn words(text: &str) -> Vec<String> {
     tokens(text).into_iter().map(tidy).collect()
 }
 
-/// Returns the tree without its spans.
+/// Returns the printed syntax tree of a text, without spans.
 fn tree(text: &str) -> String {
     let source = Source::from_text("a.scn", text);
     let printed = format!("{:?}", syntax::parse(&source, SourceId::File).tree);
@@ -44,9 +44,9 @@ pub fn assert_formatter_laws(text: &str, formatted_text: &str) {
     for line in formatted_text.lines() {
         assert_eq!(line.trim_end_matches([' ', '\t']), line);
     }
-    // There are no two empty lines in a row, except within a comment.
+    // There are never two empty lines in a row, except within a comment.
     for (at, _) in formatted_text.match_indices("\n\n\n") {
-        // `/*/` opens a comment.
+        // `/*/` opens a comment and does not close one.
         let before = formatted_text[..at].replace("/*/", "/* ");
         assert!(
             before.rfind("/*") > before.rfind("*/"),
@@ -56,7 +56,7 @@ pub fn assert_formatter_laws(text: &str, formatted_text: &str) {
     assert!(!formatted_text.ends_with("\n\n"));
 }
 
-/// The diagnostics of a scene do not depend on its white space.
+/// Formatting does not change the diagnostics of a scene.
 #[test]
 fn formatter_laws_hold_for_every_scene() {
     let said = |text: &str| {

@@ -1,6 +1,6 @@
 //! The canonical layout: its form, compared with the files in `tests/format`, and its laws.
 //!
-//! Beside each `NAME.scn` of `tests/format` stands `NAME.formatted.scn`.
+//! In `tests/format`, the file `NAME.formatted.scn` is the expected layout of `NAME.scn`.
 
 pub mod any;
 pub mod laws;
@@ -12,7 +12,7 @@ use pinhole::{format::format, source::Source};
 use self::laws::assert_formatter_laws;
 use crate::{program::Folder, scenes::scenes, snapshot::assert_file};
 
-/// Formats a text. Returns the codes of its mistakes if one of them is an error.
+/// Formats a text. If it has errors, returns the codes of all its diagnostics instead.
 pub fn formatted(text: &str) -> Result<String, Vec<String>> {
     format(&Source::from_text("a.scn", text)).map_err(|mistakes| {
         assert!(mistakes.iter().any(|d| d.is_error()), "{text}");
@@ -20,8 +20,7 @@ pub fn formatted(text: &str) -> Result<String, Vec<String>> {
     })
 }
 
-/// Returns the texts of all scenes below the folders of the examples and the tests, including wrong
-/// ones.
+/// Returns the texts of all scenes below `examples` and `tests`, including scenes with mistakes.
 pub fn all_scenes() -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let (mut texts, mut folders) = (Vec::new(), vec![root.join("examples"), root.join("tests")]);
@@ -74,7 +73,7 @@ fn fmt_check_compares_long_texts_in_linear_time() {
         let folder = Folder::with([("a.scn", &*text)]);
         let start = Instant::now();
         let told = folder.told("fmt --check a.scn", 1);
-        // Comparing all pairs of lines would take minutes.
+        // An algorithm that compares all pairs of lines would take minutes.
         assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
         assert!(told.starts_with("--- a.scn\n+++ a.scn, formatted\n@@ -1"));
     }

@@ -1,4 +1,4 @@
-//! Random messages to `pinhole studio` over the web socket of a page with a valid token.
+//! Random messages to `pinhole studio`, over the WebSocket of a page with a valid token.
 
 use serde_json::{Value, json};
 use tungstenite::Message;
@@ -37,7 +37,7 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
                 params[key] = random.one_of(&any).clone();
             }
         }
-        // No message gives the file's content as its base, so none may overwrite it.
+        // No message states the file's content as its base, so no save may overwrite the file.
         assert_ne!(params["base"], json!(before));
         let method = *random.one_of(&METHODS);
         let message = json!({ "jsonrpc": "2.0", "id": "fuzz", "method": method, "params": params });
@@ -47,7 +47,7 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
         page.transport.0.send(Message::text(text)).unwrap();
-        // The host still answers; earlier messages are answers to the random one.
+        // The host still answers. Messages before this answer belong to the random message.
         let last = json!({ "jsonrpc": "2.0", "id": "last", "method": "studio/x", "params": {} });
         page.transport.write(&last.to_string());
         while page.read()["id"] != "last" {}

@@ -1,5 +1,5 @@
-//! Messages of editors and pages, right and wrong ones: each request is answered once, and the
-//! server's text stays that of the client.
+//! Random valid and invalid messages of editors and pages. Each request is answered once, and the
+//! server's text stays equal to the client's.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +40,7 @@ const METHODS: [&str; 26] = [
     "$/nothing",
 ];
 
-/// Returns a random JSON value.
+/// Returns a random JSON value, nested at most `depth` levels deep.
 fn value(random: &mut Random, depth: usize) -> Value {
     match random.below(if depth == 0 { 12 } else { 14 }) {
         0 => Value::Null,
@@ -70,7 +70,7 @@ fn position(random: &mut Random) -> Value {
     json!({ "line": line, "character": character })
 }
 
-/// Returns parameters that suit most requests, with some of them removed or replaced by random
+/// Returns parameters that suit most requests. Some of them are removed, or replaced by random
 /// values.
 fn params(random: &mut Random, depth: usize) -> Value {
     let [start, end] = [0; 2].map(|_| position(random));
@@ -93,12 +93,12 @@ fn params(random: &mut Random, depth: usize) -> Value {
     params
 }
 
-/// Returns a random offset in a text, and its position with columns counted in UTF-16.
+/// Returns a random byte offset in `text`, and its LSP position, whose column is in UTF-16 units.
 fn place(random: &mut Random, text: &str) -> (usize, Value) {
     let places: Vec<usize> = (0..=text.len())
         .filter(|at| text.is_char_boundary(*at))
         .collect();
-    // There is no position between the two characters of a line end.
+    // No position lies between the CR and the LF of a line end.
     let is_within = |at: usize| text[..at].ends_with('\r') && text[at..].starts_with('\n');
     let mut at = *random.one_of(&places);
     if is_within(at) {
@@ -126,8 +126,8 @@ fn each_request_is_answered_once_and_the_server_keeps_the_clients_text() {
             };
             let new = String::from_utf8_lossy(&super::scene(random)).into_owned();
             let new: String = new.chars().take(random.below(30)).collect();
-            // A carriage return at the end of an edit may join with a line feed, which changes the
-            // line count.
+            // A CR at the end of an edit may combine with a following LF, which changes the number
+            // of lines.
             if !new.contains('\r') && !text.contains('\r') {
                 text.replace_range(from..to, &new);
                 let change = json!({ "range": { "start": start, "end": end }, "text": new });
@@ -152,7 +152,7 @@ fn each_request_is_answered_once_and_the_server_keeps_the_clients_text() {
         for id in asked {
             assert_eq!(answers.get(&id.into()), Some(&1), "request {id}");
         }
-        // The edited text has the same tokens and diagnostics as when it is opened anew.
+        // The edited text has the same tokens and diagnostics as if it had been opened as a whole.
         let mut again = LocalClient::with(&text);
         while again.transport.step() {}
         let ask =
@@ -181,7 +181,7 @@ fn the_server_still_answers_after_any_message() {
             if random.below(2) == 0 {
                 flip(random, &mut bytes);
             }
-            // A malformed message without an answer makes the transport panic.
+            // The transport panics if a malformed message gets no answer.
             let text = String::from_utf8_lossy(&bytes);
             if text.contains("method") && !text.contains("exit") {
                 client.transport.write(&text);

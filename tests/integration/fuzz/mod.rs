@@ -1,8 +1,8 @@
-//! Fuzzing: for random inputs, nothing panics or hangs, and the promised properties hold.
+//! Fuzzing: for random inputs, nothing panics or hangs, and stated properties hold.
 //!
-//! Each target tries a few inputs in every run of the tests. `PINHOLE_FUZZ=1000000 cargo test fuzz`
-//! tries a million for each target, and `PINHOLE_FUZZ_FIRST` is the number of the first one. An
-//! input depends only on its number.
+//! In a normal run, each target tries a few inputs. `PINHOLE_FUZZ=1000000 cargo test fuzz` tries a
+//! million per target, starting at the number `PINHOLE_FUZZ_FIRST`. An input depends only on its
+//! number.
 
 #[cfg(feature = "studio")]
 mod host;
@@ -25,18 +25,18 @@ use std::{
 
 use crate::{diagnostics::fixtures, format::all_scenes, random::Random};
 
-/// Maximum time for an input. An input takes milliseconds, but a busy machine may stall for longer.
+/// Maximum time for an input. An input takes milliseconds, but a busy machine may pause for longer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Runs something that must end soon. A hanging thread cannot be stopped, so the test process is
-/// aborted with a description of the input.
+/// Calls `run` and returns its result. If it takes longer than [`PATIENCE`], prints `what()` and
+/// aborts the test process, because a hanging thread cannot be stopped.
 pub fn ends_soon<T>(what: impl Fn() -> String + Sync, run: impl FnOnce() -> T) -> T {
     let (done, is_done) = mpsc::channel::<()>();
     let what = &what;
     thread::scope(|scope| {
         scope.spawn(move || {
             if is_done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                // Output of a test is shown only when the test ends, which it does not here.
+                // The harness prints a test's output at its end, which is never reached here.
                 let _ = writeln!(io::stderr(), "this does not end: {}", what());
                 process::abort();
             }
@@ -47,14 +47,14 @@ pub fn ends_soon<T>(what: impl Fn() -> String + Sync, run: impl FnOnce() -> T) -
     })
 }
 
-/// Replacements in random texts: names, numbers and signs, separated by bars.
+/// Words, numbers and signs to insert into random texts, separated by bars.
 const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740993|0x10|NaN|inf|1_000|1__0|90deg|2.5.5|#fff|#12|\
     (|)|{|}|[|]|,|;|:|=|==|+|-|--|*|/|^|'|\"|//|/*|*/|#|$|@|\\|\u{feff}|\u{202e}|\u{a0}|\u{e9}|e\u{301}|\u{1f600}|\0|\r|\r\n|\n|\t|\u{85}|\u{2028}|\
     let|for i < 3|for|<|i|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
     colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
 
-/// Tries a number of inputs, which the environment may override. A test that fails or hangs prints
-/// the number of its input.
+/// Calls `is_tried` with `usual` random generators; `PINHOLE_FUZZ` overrides the number. If a call
+/// panics or hangs, prints the number of the input.
 pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     struct Number(u64);
     impl Number {
@@ -78,7 +78,7 @@ pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     }
 }
 
-/// Returns all scenes of the repository below 4000 bytes, including wrong ones.
+/// Returns the texts of all scenes of the repository below 4000 bytes, including wrong ones.
 fn scenes() -> &'static [String] {
     static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
         let wrong = fixtures().map(|(_, sources)| sources.file.text().to_owned());
@@ -93,7 +93,8 @@ fn any_text(random: &mut Random) -> &'static str {
     random.one_of::<String>(scenes())
 }
 
-/// Returns a scene with a few tokens removed, doubled, moved or replaced, or cut off.
+/// Returns a random scene in which a few tokens are removed, doubled, moved or replaced, or whose
+/// end is cut off.
 fn scene(random: &mut Random) -> Vec<u8> {
     let text = any_text(random);
     let mut tokens = tokens(text);
@@ -143,7 +144,7 @@ fn scene(random: &mut Random) -> Vec<u8> {
     bytes
 }
 
-/// Splits a text into words, numbers, runs of spaces and single other characters.
+/// Splits a text into words, numbers, runs of spaces, and single other characters.
 fn tokens(text: &str) -> Vec<&str> {
     let kind = |c: char| match c {
         _ if c.is_alphanumeric() || matches!(c, '_' | '.') => 0,
@@ -165,7 +166,7 @@ fn tokens(text: &str) -> Vec<&str> {
     tokens
 }
 
-/// Changes some bytes: single ones, 32-bit numbers, and parts, which are removed or doubled.
+/// Changes single bytes and 32-bit numbers, and removes or doubles parts of `bytes`.
 fn flip(random: &mut Random, bytes: &mut Vec<u8>) {
     for _ in 0..=random.below(8) {
         let at = random.below(bytes.len());

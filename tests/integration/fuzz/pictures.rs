@@ -1,4 +1,4 @@
-//! Pictures of other programs: any bytes are read or refused, and never decoded beyond the limit.
+//! Random picture files: any bytes are decoded or refused, and never decoded beyond the limit.
 
 use std::{io::Cursor, sync::LazyLock};
 
@@ -8,8 +8,8 @@ use pinhole::film::read_picture_up_to;
 use super::{each, flip};
 use crate::program::Folder;
 
-/// Maximum number of decoded bytes. It suits small pictures, so that a header with a wrong size is
-/// caught.
+/// Maximum number of decoded bytes: enough for the small pictures here, so that a header with a
+/// wrong size exceeds it.
 const LIMIT: u64 = 1 << 20;
 
 /// Returns a small picture in each format and several colour types.
@@ -61,7 +61,7 @@ fn random_picture_bytes_are_read_or_refused_within_the_limit() {
     each(300, |random| {
         let mut bytes = random.one_of(pictures()).clone();
         match random.below(16) {
-            // The start of one file before the rest of another.
+            // Join the start of one file and the rest of another.
             0 => {
                 let other = random.one_of(pictures());
                 let at = random.below(bytes.len());

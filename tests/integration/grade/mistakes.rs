@@ -218,9 +218,6 @@ const OTHERS: &[Mistake] = &[
     row("samples_narrow", |p| p.pixel = 0.5),
     pixels("gamma_18", |color| color.map(|byte| power(byte, 1.8))),
     pixels("decoded_twice", |color| color.map(decoded_twice)),
-    pixels("six_levels", |color| {
-        color.map(|byte| (f64::from(byte) / 51.0).round() as u8 * 51)
-    }),
     picture("sharpened", sharpened),
     pixels("video_range", |color| {
         color.map(|byte| (16.0 + f64::from(byte) * 219.0 / 255.0).round() as u8)

@@ -1,4 +1,4 @@
-//! Meanings and diagnostics of texts, compared with the files in `tests/language`.
+//! Compares meanings and diagnostics of texts with the files in `tests/language`.
 
 use pinhole::{
     diagnostic::{Diagnostic, Fix, apply},
@@ -19,8 +19,8 @@ fn code(found: &Diagnostic) -> String {
     found.code.replace("pinhole::", "")
 }
 
-/// Returns the code, the number of the argument (counted from 1; 0 is the file), the text under the
-/// first label, and the help.
+/// Returns the code of a diagnostic, the number of the argument that it is about (counted from 1; 0
+/// is the file), the text under its first label, and its help.
 fn place(sources: &Sources, found: &Diagnostic) -> String {
     let span = found.labels[0].span;
     let argument = sources.sets().position(|(id, _)| id == span.source);
@@ -33,15 +33,15 @@ fn place(sources: &Sources, found: &Diagnostic) -> String {
     )
 }
 
-/// Returns the code, the message, the first label and the help.
+/// Returns the code of a diagnostic, its message, its first label and its help.
 fn said(_: &Sources, found: &Diagnostic) -> String {
     let help = found.help.as_deref().unwrap_or_default();
     let label = &found.labels[0].message;
     format!("{}: {} | {label} | {help}", code(found), found.message)
 }
 
-/// Removes the bracketed part of a text with a fix, and appends the fix's title, which mentions
-/// removed comments.
+/// Applies the fix `remove` to the bracketed part of `text`. Returns the new text, followed by the
+/// title of the fix, which mentions removed comments.
 fn without(text: &str, remove: fn(String, Span, &Sources) -> Fix) -> String {
     let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
     let sources = sources(&text.replace(['[', ']'], ""));

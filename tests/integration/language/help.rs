@@ -1,5 +1,5 @@
-//! Help for notations of other languages and of books: it gives the intended solution, not just the
-//! nearest spelling.
+//! Help for notations of other languages and of books: it states the intended solution, not only
+//! the word with the most similar spelling.
 
 use pinhole::scene;
 

@@ -1,4 +1,4 @@
-//! Meanings of scenes, and the language's reference compared with the program.
+//! Meanings of scenes; comparison of the language's reference with the program.
 
 mod answers;
 mod help;

@@ -1,4 +1,4 @@
-//! Overrides by `--set`.
+//! Overrides by `--set` arguments.
 
 use pinhole::{
     scene::{self, Reading},
@@ -16,7 +16,7 @@ box Crate { center middle size (1, 1, 1) }
 checkerboard { }
 ";
 
-/// Returns the settings of a scene, and its shapes.
+/// Returns, as texts, the settings of a scene and its shapes. Panics if there is no scene.
 pub fn meaning(sources: &Sources) -> [String; 2] {
     let Reading { scene, diagnostics } = scene::read(sources);
     let scene = scene.unwrap_or_else(|| panic!("{diagnostics:#?}"));
@@ -25,7 +25,7 @@ pub fn meaning(sources: &Sources) -> [String; 2] {
     [format!("{settings:?}"), format!("{shapes:?}")]
 }
 
-/// An override equals the text in which the second cell of a row is replaced by the third.
+/// An override has the same effect as replacing the second cell of a row by the third in the text.
 #[test]
 fn a_set_argument_equals_the_edited_text() {
     let table = "

@@ -1,4 +1,4 @@
-//! The language's reference, compared with the program.
+//! Compares the language's reference with the program.
 
 use pinhole::schema::{self, Preset};
 
@@ -50,7 +50,7 @@ fn the_reference_lists_every_field_with_its_type_default_and_conditions() {
     assert_eq!(rows.len(), header_and_rule, "{rows:?}");
 }
 
-/// The `d` of a lens is exact, and the angle beside it is correct in its last digit.
+/// In the table of lenses, `d` is exact, and the angle beside it is correct to its last digit.
 #[test]
 fn the_lens_table_of_the_reference_is_exact() {
     let mut lenses = 0;
@@ -72,7 +72,7 @@ fn the_reference_has_every_method_function_and_name() {
     for (method, _) in schema::METHODS {
         assert!(REFERENCE.contains(&format!("| {} |", method.name())));
     }
-    // In other sections, a name such as `min` may be a field.
+    // Look only in the section on functions: elsewhere, a name such as `min` may be a field.
     let (_, functions) = REFERENCE.split_once("## Functions").unwrap();
     let functions = functions.split("## ").next().unwrap_or_default();
     let rows = functions.lines().filter(|line| line.starts_with('|'));

@@ -1,4 +1,4 @@
-//! Repeated objects, compared with the same objects written one by one.
+//! Compares repeated objects with the same objects written one by one.
 
 use pinhole::{format, inspect, scene};
 
@@ -9,7 +9,7 @@ use crate::{
     table::rows,
 };
 
-/// Rows of a repeated object, its names, and the objects that it stands for.
+/// Rows of a repeated block, the names of its objects, and the same objects written one by one.
 const REPEATED: &str = "
     sphere B for i < 3 { center (i, 1, 0) } -> B[0] B[1] B[2] \
         -> sphere { center (0, 1, 0) } sphere { center (1, 1, 0) } sphere { center (2, 1, 0) }
@@ -97,7 +97,7 @@ fn set_changes_every_copy_of_a_repeated_object() {
     }
 }
 
-/// Rows of a mistake in a repeated object, and its code with the texts of all labels.
+/// Each row has a mistake in a repeated object, and the expected code with the texts of all labels.
 #[test]
 fn a_mistake_in_a_repeated_object_is_reported_once() {
     let table = "
@@ -143,7 +143,7 @@ fn a_mistake_in_a_repeated_object_is_reported_once() {
     }
 }
 
-/// A fix that replaces a value with an index keeps the index, whatever is wrong with the value.
+/// If a fix replaces a value that contains an index, the new value contains the index too.
 #[test]
 fn fixes_in_repeated_objects_keep_their_index() {
     let fields = "
@@ -182,8 +182,8 @@ fn fixes_in_repeated_objects_keep_their_index() {
     assert!(fixes > 50, "{fixes}");
 }
 
-/// A wrong head leaves the next block alone, a repeated board gives one warning, and a `let`
-/// further down may reuse the index's name, also if something is overridden.
+/// A wrong head does not affect the next block. A repeated board causes one warning. A later `let`
+/// may have the name of the index, even if there are overrides.
 #[test]
 fn a_repetition_does_not_affect_the_text_around_it() {
     for (text, set, expected) in [

@@ -1,4 +1,4 @@
-//! White space and nesting.
+//! White space, and the limit of nesting.
 
 use proptest::{prelude::*, sample::subsequence};
 
@@ -15,8 +15,8 @@ proptest! {
     }
 }
 
-/// Generates the items of a scene in any order. Their names are often those of kinds, and the
-/// values of the definitions end in every possible way.
+/// Generates the items of a scene in random order. Their names are often those of blocks, and the
+/// values of definitions end in every possible way.
 fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
     let items = vec![
         "let a = 2",
@@ -50,7 +50,7 @@ fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
 
 #[test]
 fn nesting_beyond_256_levels_is_an_error() {
-    // The value stands in a definition and in a field, where the first minus follows a name.
+    // Write the value in a definition, and in a field, where a minus sign follows a name.
     let of = |open: &str, inner: &str, close: &str, depth: usize| {
         let value = format!("{}{inner}{}", open.repeat(depth), close.repeat(depth));
         let [of_let, of_field] =
@@ -71,7 +71,7 @@ fn nesting_beyond_256_levels_is_an_error() {
         assert_eq!(of(open, inner, close, levels), "", "{open}");
         assert_eq!(of(open, inner, close, levels + 1), "too_deep", "{open}");
     }
-    // Terms beside each other do not count as nesting.
+    // Terms in a sequence do not count as nesting.
     let wide = vec!["-(1)"; 5000].join(" + ");
     assert_eq!(of("", &wide, "", 0), "");
 }

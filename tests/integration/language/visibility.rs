@@ -1,5 +1,5 @@
-//! Warnings about cameras that see nothing and squares too small to tell apart: they are never
-//! false, and most such scenes get them.
+//! Warnings about cameras that see nothing, and about squares too small to be visible. The warnings
+//! are never false, and most scenes of these kinds get one.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use crate::{
     scenes::{exact, read, sampled, sources},
 };
 
-/// Each scene is the first object of a generated scene alone.
+/// Each scene has only the first object of a generated scene.
 #[test]
 fn nothing_seen_is_never_false_and_found_for_half_the_black_pictures() {
     let (mut warned, mut black) = (0, 0);
@@ -33,12 +33,12 @@ fn nothing_seen_is_never_false_and_found_for_half_the_black_pictures() {
         warned += u32::from(is_warned);
         black += u32::from(is_black);
     }
-    // The bounds are larger than their objects, and what remains within the window may be smaller
-    // than the error bound of a pixel.
+    // Not all black pictures get the warning: the bounds used for it are larger than the objects,
+    // and the visible part of an object may be smaller than the error bound of a pixel.
     assert!(black > 75 && warned * 2 > black, "{warned} of {black}");
 }
 
-/// Boards of ever smaller squares, seen from several points and by several methods.
+/// Tests boards with smaller and smaller squares, from several points and by several methods.
 #[test]
 fn squares_too_small_is_never_false_and_found_for_most_plain_boards() {
     let (mut warned, mut one_colored) = (0, 0);
@@ -60,8 +60,8 @@ fn squares_too_small_is_never_false_and_found_for_most_plain_boards() {
                 );
                 let film = sampled(&read(&text));
                 let pixels = (0..16).flat_map(|y| film.row(y)).copied();
-                // Share of the board's second colour in each pixel that shows only the board: green
-                // has no part in the background.
+                // Keep the pixels that show only the board: the background is red without green.
+                // Their green is the share of the board's second colour.
                 let seen = pixels.filter(|[red, green, _]| red - green < 0.01);
                 let greens: Vec<f64> = seen.map(|[_, green, _]| green).collect();
                 let first = greens.iter().filter(|&&green| green < 0.5).count();

@@ -1,4 +1,4 @@
-//! A plain client, which writes messages and reads all that come back.
+//! Simple client, which writes messages and reads all messages that come back.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -10,9 +10,9 @@ use std::{
 
 use serde_json::{Value, json};
 
-/// Transport of the texts of messages.
+/// Channel that carries the texts of messages to a server and back.
 pub trait Transport {
-    /// URI of the only document.
+    /// URI of the only document that the client opens.
     const URI: &'static str;
 
     fn write(&mut self, text: &str);
@@ -22,7 +22,7 @@ pub trait Transport {
 pub struct Client<C> {
     pub transport: C,
     requests: i32,
-    /// Messages received and not asked for yet.
+    /// Messages that were received but not yet returned to the test.
     pub unread: Vec<Value>,
 }
 
@@ -43,7 +43,7 @@ impl<C: Transport> Client<C> {
         serde_json::from_str(&self.transport.read()).expect("JSON")
     }
 
-    /// Sends a notification; adds the document if the method is about one.
+    /// Sends a notification. If `method` is about the document, adds the document's URI.
     pub fn notify(&mut self, method: &str, mut params: Value) {
         if method.starts_with("textDocument/") {
             params["textDocument"]["uri"] = C::URI.into();
@@ -51,7 +51,7 @@ impl<C: Transport> Client<C> {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
-    /// Sends a request without waiting for the response. Returns its identifier.
+    /// Sends a request without waiting for the response. Returns the id of the request.
     pub fn request(&mut self, method: &str, mut params: Value) -> i32 {
         if method.starts_with("textDocument/") || method.starts_with("pinhole/") {
             params["textDocument"] = json!({ "uri": C::URI });
@@ -62,7 +62,8 @@ impl<C: Transport> Client<C> {
         id
     }
 
-    /// Returns the first unread message that a condition selects; waits for one if there is none.
+    /// Removes and returns the first unread message for which `is_meant` is true. Waits for one if
+    /// there is none.
     fn next(&mut self, is_meant: impl Fn(&Value) -> bool) -> Value {
         while !self.unread.iter().any(&is_meant) {
             let message = self.read();
@@ -73,7 +74,7 @@ impl<C: Transport> Client<C> {
         self.unread.remove(place.expect("it was heard"))
     }
 
-    /// Returns the whole response to a request.
+    /// Waits for the response to the request `id` and returns the whole response.
     pub fn response(&mut self, id: i32) -> Value {
         self.next(|message| message["id"] == id)
     }
@@ -83,24 +84,24 @@ impl<C: Transport> Client<C> {
         self.response(id)
     }
 
-    /// Sends a request and returns its result.
+    /// Sends a request, waits for the response and returns its result. Panics if it is an error.
     pub fn ask(&mut self, method: &str, params: Value) -> Value {
         let response = self.respond(method, params);
         assert!(response.get("error").is_none(), "{response}");
         response["result"].clone()
     }
 
-    /// Returns the parameters of the next notification of a method.
+    /// Waits for the next notification `method` and returns its parameters.
     pub fn notification(&mut self, method: &str) -> Value {
         self.next(|message| message["method"] == method)["params"].take()
     }
 
-    /// Returns the parameters of the next published diagnostics.
+    /// Waits for the next published diagnostics and returns the parameters of the notification.
     pub fn diagnostics(&mut self) -> Value {
         self.notification("textDocument/publishDiagnostics")
     }
 
-    /// Initializes the server and opens a text.
+    /// Initializes the server with the client's capabilities and opens a text.
     pub fn open(&mut self, capabilities: Value, text: &str) {
         self.ask("initialize", json!({ "capabilities": capabilities }));
         self.notify("initialized", json!({}));
@@ -108,7 +109,7 @@ impl<C: Transport> Client<C> {
         self.notify("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
-    /// Sends a change of the text, with the version that it makes.
+    /// Sends a change of the text; `version` is the version of the text after the change.
     pub fn change(&mut self, version: usize, change: Value) {
         let document = json!({ "version": version });
         let params = json!({ "textDocument": document, "contentChanges": [change] });
@@ -116,14 +117,14 @@ impl<C: Transport> Client<C> {
     }
 }
 
-/// Maximum time to wait for anything.
+/// Maximum time to wait for a message.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Standard streams of the program.
+/// Running server with its standard input and output.
 pub struct Pipes {
     child: Child,
     input: Option<ChildStdin>,
-    /// Texts of the server's messages. A thread reads them, so that waiting for one can time out.
+    /// Texts of the server's messages. A separate thread reads them, so that waiting can time out.
     said: Receiver<String>,
 }
 
@@ -166,7 +167,7 @@ fn message(output: &mut impl BufRead) -> Option<String> {
 }
 
 impl Client<Pipes> {
-    /// Starts a server, without sending it anything.
+    /// Starts a server and sends nothing to it.
     pub fn start() -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_pinhole"));
         let command = command.arg("lsp").stdin(Stdio::piped());
@@ -186,18 +187,19 @@ impl Client<Pipes> {
         })
     }
 
-    /// Shuts the server down as the protocol requires.
+    /// Shuts the server down as the protocol requires, and asserts that it ends successfully.
     pub fn shut_down(mut self) {
         assert_eq!(self.ask("shutdown", Value::Null), Value::Null);
         self.notify("exit", Value::Null);
         assert_eq!(self.end(), (Some(0), String::new()));
     }
 
-    /// Closes the input. Returns the exit status and the standard error.
+    /// Closes the server's input and asserts that no more messages come. Returns the exit status
+    /// and the standard error.
     pub fn end(self) -> (Option<i32>, String) {
         let Pipes { child, input, said } = self.transport;
         drop(input);
-        // The standard output ends, so no message is left.
+        // The server's standard output ends without another message.
         let rest = said.recv_timeout(PATIENCE);
         assert_eq!(rest, Err(RecvTimeoutError::Disconnected));
         let output = child.wait_with_output().expect("it ends");

@@ -1,6 +1,6 @@
-//! Emacs in batch mode uses the server, by each of its two clients. Needs `emacs` on the path, with
-//! eglot and lsp-mode: `cargo test -- --ignored emacs`. Emacs 28.2, eglot 1.9 and lsp-mode 8.0 are
-//! known to work.
+//! Emacs in batch mode uses the server through each of its two clients, eglot and lsp-mode. The
+//! test needs `emacs` on the path, with both clients: `cargo test -- --ignored emacs`. Emacs 28.2,
+//! eglot 1.9 and lsp-mode 8.0 are known to work.
 
 use std::{path::Path, process::Command};
 
@@ -14,13 +14,13 @@ camera { eye (0, 1, 5)   lookat (0, r, 0) }
 sphere Ball { center (0, r, 0)  radus 2*r }
 ";
 
-/// The scene after the fix of `radus`, the renaming of `r`, and formatting.
+/// Scene after fixing `radus`, renaming `r`, and formatting.
 const EDITED: &str = "let height = 1
 camera { eye (0, 1, 5)  lookat (0, height, 0) }
 sphere Ball { center (0, height, 0)  radius 2 * height }
 ";
 
-/// Emacs runs the script `tests/lsp/emacs.el`.
+/// Runs the script `tests/lsp/emacs.el` in Emacs.
 #[test]
 #[ignore = "needs Emacs"]
 fn emacs_completes_fixes_renames_and_formats_a_scene() {

@@ -1,4 +1,4 @@
-//! Frames have the pixels of a render, are computed in slices, and can be cancelled.
+//! Frames: they equal the pixels of a render, are computed in slices, and can be cancelled.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
@@ -18,19 +18,19 @@ checkerboard {}
 const CONTENT_MODIFIED: i32 = -32801;
 const CANCELLED: i32 = -32800;
 
-/// Returns the scene with another size.
+/// Returns the scene with another width and height.
 fn sized(width: &str, height: &str) -> String {
     let size = format!("width {width}  height {height}");
     SCENE.replace("width 83  height 61", &size)
 }
 
-/// Returns the error code of a request that has been answered.
+/// Returns the error code in the response to a request. Asserts that there already is a response.
 pub fn code(client: &mut LocalClient, request: i32) -> Value {
     assert!(client.has_answered(request));
     client.response(request)["error"]["code"].take()
 }
 
-/// Returns the size of a picture and the bytes of its pixels.
+/// Decodes a PNG file. Returns its width, its height and the bytes of its pixels.
 fn pixels(png: &[u8]) -> (u32, u32, Vec<u8>) {
     let picture = image::load_from_memory(png).expect("a picture");
     let rgb = picture.to_rgb8();
@@ -47,7 +47,7 @@ fn shown(frame: &Value) -> (u32, u32, Vec<u8>) {
     found
 }
 
-/// Returns the picture that `pinhole render` makes of a scene with `--set` arguments.
+/// Returns the picture that `pinhole render` makes of a scene with the `--set` arguments `sets`.
 fn rendered(text: &str, sets: &str) -> (u32, u32, Vec<u8>) {
     let folder = Folder::with([("a.scn", text)]);
     let sets = sets.split_whitespace().map(|set| format!(" --set {set}"));
@@ -91,7 +91,7 @@ fn a_frame_has_the_pixels_of_a_render() {
 fn a_frame_of_an_outdated_text_is_refused() {
     let mut client = LocalClient::with(SCENE);
     let old = client.request("pinhole/frame", json!({}));
-    // The step publishes the diagnostics and does not complete the frame.
+    // This step publishes the diagnostics but does not complete the frame.
     assert!(client.transport.step() && !client.has_answered(old));
     let changed = SCENE.replace("olive", "teal");
     client.change(2, json!({ "text": changed }));
@@ -104,7 +104,7 @@ fn a_frame_of_an_outdated_text_is_refused() {
 
 #[test]
 fn a_frame_that_is_cancelled_ends_at_once() {
-    // The frame has ten thousand slices, which would take minutes.
+    // The frame has ten thousand slices and would take minutes.
     let text = sized("1000", "1000").replace("per_pixel 9", "per_pixel 10_000");
     let mut client = LocalClient::with(&text);
     let frame = client.request("pinhole/frame", json!({}));

@@ -1,4 +1,4 @@
-//! A client of a server in this process, whose steps of work a test can control.
+//! Client of a server in this process. A test can advance the server one step of work at a time.
 
 use std::{cell::RefCell, collections::VecDeque};
 
@@ -10,19 +10,20 @@ use serde_json::{Value, json};
 
 use super::client::{Client, Transport};
 
-/// Client with one open text of version 1.
+/// Client of a server in this process, with one open text of version 1.
 pub type LocalClient = Client<InProcess>;
 
 thread_local! {
     static LOG: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Takes the messages that the servers of this thread have logged since the last call.
+/// Returns and removes the messages that the servers of this thread have logged since the last
+/// call.
 pub fn logged() -> Vec<String> {
     LOG.take()
 }
 
-/// Server in this process with its unread messages.
+/// Server in this process, with the messages that the client has not read yet.
 pub struct InProcess {
     server: Server,
     pub said: VecDeque<String>,
@@ -39,7 +40,7 @@ impl Default for InProcess {
 }
 
 impl InProcess {
-    /// Advances the server by one step of work. Returns whether there was any.
+    /// Advances the server by one step of work. Returns whether the server had work to do.
     pub fn step(&mut self) -> bool {
         let is_busy = self.server.is_busy();
         let said = self.server.advance();

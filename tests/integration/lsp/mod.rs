@@ -1,5 +1,5 @@
-//! The language server: the binary over pipes (`session`, `neovim`, `emacs`), and a server in this
-//! process, whose steps of work a test can control.
+//! Tests of the language server: the binary over pipes (`session`, `neovim`, `emacs`), and a server
+//! in this process, which a test can advance one step of work at a time.
 
 pub mod client;
 mod emacs;
@@ -13,8 +13,8 @@ mod viewport;
 
 use std::{env, ffi::OsString, path::Path};
 
-/// Returns a search path on which the program under test comes first, for an editor that starts the
-/// server by its name.
+/// Returns a search path that begins with the folder of the program under test, for an editor that
+/// starts the server by its name.
 fn path_with_program() -> OsString {
     let program = Path::new(env!("CARGO_BIN_EXE_pinhole"));
     let own = [program.parent().expect("a folder").to_owned()];

@@ -1,5 +1,5 @@
-//! Neovim in headless mode uses the server. Needs `nvim` on the path: `cargo test -- --ignored
-//! neovim`. Versions 0.7 and 0.11 are known to work.
+//! Neovim in headless mode uses the server. The tests need `nvim` on the path: `cargo test --
+//! --ignored neovim`. Versions 0.7 and 0.11 are known to work.
 
 use std::{
     fs,
@@ -22,8 +22,8 @@ fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Returns a command that runs a script in Neovim with its own home folder. The program under test
-/// comes first on its path.
+/// Returns a command that runs a script in Neovim with its own home folder. The search path begins
+/// with the folder of the program under test.
 fn neovim(folder: &Folder, script: &Path) -> Command {
     let home = folder.path("");
     let mut neovim = Command::new("nvim");
@@ -47,24 +47,24 @@ fn answers(folder: &Folder, mut neovim: Command) -> Value {
     serde_json::from_slice(&folder.read("answers.json")).expect("JSON")
 }
 
-/// Neovim runs `tests/lsp/neovim.lua` and gets the answers in the JSON file beside it.
+/// Runs `tests/lsp/neovim.lua` in Neovim. The JSON file beside the script has the expected answers.
 #[test]
 #[ignore = "needs Neovim"]
 fn neovim_gets_the_recorded_answers() {
     let folder = Folder::with([("scene.scn", SCENE)]);
     let script = root("tests/lsp/neovim.lua");
     let mut found = answers(&folder, neovim(&folder, &script));
-    // Lua tables have no order.
+    // Lua tables have no order, so sort the members of objects.
     found.sort_all_objects();
     let found = format!("{found:#}\n");
     assert_file(&script.with_extension("json"), &found);
 }
 
-/// Text, keys to type at `$0`, and the resulting line.
+/// Text, the keys to type at `$0`, and the resulting line.
 type Typed = [&'static str; 3];
 
-/// Completions requested by `CTRL-X CTRL-O`. Neovim 0.7 inserts the whole completion and 0.11 its
-/// word, so only their common start is compared.
+/// Completions requested by `CTRL-X CTRL-O`. Neovim 0.7 inserts the whole completion, and Neovim
+/// 0.11 only its word, so the tests compare only their common start.
 const ASKED: &[Typed] = &[
     ["$0\ncamera {}", "s p h <C-x><C-o>", "sphere"],
     ["$0\ncamera {}", "s <C-x><C-o> menu <C-n> <C-y>", "sphere"],
@@ -76,9 +76,9 @@ const ASKED: &[Typed] = &[
     ],
 ];
 
-/// Completions offered while typing, as the page on editors configures Neovim 0.11.
+/// Completions offered during typing, if Neovim 0.11 is configured as the page on editors says.
 const OFFERED: &[Typed] = &[
-    // Nothing is inserted before it is chosen.
+    // Nothing is inserted before the user chooses a completion.
     ["$0\ncamera {}", "s menu p h", "sph"],
     [
         "$0\ncamera {}",
@@ -132,8 +132,10 @@ fn neovim_completes_while_typing() {
     assert!(behind.contains("no field `radus`"), "{behind}");
 }
 
-/// Types the keys of rows, with or without a snippet in the editor's configuration. Returns the
-/// resulting lines and what else the script reports.
+/// Runs `tests/lsp/neovim_types.lua`, which types the keys of each row into its text in a Neovim
+/// with `snippet`, if given, as its configuration. Returns the JSON that the script writes: the
+/// resulting `lines`, and with a snippet also `hints` (whether inlay hints are on) and
+/// `behind_lines` (the text shown behind lines).
 fn typed(rows: &[Typed], snippet: Option<&str>) -> Value {
     let rows = rows.iter().map(|[text, keys, _]| {
         let keys: Vec<&str> = keys.split(' ').collect();

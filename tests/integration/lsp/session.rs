@@ -1,4 +1,4 @@
-//! Sessions of the program over pipes.
+//! Sessions of the language server over pipes.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ camera { eye (0, 1, 5)  lookat ball  d 1 }
 sphere Ball { center ball  color olive }
 ";
 
-/// Sends each letter as a change, with the requests that an editor makes after it.
+/// Sends each letter as a change of the text, followed by the requests that an editor would send.
 #[test]
 fn a_scene_is_typed_letter_by_letter() {
     let mut client = Client::start();
@@ -48,7 +48,7 @@ fn a_client_that_leaves_without_shutdown_ends_the_server_with_status_1() {
 fn malformed_lsp_input_is_logged_and_skipped() {
     let mut client = Client::start();
     client.transport.put("hello\r\n\r\n");
-    // A response without a request is not answered.
+    // A response that belongs to no request is ignored.
     client.send(&json!({ "jsonrpc": "2.0", "id": null, "error": { "code": 1, "message": "" } }));
     client.ask("initialize", json!({ "capabilities": {} }));
     client.change(2, json!({ "text": "" }));
@@ -61,7 +61,7 @@ fn malformed_lsp_input_is_logged_and_skipped() {
     assert!(log.contains("is not open"), "{log}");
 }
 
-/// A null range says neither which part of the text changes nor that all of it does.
+/// A range of `null` does not say whether the change replaces a part of the text or all of it.
 #[test]
 fn a_change_with_an_invalid_range_leaves_the_text_unchanged() {
     let mut client = Client::start();
@@ -73,7 +73,7 @@ fn a_change_with_an_invalid_range_leaves_the_text_unchanged() {
         let found = client.ask("textDocument/definition", json!({ "position": position }));
         assert_ne!(found, Value::Null, "{range}");
     }
-    // Without a range, the change is the whole new text.
+    // A change without a range replaces the whole text.
     client.change(2, json!({ "text": "x" }));
     assert_ne!(client.diagnostics()["diagnostics"], json!([]));
     client.ask("shutdown", Value::Null);
@@ -110,7 +110,7 @@ fn an_oversized_or_unfinished_message_ends_the_server_with_a_reason() {
     for (length, expected) in [
         ("99999999999999", "is announced"),
         ("2000000000", "is announced"),
-        // The announced length is the maximum, and the message ends early.
+        // The announced length is the maximum, but the message ends early.
         ("1000000000", "after 2 of 1000000000 bytes"),
     ] {
         let mut client = Client::start();

@@ -1,10 +1,10 @@
-//! Ranges of the sliders for the numbers of a text.
+//! Limits and ranges of the sliders for numbers in a text.
 
 use serde_json::{Value, json};
 
 use super::local_client::LocalClient;
 
-/// Returns the least and the greatest allowed number, the step, and the ends of a slider.
+/// Returns the minimum, the maximum, the step, and the ends of a slider, or null if there is none.
 fn limits(found: &Value) -> Value {
     match found {
         Value::Null => Value::Null,
@@ -12,7 +12,7 @@ fn limits(found: &Value) -> Value {
     }
 }
 
-/// A slider does not offer numbers that the language forbids.
+/// A slider offers only numbers that the language allows for its field.
 #[test]
 fn a_slider_takes_the_limits_of_its_field() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) fov 1rad }\nsampler { per_pixel 16 }\nsphere { center (0, 0, 0) radius 1 }\nbox for i < 3 { center (i, 0, -0.25) size (1, 2, 3) }\nlet a = 3\nsphere { center (0, 0, 0) radius a + 1 }\nsphere { radius 8 / 2 }";
@@ -25,7 +25,7 @@ fn a_slider_takes_the_limits_of_its_field() {
         ("eye (0", json!([null, null, 0.1, [-5.0, 5.0]])),
         ("(i, 0, -0.25", json!([null, null, 0.01, [-0.75, 0.25]])),
         ("i < 3", json!([0.0, null, 1.0, [0.0, 13.0]])),
-        // The limits apply through a formula, too.
+        // The limits also apply if the number is a part of a formula.
         ("let a = 3", json!([-0.9, null, 0.1, [-0.9, 8.0]])),
         ("radius a + 1", json!([-2.9, null, 0.1, [-2.9, 6.0]])),
         ("radius 8", json!([0.1, null, 0.1, [0.1, 16.0]])),
@@ -41,8 +41,8 @@ fn a_slider_takes_the_limits_of_its_field() {
     }
 }
 
-/// A slider leaves out numbers that cause errors, and a count has whole steps, wherever the number
-/// stands.
+/// A slider leaves out numbers that cause errors. A count has a step of 1, wherever its number is
+/// written.
 #[test]
 fn a_slider_never_reaches_a_value_that_is_an_error() {
     let many = "sphere { center (1, 2, 3) }\n".repeat(3000);
@@ -77,13 +77,13 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "camera { eye (0, 0, 9) lookat (0, 0, 0) fov 2 * a }",
             json!([1.0, 89.0, 1.0, [1.0, 89.0]]),
         ),
-        // Limits of a direct use and of a formula together.
+        // The limits come from a direct use and a formula together.
         (
             "1",
             "sphere { radius a }\nsphere { radius 3 - a }",
             json!([0.1, 2.9, 0.1, [0.1, 2.9]]),
         ),
-        // Counts.
+        // These numbers are whole.
         (
             "4",
             "sphere for i < a { center (i, 0, 0) }",
@@ -124,14 +124,14 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "sphere for i < a { center (i, 0, 0) }",
             json!([1.0, 8.0, 1.0, [1.0, 8.0]]),
         ),
-        // A number at the end of the valid range has a range.
+        // A number at the end of the valid range still has a slider range.
         (
             "1",
             "sphere { center (0, asin(a) / 1rad, 0) }",
             json!([-1.0, 1.0, 0.1, [-1.0, 1.0]]),
         ),
-        // Errors that are there already do not count. If all nearby numbers are wrong, there are
-        // no limits.
+        // Errors that the text already has do not count. If all nearby numbers cause errors, there
+        // are no limits.
         (
             "1",
             "sphere { radios 1 radius a / 2 }",
@@ -142,7 +142,7 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "sphere for i < a / 4 { center (i, 0, 0) }",
             json!([null, null, 0.1, [-1.0, 9.0]]),
         ),
-        // A long text is not read again for each number tried.
+        // A long text is not reread for each number that is tried.
         (
             "1",
             &format!("{many}sphere {{ radius a / 2 }}"),
@@ -160,13 +160,14 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
     }
 }
 
-/// A definition's slider follows the comment behind it, or the fields that use it.
+/// The range of a definition's slider comes from the comment behind the definition, or else from
+/// the fields that use it.
 #[test]
 fn definitions_take_slider_ranges_from_comments_or_fields() {
     let no_number = |it: &str| format!("`{it}` in the range is no number");
     let alone = || Some("a range is for a number or an angle that stands alone".to_owned());
-    // The value and comment behind `=`; the least and the greatest number and the step; the reason
-    // if a range is refused.
+    // Each case has the value and the comment behind `=`; the minimum, the maximum and the step;
+    // and, if the comment's range is refused, the reason.
     let cases = [
         ("1 // [0.5:0.1:2] how large", json!([0.5, 2.0, 0.1]), None),
         ("-2 //[-3:3]", json!([-3.0, 3.0, 0.1]), None),

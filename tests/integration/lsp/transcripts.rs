@@ -1,9 +1,9 @@
-//! Transcripts in `tests/lsp`: messages to the server, and below them its answers.
+//! Transcripts in `tests/lsp`: messages to the server, each followed by the server's answers.
 //!
 //! `> METHOD PARAMS` is a request, `! METHOD PARAMS` a notification, and `= TEXT` any other
-//! message. The document is added to their parameters. Messages without an empty line between them
-//! arrive before the server starts to work. `#` begins a remark. `PINHOLE_BLESS=1 cargo test`
-//! writes the server's answers, `<`, and its log, `?`, anew.
+//! message. The test adds the document's URI to the parameters. Messages that no empty line
+//! separates arrive before the server starts to work. `#` begins a comment. `PINHOLE_BLESS=1 cargo
+//! test` rewrites the server's answers (`<`) and its log (`?`).
 
 use std::path::Path;
 
@@ -15,8 +15,8 @@ use super::{
 };
 use crate::{program::names, snapshot::assert_file};
 
-/// Prints a message in one line, without the JSON-RPC version, pictures and the version of the
-/// program.
+/// Returns a message as one line, without the JSON-RPC version, pictures, and the program's
+/// version.
 fn line(message: &str) -> String {
     let mut message: Value = serde_json::from_str(message).expect("JSON");
     let members = message.as_object_mut().expect("a message");
@@ -29,7 +29,7 @@ fn line(message: &str) -> String {
     format!("< {message}\n").replace(version, "\"version\":\"…\"")
 }
 
-/// Replays a transcript and returns it with the server's current answers.
+/// Replays a transcript. Returns it with the server's current answers in place of the old ones.
 fn replayed(transcript: &str) -> String {
     let mut client = Client::new(InProcess::default());
     let block = |block: &str| {

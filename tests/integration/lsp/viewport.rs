@@ -1,4 +1,4 @@
-//! Editing in the picture: overlays of objects, new objects, and drags.
+//! Editing in the picture: overlays of objects, adding objects, and drags.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use super::{
 
 const FAILED: i32 = -32803;
 
-/// A picture of very many objects has overlays for the first 1000 and the requested one.
+/// If a scene has very many objects, there are overlays for the first 1000 and the requested one.
 #[test]
 fn at_most_1000_overlays_and_the_requested_object_are_sent() {
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
@@ -28,7 +28,7 @@ fn at_most_1000_overlays_and_the_requested_object_are_sent() {
         assert_eq!(listed.as_array().map(Vec::len), Some(count));
         assert!(listed[0]["range"].is_object() && listed[0]["outline"].is_null());
     }
-    // The first board is listed wherever it stands in the text, as objects stand on it.
+    // The first board is listed wherever it is in the text, because objects stand on it.
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
     let floor = many.collect::<String>() + "checkerboard {}\ncheckerboard { y 1 }\n";
     let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
@@ -48,17 +48,17 @@ fn at_most_1000_overlays_and_the_requested_object_are_sent() {
     }
 }
 
-/// The outline of a board's square is not drawn across objects in front of it.
+/// The outline of a board's square is hidden behind objects in front of the board.
 #[test]
 fn checkerboard_outlines_stop_at_objects_in_front_of_them() {
     let camera = "camera { eye (0, 1, 5) lookat (0, 0, 0) }";
-    // Size of a square, objects, and the number of visible parts of the square's outline.
+    // Rows of the size of a square, objects, and the number of visible parts of its outline.
     for (square, before, count) in [
         (2, "", 1),
         (2, "sphere { center (0, -5, 0) radius 1 }", 1),
         (2, "sphere { center (1, 0.3, 0) radius 0.6 }", 2),
         (2, "sphere { center (0.5, 0.5, 3) radius 1 }", 0),
-        // From above a large square, some of its sides are far outside the picture.
+        // From above, the sides of a large square are partly far outside the picture.
         (900, "sphere { center (0, 0.1, 3) radius 0.02 }", 3),
     ] {
         let board = format!("{camera} checkerboard {{ square {square} }}");
@@ -81,7 +81,7 @@ fn checkerboard_outlines_stop_at_objects_in_front_of_them() {
     }
 }
 
-/// A new object is valid, has an unused name and is in the picture.
+/// A new object is valid, has an unused name, and is visible in the picture.
 #[test]
 fn an_added_object_is_visible_and_has_an_unused_name() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
@@ -128,7 +128,7 @@ fn an_added_object_is_visible_and_has_an_unused_name() {
     }
 }
 
-/// Objects added one after another get different positions, also if the text has errors.
+/// Objects added one after another have different positions, even if the text has errors.
 #[test]
 fn objects_added_one_after_another_get_distinct_positions() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
@@ -155,7 +155,7 @@ fn objects_added_one_after_another_get_distinct_positions() {
     }
 }
 
-/// A new object lies within the picture, however many objects there are, in a colour of its own.
+/// A new object is wholly in the picture, however many objects there are, and has an unused colour.
 #[test]
 fn added_objects_lie_within_the_picture_in_distinct_colours() {
     let board = "checkerboard { y 0 }\n";
@@ -196,7 +196,7 @@ fn added_objects_lie_within_the_picture_in_distinct_colours() {
     }
 }
 
-/// The first object of a kind gets the kind's colour, unless that is in use.
+/// The first object of a kind has the kind's default colour, unless that colour is in use.
 #[test]
 fn an_added_object_takes_a_colour_that_is_not_in_use() {
     for (before, kind, color) in [
@@ -227,7 +227,7 @@ fn an_added_object_takes_a_colour_that_is_not_in_use() {
     }
 }
 
-/// A new object touches the board at any height, also if the board is added later.
+/// A new object touches the board, whatever the board's height, even if the board is added later.
 #[test]
 fn an_added_object_stands_on_the_checkerboard() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
@@ -246,7 +246,7 @@ fn an_added_object_stands_on_the_checkerboard() {
             let found =
                 LocalClient::with(&text).ask("pinhole/add", json!({ "kind": "checkerboard" }));
             let board = found["edits"][0]["newText"].as_str().expect("a text");
-            // Numbers of the name, the centre, and the radius or the size.
+            // These are the numbers of the name, of the centre, and of the radius or the size.
             let parts = written.split(|it: char| !matches!(it, '0'..='9' | '.' | '-'));
             let numbers: Vec<f64> = parts.filter_map(|it| it.parse().ok()).collect();
             let half = numbers[4] / if kind == "box" { 2.0 } else { 1.0 };
@@ -258,7 +258,7 @@ fn an_added_object_stands_on_the_checkerboard() {
     }
 }
 
-/// A new board is below all objects, and at a height that no other board has.
+/// A new board is below all objects, at a height at which there is no other board.
 #[test]
 fn an_added_checkerboard_lies_below_all_objects() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
@@ -281,7 +281,7 @@ fn an_added_checkerboard_lies_below_all_objects() {
     }
 }
 
-/// A comment behind a block stays there when the block is copied.
+/// A comment behind a block stays behind that block when the block is copied.
 #[test]
 fn copying_a_block_does_not_move_its_trailing_comment() {
     let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
@@ -314,7 +314,7 @@ fn copying_a_block_does_not_move_its_trailing_comment() {
     }
 }
 
-/// A drag of a number shared with another field is refused everywhere, with a step or without.
+/// A number that another field shares cannot be dragged to any point, with or without a step.
 #[test]
 fn dragging_a_number_shared_with_another_field_is_refused() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nlet r = 1\n\
@@ -333,7 +333,7 @@ fn dragging_a_number_shared_with_another_field_is_refused() {
     }
 }
 
-/// With a step, numbers are round, and a drag to the starting point leaves the text unchanged.
+/// A drag with a step yields round numbers. If it ends where it began, the text stays unchanged.
 #[test]
 fn a_drag_with_a_step_snaps_to_round_numbers() {
     let text =
@@ -353,7 +353,7 @@ fn a_drag_with_a_step_snaps_to_round_numbers() {
                 .parse()
                 .expect("a number")
         });
-        // A metre has 90 pixels here, so a hundredth has 0.9 and a tenth 9.
+        // Here 1 m is 90 pixels, so 0.01 m is 0.9 pixels and 0.1 m is 9 pixels.
         match x {
             None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
             Some(x) => {
@@ -367,7 +367,7 @@ fn a_drag_with_a_step_snaps_to_round_numbers() {
     }
 }
 
-/// A drag of one object of a repeated block moves all objects of the block.
+/// Dragging one object of a repeated block moves all objects of the block.
 #[test]
 fn dragging_one_repeated_object_moves_its_whole_block() {
     for (blocks, object, handle, to, written, value, also) in [

@@ -1,4 +1,4 @@
-//! Files of a report: charts, tables, and a self-contained page.
+//! Files of a report: charts, tables, and a page that needs no other files.
 
 use std::fs;
 
@@ -12,7 +12,7 @@ use crate::program::{self, Folder};
 
 const XHTML: &str = "http://www.w3.org/1999/xhtml";
 
-/// Returns the size of the picture in an `img` element.
+/// Returns the width and the height of the PNG picture in an `img` element.
 fn size(element: Node) -> (u32, u32) {
     let data = element.attribute("src").unwrap();
     let png = data.strip_prefix("data:image/png;base64,").unwrap();
@@ -21,7 +21,7 @@ fn size(element: Node) -> (u32, u32) {
     (film.width(), film.height())
 }
 
-/// Returns the elements of a document with a name.
+/// Returns the elements of a document that have the tag `name`.
 fn elements<'d>(
     document: &'d Document,
     name: &'static str,
@@ -30,7 +30,7 @@ fn elements<'d>(
     all.filter(move |node| node.tag_name().name() == name)
 }
 
-/// Returns the labels of a chart with their vertical positions.
+/// Returns the labels of an SVG chart, each with its vertical position.
 fn labels(chart: &str) -> Vec<(String, i32)> {
     let document = parsed(chart);
     let root = document.root_element();
@@ -65,7 +65,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     for name in ["time", "wall"] {
         assert!(first[at(name)].parse::<f64>().unwrap() > 0.0, "{name}");
     }
-    // The exact method has a bound instead of a measured error.
+    // The exact method has an error bound instead of a measured error.
     for name in ["per_pixel", "rmse", "slope"] {
         assert_eq!(exact[at(name)], "", "{name}");
         assert_ne!(first[at(name)], "", "{name}");
@@ -94,7 +94,8 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     let page = read("index.html");
     let document = parsed(&page);
     let count = |name| elements(&document, name).count();
-    // The exact picture appears twice, whole and beside the others, and each sampled method's once.
+    // The page shows the exact picture twice (alone, and beside the others) and the picture of each
+    // sampled method once.
     let counts = [count("script"), count("table"), count("img")];
     assert_eq!(counts, [0, 1, 2 + methods.len()]);
     // The recommendation comes first, then the charts, the table and the pictures.
@@ -128,7 +129,7 @@ fn the_page_shows_a_large_picture_reduced() {
     assert_eq!(size(whole), (434, 234));
     assert!(page.contains("reduced to 434 × 234 pixels"));
     assert!(page.len() < 500_000, "{}", page.len());
-    // The page does not mention what was not measured.
+    // The page says nothing about methods and values that were not measured.
     assert!(page.contains("What sobol makes of the picture"));
     for absent in ["Exact makes no error", "Exact takes", "±", "same CPU time"] {
         assert!(!page.contains(absent), "{absent}");
@@ -159,7 +160,7 @@ fn scene_names_cannot_escape_the_output_folder_or_break_a_file() {
     let errors = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{errors}");
     assert!(!errors.contains('\u{1b}'));
-    // Nothing new is outside the scenes' folder, and only the report's folder is new in it.
+    // Nothing was created outside the scenes' folder, and only the report's folder inside it.
     assert_eq!(folder.names(), ["work"]);
     let entries = |name: &str| program::names(&folder.path(name));
     assert_eq!(entries("work").len(), names.len() + ["a", "out"].len());
@@ -175,7 +176,7 @@ fn scene_names_cannot_escape_the_output_folder_or_break_a_file() {
             parsed(&folder.text(&format!("work/out/{made}/{file}")));
         }
     }
-    // Each scene has a chapter.
+    // The page has a chapter for each scene.
     let page = folder.text("work/out/index.html");
     let document = parsed(&page);
     let titles = elements(&document, "h2").filter(|node| node.has_tag_name((XHTML, "h2")));

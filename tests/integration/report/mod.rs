@@ -1,4 +1,4 @@
-//! Reports of speed against error: tables, files and page.
+//! Reports of speed against error: tables, files and the page.
 
 mod files;
 #[cfg(unix)]
@@ -15,24 +15,24 @@ const SCENE: &str =
 sampler { method sobol per_pixel 4 seed 7 } sphere Ball { center (-1.6, 1, 0) color olive } checkerboard {}
 ";
 
-/// Returns a folder with the scene in `a.scn`.
+/// Returns a folder that has [`SCENE`] in `a.scn`.
 fn folder() -> Folder {
     Folder::with([("a.scn", SCENE)])
 }
 
-/// Returns the report of the scene as people see it.
+/// Returns the report of the scene as text for the terminal.
 fn table(arguments: &str) -> String {
     folder().told(&format!("report a.scn {arguments}"), 0)
 }
 
-/// Returns the report of the scene as JSON, and asserts that it is complete.
+/// Returns the report of the scene as JSON. Asserts that the report is complete.
 fn report(arguments: &str) -> Value {
     let answer = folder().done(&format!("report a.scn --format json {arguments}"));
     assert_eq!(answer.json()["complete"], true);
     answer.json()["reports"][0].clone()
 }
 
-/// Parses XML, or HTML that is written as XML.
+/// Parses XML, or HTML that is also valid XML.
 fn parsed(text: &str) -> roxmltree::Document<'_> {
     let options = roxmltree::ParsingOptions {
         allow_dtd: true,
@@ -52,9 +52,10 @@ fn a_report_prints_a_table_and_one_recommendation() {
             .unwrap()
     };
     for row in Method::SAMPLED.map(|method| row(method.name())) {
-        // The columns are the slope, ±, its error, the samples, and two times with their units.
+        // The columns are the method, the slope, `±`, the slope's error, the samples, and two
+        // times, each with its unit.
         assert_eq!((row.len(), row[2]), (9, "±"), "{row:?}");
-        // With so few samples, an error of 1/256 is extrapolated.
+        // So few samples do not reach an error of 1/256, so the values are extrapolated.
         let are_first = [(1, '−'), (4, '~'), (5, '~')].map(|(at, c)| row[at].starts_with(c));
         assert_eq!(are_first, [true; 3], "{row:?}");
     }
@@ -65,7 +66,7 @@ fn a_report_prints_a_table_and_one_recommendation() {
     let answers = text.lines().filter(|line| line.starts_with("Use "));
     assert_eq!(answers.count(), 1, "{text}");
 
-    // Each requested error has a table.
+    // There is a table for each requested error.
     let several = table("--samples 1,4 --runs 1 --error 0.0101 --error 0.0104");
     for error in ["1/256", "0.0101", "0.0104"] {
         let answer = format!("use exact for an error of {error}: ");
@@ -73,7 +74,7 @@ fn a_report_prints_a_table_and_one_recommendation() {
             assert_eq!(several.matches(&words).count(), 1, "{several}");
         }
     }
-    // A slope through two points has no standard error.
+    // A slope through only two points has no standard error.
     assert!(!several.contains('±'), "{several}");
     for line in text.lines().chain(several.lines()) {
         assert!(line.chars().count() <= 100, "it fits a terminal: {line}");
@@ -122,7 +123,7 @@ fn report_json_is_complete_and_errors_fall_with_samples() {
             _ => -0.85..-0.55,
         };
         assert!(expected.contains(&slope), "{name}: {slope}");
-        // The default error, and the requested ones.
+        // The first error is the default, and the others are requested.
         for (at, error) in [1.0 / 256.0, 0.5, 1e-6, 0.02].into_iter().enumerate() {
             let needed = &method["needed"][at];
             assert_eq!(number(&needed["error"]), error);
@@ -132,7 +133,7 @@ fn report_json_is_complete_and_errors_fall_with_samples() {
         assert_eq!(method["needed"][1]["per_pixel"], 1.0, "{name}");
     }
     assert_eq!(report["verdicts"].as_array().unwrap().len(), 4);
-    // Each run has a seed of its own, and the errors of the seeds differ.
+    // Each run has its own seed, and the errors for different seeds differ.
     let mut random = methods.iter().filter(|method| method["method"] == "random");
     let runs = &random.next().unwrap()["measured"][3]["runs"]["rmse"];
     assert!(runs[0] != runs[1] && runs[1] != runs[2]);
@@ -150,7 +151,7 @@ fn sample_counts_grow_until_the_error_is_reached() {
     for method in report["methods"].as_array().unwrap() {
         assert_eq!(method["needed"][0]["extrapolated"], false, "{method}");
     }
-    // No more samples are taken than needed.
+    // The measurement stops at the first number of samples that reaches the error.
     let random = report["methods"][0]["measured"].as_array().unwrap();
     let is_enough = |point: &Value| number(&point["rmse"]) <= 1.0 / 256.0;
     assert_eq!(random.iter().position(is_enough), Some(random.len() - 1));
@@ -158,7 +159,7 @@ fn sample_counts_grow_until_the_error_is_reached() {
 
 #[test]
 fn no_method_claims_an_error_below_the_reference_bound() {
-    // An error below the reference's bound cannot be reached.
+    // An error below the error bound of the reference picture cannot be measured.
     let report = report("--methods exact,sobol --samples 1,4 --runs 1 --error 1e-17");
     let bound = number(&report["reference"]["root_mean_square_bound"]);
     let largest = number(&report["exact"]["bound"]);

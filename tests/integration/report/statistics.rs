@@ -1,4 +1,4 @@
-//! Statistics: medians, slopes, the cost of reaching an error, and verdicts.
+//! Statistics of reports: medians, slopes, the cost of reaching an error, and verdicts.
 
 use std::{cell::RefCell, time::Duration};
 
@@ -31,14 +31,14 @@ fn median_and_root_mean_square_match_values_computed_by_hand() {
 
 #[test]
 fn the_slope_has_the_standard_error_of_the_textbook_formula() {
-    // In units of ln 2: x = 0, 1, 2, 3 and y = 0, −1, −1, −2 have x̄ = 1.5, ȳ = −1, S = 5, b =
-    // −3/5, residuals 0.1, −0.3, 0.3, −0.1, Σr² = 0.2, and the standard error √(0.2 / 2 / 5) =
-    // √0.02.
+    // In units of ln 2, the points x = 0, 1, 2, 3 and y = 0, −1, −1, −2 have the means x̄ = 1.5 and
+    // ȳ = −1, and S = Σ(x − x̄)² = 5. The slope is −3/5. The residuals r are 0.1, −0.3, 0.3 and
+    // −0.1, so Σr² = 0.2, and the standard error is √(0.2 / 2 / 5) = √0.02.
     let fit = PowerLaw::fit(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
     assert!((fit.slope + 0.6).abs() < 1e-14);
     assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
-    // Two or three points have a line without a standard error, one point has none, and an error of
-    // 0 has no logarithm.
+    // A line through two points, or exactly through three, has no standard error. A single point
+    // has no line, and an error of 0 has no logarithm.
     let few = [(1.0, 1.0), (4.0, 0.5), (16.0, 0.25)];
     for few in [&few[..], &few[1..]] {
         let few = PowerLaw::fit(few).unwrap();
@@ -48,7 +48,7 @@ fn the_slope_has_the_standard_error_of_the_textbook_formula() {
     assert_eq!(PowerLaw::fit(&[(1.0, 1.0), (4.0, 0.0)]), None);
 }
 
-/// Returns a series of one run, from rows of samples per pixel, seconds and errors.
+/// Returns a series with one run per point. A point is the samples per pixel, seconds and error.
 fn series(method: Method, points: &[[f64; 3]]) -> MethodSeries {
     let point = |&[per_pixel, cpu, error]: &[f64; 3]| SeriesPoint {
         per_pixel: per_pixel as u64,
@@ -74,8 +74,8 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().unwrap()).collect()
 }
 
-/// Rows of measured points, and of an error with the samples and the CPU time that it takes, as far
-/// as they are known, and whether they are extrapolated.
+/// Each row has measured points, then an error and its expected cost: the samples and the CPU time,
+/// as far as they are known, and whether they are extrapolated.
 #[test]
 fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
     for [points, expected] in rows("
@@ -113,7 +113,8 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
         assert!((found.wall - found.cpu / 2.0).abs() < 1e-9, "{found:?}");
         assert_eq!(found.cpu_runs, [found.cpu; 2]);
     }
-    // An error that rises again was not reached: a grid may align with the picture by chance.
+    // If the error rises again later, the first low error does not count: a grid of samples may
+    // align with the picture by chance.
     let wave = [1.0, 4.0, 16.0, 64.0].map(|n| [n, n, if n == 16.0 { 0.2 } else { 0.05 }]);
     let found = estimate(&wave, 0.1).unwrap();
     let samples = found.per_pixel.unwrap();
@@ -129,7 +130,7 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
 #[test]
 fn multi_jittered_estimates_round_to_a_full_grid() {
     let points = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0].map(|n: f64| [n, n, 1.0 / n.sqrt()]);
-    // The last measured point limits the count.
+    // The number of samples is at most that of the last measured point.
     let samples = [401.0, 400.0, 419.0, 421.0, 1020.0, 1024.0];
     let grids = [420.0, 400.0, 420.0, 441.0, 1024.0, 1024.0];
     for (samples, grid) in samples.into_iter().zip(grids) {
@@ -165,14 +166,14 @@ fn progress_reaches_1_when_a_sample_count_is_requested_twice() {
     let control = Control::default();
     let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
     assert!(measured.exact.is_none());
-    // The first run measures in ascending order, and the second in another order.
+    // The first run measures in ascending order, and the second run in a different order.
     let told = told.into_inner();
     assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
     assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");
 }
 
-/// Returns a measurement of methods with the CPU times of some runs. Each has 4 and 16 samples with
-/// errors of 0.2 and 0.1.
+/// Returns a measurement of methods with given CPU times of their runs. Each method has two points:
+/// 4 samples with an error of 0.2, and 16 samples with an error of 0.1.
 fn measured(methods: &str) -> Measurement {
     let timed = |times: &str, share: f64, error: f64| -> Vec<_> {
         let run = |time: f64| Run {

@@ -1,8 +1,8 @@
-//! Errors of the means of sample points, and how fast they fall.
+//! Errors of the means of sample points, and how fast the errors fall with more samples.
 
 use super::*;
 
-/// For several boxes, the mean share of points in the box, over many pixels, is its area.
+/// For several boxes, the share of points in the box, averaged over many pixels, is its area.
 #[test]
 fn every_method_except_regular_and_scatter_is_unbiased() {
     for method in Method::SAMPLED {
@@ -32,7 +32,7 @@ fn every_method_except_regular_and_scatter_is_unbiased() {
     }
 }
 
-/// Returns the mean of numbers and its standard error.
+/// Returns the mean of `numbers` and the standard error of the mean.
 fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
     let count = numbers.len() as f64;
     let mean = numbers.iter().sum::<f64>() / count;
@@ -40,11 +40,13 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
     (mean, (squares.sum::<f64>() / (count - 1.0) / count).sqrt())
 }
 
-/// Edge of a half-plane: its normal, its distance from the pixel's centre, and the area on its
-/// inner side. Edges parallel to strata with one unbiased point each would add no information.
+/// Edge of a half-plane: its normal, its distance from the pixel's centre, and the area of the
+/// pixel on its inner side. Edges parallel to the strata would tell nothing if each stratum has one
+/// unbiased point.
 type Edge = (DVec2, f64, f64);
 
-/// Returns for each edge the error of the share of points on its inner side, in a pixel of its own.
+/// Returns an error for each edge: the share of points on the edge's inner side minus the area
+/// there. Each edge has its own pixel.
 fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     let sampling = sampling(method, n, n);
     let error = |(i, &(normal, distance, area)): (u32, &Edge)| {
@@ -55,8 +57,8 @@ fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     (0..).zip(edges).map(error).collect()
 }
 
-/// Returns the mean difference of squared errors from their expected values, and its standard
-/// error.
+/// Returns the mean of the differences between squared errors and their expected values, and the
+/// standard error of that mean.
 fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     let squares = errors.iter().map(|error| error * error);
     mean_and_error(
@@ -67,8 +69,8 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// Returns the area of the pixel where normal · p < distance, as a sum over four quadrants beyond
-/// the pixel's corners, each cut off by the edge.
+/// Returns the area of the pixel where normal · p < distance. Sums over four quadrants, whose
+/// corners are the pixel's corners, the part that the edge cuts off.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);
@@ -77,7 +79,7 @@ fn area(normal: DVec2, distance: f64) -> f64 {
         + triangle(distance - sum)
 }
 
-/// Returns edges at random angles through random points of the pixel.
+/// Returns edges at random angles through random points of a pixel.
 fn edges() -> Vec<Edge> {
     let points = points(Method::Random, 4 * 900, 123, [1, 1]);
     let edge = |pair: &[DVec2]| {
@@ -89,16 +91,16 @@ fn edges() -> Vec<Edge> {
     points.chunks_exact(2).map(edge).collect()
 }
 
-/// Numbers of samples at which errors are measured: powers of 4.
+/// Numbers of samples per pixel at which errors are measured: powers of 4.
 const COUNTS: [u64; 5] = [16, 64, 256, 1024, 4096];
 
-/// Returns the variance of the share of n independent points in an area.
+/// Returns the variance of the share of `n` independent points that lie on an edge's inner side.
 fn variance_of_independent_points(n: u64, (_, _, area): Edge) -> f64 {
     area * (1.0 - area) / n as f64
 }
 
-/// Returns the variance of the share of one point in each of n square cells. Only cells that the
-/// edge cuts contribute.
+/// Returns the variance of the share of points that lie on an edge's inner side, with one point in
+/// each of `n` square cells. Only cells that the edge crosses contribute.
 fn variance_of_one_point_per_cell(n: u64, (normal, distance, _): Edge) -> f64 {
     let side = n.isqrt();
     let middle = |i: u64| (i as f64 + 0.5) / side as f64 - 0.5;
@@ -135,8 +137,8 @@ fn squared_errors_match_theory() {
     }
 }
 
-/// If cells hold one point each, the error falls with a slope of −3/4 (Mitchell 1996), as it does
-/// for scrambled nets (He and Owen 2014).
+/// If each cell contains one point, the error falls with a slope of −3/4 (Mitchell 1996). So it
+/// does for scrambled nets (He and Owen 2014).
 #[test]
 fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
     let edges = edges();
@@ -146,8 +148,8 @@ fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
         Method::Halton,
         Method::Sobol,
     ] {
-        // Slope of the least-squares line through five equidistant logarithms, and its standard
-        // error.
+        // Compute the slope of the least-squares line through five equidistant logarithms, and the
+        // standard error of the slope.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {
             let nothing = std::iter::repeat(0.0);

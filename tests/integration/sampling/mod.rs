@@ -1,7 +1,8 @@
-//! The defining property of each sampling method.
+//! Tests of the defining property of each sampling method.
 
 mod errors;
 mod strata;
+mod tilings;
 mod totals;
 
 use std::ops::Range;
@@ -14,8 +15,8 @@ use pinhole::{
     scene::{Count, Method, Sampler},
 };
 
-/// Returns the numbers of samples for which properties are tested: small numbers, primes, powers
-/// and their neighbours.
+/// Returns the numbers of samples per pixel for which properties are tested: small numbers, primes,
+/// powers, and neighbours of powers.
 fn counts() -> impl Iterator<Item = u64> {
     (1..=72).chain([
         97, 100, 101, 127, 128, 144, 210, 243, 251, 256, 257, 509, 1000, 1024, 4093, 4096, 4097,
@@ -27,7 +28,7 @@ fn sampling(method: Method, n: u64, seed: u64) -> Sampling {
     sampling_with_total(method, 64 * 64 * n, seed, [64, 64])
 }
 
-/// Returns the samples of a picture with a total number.
+/// Returns the sampling of a picture with `total` samples in all.
 fn sampling_with_total(
     method: Method,
     total: u64,
@@ -43,7 +44,7 @@ fn sampling_with_total(
     Sampling::new(&sampler, width, height)
 }
 
-/// Returns the points of a pixel with the given indices.
+/// Returns those sample points of the pixel (x, y) whose indices are in `indices`.
 pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> Vec<DVec2> {
     let mut points = Points::default();
     let count = sampling.count(x, y);
@@ -51,7 +52,7 @@ pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> 
     points.iter().collect()
 }
 
-/// Returns the n points of a pixel.
+/// Returns all sample points of a pixel, with `n` per pixel.
 fn points(method: Method, n: u64, seed: u64, [x, y]: [u32; 2]) -> Vec<DVec2> {
     let points = points_at(&sampling(method, n, seed), [x, y], 0..n);
     assert_eq!(points.len() as u64, n);
@@ -78,7 +79,7 @@ fn seeds_and_pixels_share_no_points() {
         if matches!(method, Method::Regular) {
             continue;
         }
-        // `scatter` has another number of points in each pixel.
+        // `scatter` has a different number of points in each pixel.
         let of = |seed, pixel: [u32; 2]| {
             let sampling = sampling(method, 5, seed);
             points_at(&sampling, pixel, 0..sampling.count(pixel[0], pixel[1]))
@@ -95,7 +96,8 @@ fn seeds_and_pixels_share_no_points() {
 
 #[test]
 fn sample_points_match_stored_values() {
-    // The eighth point of a pixel must stay the same, for existing pictures and on other machines.
+    // The eighth point of a pixel must stay the same on all machines, so that pictures do not
+    // change.
     let expected = [
         DVec2::new(0.375, -0.125),
         DVec2::new(-0.48383530042028894, -0.350440702956024),

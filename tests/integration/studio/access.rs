@@ -1,4 +1,4 @@
-//! Access: which clients are admitted, and to which resources.
+//! Access: which clients the host admits, and what they can request.
 
 use std::{
     io::{ErrorKind, Read, Write},
@@ -27,7 +27,7 @@ fn header<'a>(response: &'a str, name: &str) -> &'a str {
     values[0].1
 }
 
-/// Reads until the host closes a connection. Returns what it sent before.
+/// Reads until the host closes the connection. Returns everything that the host sent.
 fn until_closed(stream: &mut TcpStream) -> Vec<u8> {
     let mut said = Vec::new();
     match stream.read_to_end(&mut said) {
@@ -36,7 +36,7 @@ fn until_closed(stream: &mut TcpStream) -> Vec<u8> {
     }
 }
 
-/// Returns the head of a request for a web socket. The key is the example of RFC 6455.
+/// Returns the request head that opens a WebSocket. Its key is the example in RFC 6455.
 fn upgrade(studio: &Studio) -> String {
     let host = studio.host();
     format!(
@@ -44,7 +44,7 @@ fn upgrade(studio: &Studio) -> String {
     )
 }
 
-/// Asserts that a page with the token gets what it asks for.
+/// Asserts that a page with the token still works: it gets diagnostics for a text.
 fn assert_page_works(studio: &Studio) {
     let (mut page, _) = studio.page();
     page.open(json!({}), SMALLEST);
@@ -79,7 +79,8 @@ fn the_page_may_load_only_its_own_resources() {
         ("/studio.css", "text/css"),
         ("/x", "text/plain; charset=utf-8"),
     ] {
-        // Cookies of other servers on this machine have no effect, and none is set.
+        // The host ignores cookies, which other servers on this machine may have set, and sets
+        // none.
         let response = studio.get(path, &format!("Cookie: token={}\r\n", studio.token));
         for (name, value) in [
             ("content-type", kind),
@@ -129,7 +130,7 @@ fn requests_with_a_foreign_host_or_origin_are_refused() {
         for path in ["/", "/studio.js", "/socket"] {
             assert_eq!(status(&ask(path, headers)), "403", "{path} {headers}");
         }
-        // The same for a request of a web socket that is otherwise correct.
+        // The same holds for a request that opens a WebSocket and is otherwise correct.
         let upgrade = upgrade(&studio);
         let socket = upgrade.lines().filter(|line| {
             let own = ["Connection", "Upgrade", "Sec-"];
@@ -152,7 +153,7 @@ fn unknown_paths_and_methods_are_refused() {
         assert_eq!(status(&response), "404", "{path}");
         assert!(!response.contains("camera") && !response.contains("root:"));
     }
-    // An absolute address, as in a request to a proxy.
+    // The target is an absolute address, as in a request to a proxy.
     for target in ["http://127.0.0.1/studio.js", "http://example.org/"] {
         assert_eq!(status(&studio.get(target, "")), "403", "{target}");
     }
@@ -211,7 +212,7 @@ fn a_connection_without_the_token_is_closed() {
     ] {
         assert_eq!(studio.admitted(wrong).err(), Some(unknown), "{wrong}");
     }
-    // Messages other than texts get no answer.
+    // The host does not answer messages that are not texts.
     for wrong in [
         Message::binary(token.clone().into_bytes()),
         Message::Close(None),
@@ -221,18 +222,18 @@ fn a_connection_without_the_token_is_closed() {
         let said = socket.read();
         assert!(!matches!(said, Ok(Message::Text(_))), "{said:?}");
     }
-    // Another process has another token.
+    // The token of one process is unknown to another process.
     let (_folder, other) = self::studio();
     assert_eq!(other.admitted(token).err(), Some(unknown));
     assert_page_works(&studio);
 }
 
-/// Each client sends the start of something and then stops, or continues slowly.
+/// Each client sends the start of a request or message, and then stops or continues slowly.
 #[test]
 fn a_client_without_the_token_is_disconnected_after_five_seconds() {
     let (_folder, studio) = studio();
     let upgrade = upgrade(&studio);
-    // A ping of a client, and the start of a text frame of 100 bytes.
+    // The first is a ping; the second is the start of a text frame of 100 bytes.
     let ping = [upgrade.as_bytes(), &[0x89, 0x80, 0, 0, 0, 0]].concat();
     let text = [upgrade.as_bytes(), &[0x81, 0xe4, 0, 0, 0, 0, 1]].concat();
     thread::scope(|scope| {
@@ -265,8 +266,8 @@ fn a_client_without_the_token_is_disconnected_after_five_seconds() {
                 let time = begun.elapsed();
                 let start = String::from_utf8_lossy(start);
                 assert!(time < Duration::from_secs(8), "{start}: {time:?}");
-                // A client that has closed its side, or has sent something else, is disconnected at
-                // once.
+                // A client that has closed its side, or has sent something other than a token, is
+                // disconnected at once.
                 assert!(
                     is_early || time > Duration::from_secs(4),
                     "{start}: {time:?}"
@@ -288,7 +289,7 @@ fn idle_connections_without_the_token_do_not_block_pages() {
         assert_page_works(&studio);
         drop((idle, sockets));
     }
-    // More pages than places for clients without a token all keep working.
+    // More pages with the token keep working than clients without a token are admitted.
     let mut pages: Vec<_> = (0..80).map(|_| studio.page().0).collect();
     for page in pages.iter_mut().chain([&mut before]) {
         page.open(json!({}), SMALLEST);
@@ -301,7 +302,7 @@ fn malformed_requests_and_frames_do_no_harm() {
     let (_folder, studio) = studio();
     let start = format!("GET / HTTP/1.1\r\nHost: {}\r\n", studio.host());
     let upgrade = upgrade(&studio);
-    // The head of a text frame of 64 MiB, and a part of the text.
+    // This is the head of a text frame of 64 MiB, followed by a part of its text.
     let head = [&[0x81, 0xff][..], &(64_u64 << 20).to_be_bytes(), &[0; 4]].concat();
     let huge = [upgrade.as_bytes(), &head, &vec![b'y'; 1 << 20]].concat();
     for wrong in [
@@ -311,8 +312,8 @@ fn malformed_requests_and_frames_do_no_harm() {
         b"GET\r\n\r\n",
         b"GET / HTTP/1.1\r\n\xe9\r\n\r\n",
         b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-        // A reserved opcode, a frame without a mask, a continuation without a start, and a text
-        // that is not UTF-8.
+        // These are a reserved opcode, a frame without a mask, a continuation frame without a
+        // first frame, and a text that is not UTF-8.
         &[upgrade.as_bytes(), &[0x8f, 0x80, 0, 0, 0, 0]].concat(),
         &[upgrade.as_bytes(), &[0x81, 0x01, b'y']].concat(),
         &[upgrade.as_bytes(), &[0x80, 0x81, 0, 0, 0, 0, b'y']].concat(),
@@ -321,7 +322,7 @@ fn malformed_requests_and_frames_do_no_harm() {
     ] {
         let begun = Instant::now();
         let mut stream = studio.stream();
-        // The connection may be closed before everything is written.
+        // The host may close the connection before everything is written, so ignore errors.
         let _ = stream.write_all(wrong);
         let said = until_closed(&mut stream);
         let (said, wrong) = (
@@ -335,8 +336,8 @@ fn malformed_requests_and_frames_do_no_harm() {
     assert_page_works(&studio);
 }
 
-/// On Linux all of 127.0.0.0/8 leads to this machine, so a server that listens at every address
-/// would be found at 127.0.0.2.
+/// On Linux, all addresses 127.0.0.0/8 lead to this machine. A server that listened at every
+/// address would therefore be reachable at 127.0.0.2.
 #[cfg(target_os = "linux")]
 #[test]
 fn studio_listens_only_at_127_0_0_1() {

@@ -1,4 +1,4 @@
-//! The program, and a plain client that sends what a browser would send.
+//! The running program, and a simple client that sends what a browser would send.
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
@@ -19,18 +19,18 @@ use crate::{
     program::Folder,
 };
 
-/// Starts the program in a new folder, with the smallest scene as `a.scn`.
+/// Starts the program in a new folder, with the smallest scene in `a.scn`.
 pub fn studio() -> (Folder, Studio) {
     let folder = Folder::with([("a.scn", SMALLEST)]);
     let studio = Studio::start(folder.command("studio --no-open a.scn"));
     (folder, studio)
 }
 
-/// Running program that serves a scene.
+/// Running `pinhole studio` that serves a scene.
 pub struct Studio {
     pub child: Child,
     pub port: u16,
-    /// Token in the printed address.
+    /// Token in the address that the program printed.
     pub token: String,
 }
 
@@ -60,7 +60,7 @@ impl Studio {
         stream
     }
 
-    /// Sends a request and returns its response.
+    /// Sends an HTTP request over a new connection, and returns the response.
     pub fn response(&self, request: &str) -> String {
         let mut stream = self.stream();
         stream.write_all(request.as_bytes()).unwrap();
@@ -69,7 +69,7 @@ impl Studio {
         response
     }
 
-    /// Requests a path with the host and further header lines, and returns the response.
+    /// Sends a GET request for a path, with the header lines `headers`. Returns the response.
     pub fn get(&self, path: &str, headers: &str) -> String {
         let host = self.host();
         self.response(&format!(
@@ -77,7 +77,7 @@ impl Studio {
         ))
     }
 
-    /// Opens a web socket without sending anything.
+    /// Opens a WebSocket and sends nothing over it, not even the token.
     pub fn socket(&self) -> WebSocket<TcpStream> {
         let host = self.host();
         let mut request = format!("ws://{host}/socket").into_client_request().unwrap();
@@ -86,8 +86,8 @@ impl Studio {
         client(request, self.stream()).unwrap().0
     }
 
-    /// Opens a page with a token. Returns the page and its session's token, or the code with which
-    /// it is refused.
+    /// Opens a page with a token. Returns the page and the token of its session, or the close code
+    /// with which the host refuses the page.
     pub fn admitted(&self, token: &str) -> Result<(Client<Page>, String), CloseCode> {
         let mut socket = self.socket();
         socket.send(Message::text(token)).unwrap();
@@ -102,7 +102,8 @@ impl Studio {
         Ok((Client::new(Page(socket)), token))
     }
 
-    /// Opens a page with the printed token. Returns it with the notification of the file.
+    /// Opens a page with the printed token. Returns the page, and the host's message about the
+    /// file.
     pub fn page(&self) -> (Client<Page>, Value) {
         let (mut page, token) = self.admitted(&self.token).unwrap();
         assert_eq!(token, self.token);
@@ -118,7 +119,7 @@ impl Drop for Studio {
     }
 }
 
-/// Page's end of the web socket.
+/// A page's end of its WebSocket.
 pub struct Page(pub WebSocket<TcpStream>);
 
 impl Transport for Page {
@@ -135,7 +136,7 @@ impl Transport for Page {
 }
 
 impl Client<Page> {
-    /// Returns the code with which the host closes the web socket, and skips earlier texts.
+    /// Skips messages until the host closes the WebSocket. Returns the close code.
     pub fn closed(&mut self) -> CloseCode {
         loop {
             match self.transport.0.read().unwrap() {

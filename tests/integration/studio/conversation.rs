@@ -1,4 +1,4 @@
-//! Messages over the web socket.
+//! Messages over the WebSocket between a page and the host.
 
 use std::io::Write;
 
@@ -19,7 +19,7 @@ sphere Ball { center (0, 1, 0)   radius 1 }
 checkerboard {}
 ";
 
-/// Opens a text and returns its diagnostics.
+/// Opens a text on a page and returns its diagnostics.
 fn open(page: &mut Client<Page>, text: &str) -> Value {
     page.open(json!({}), text);
     page.diagnostics()["diagnostics"].take()
@@ -43,7 +43,7 @@ fn invalid_messages_get_errors_and_the_conversation_continues() {
         let found = page.respond(method, params);
         assert_eq!(found["error"]["code"], code, "{method}");
     }
-    // Half of a surrogate pair is not valid text: the request gets an error.
+    // An unpaired surrogate cannot be in a text, so the request gets an error.
     let text = r#"{ "id": "page-7", "method": "studio/save", "params": { "text": "\ud800" } }"#;
     page.transport.write(text);
     let answer = page.read();
@@ -83,14 +83,14 @@ fn studio_pictures_equal_those_of_render() {
 #[test]
 fn a_message_that_is_too_long_ends_the_conversation() {
     let (_folder, studio) = studio();
-    // Head of a text frame: the mask bit, a length of 64 bits, and the mask.
+    // The head of a text frame has the mask bit, a length of 64 bits, and the mask.
     let head = [
         &[0x81, 0xff],
         &((64_u64 << 20) + 1).to_be_bytes()[..],
         &[0; 4],
     ]
     .concat();
-    // Binary messages, which have no meaning, end the conversation, too.
+    // A binary message, which has no meaning, also ends the WebSocket connection.
     let mut bytes = studio.page().0.transport.0;
     bytes.send(Message::binary(vec![1])).unwrap();
     let mut long = studio.page().0.transport.0;
@@ -127,7 +127,7 @@ fn pages_are_independent_and_do_not_block_each_other() {
     let (_folder, studio) = studio();
     let (mut first, _) = studio.page();
     let (mut second, _) = studio.page();
-    // The picture takes more than a minute.
+    // Making this picture takes more than a minute.
     let long = first.request("studio/png", json!({ "text": long_pixel() }));
     let refused = first.respond("studio/png", json!({ "text": SCENE }));
     assert_eq!(refused["error"]["message"], "another picture is being made");
@@ -135,14 +135,14 @@ fn pages_are_independent_and_do_not_block_each_other() {
     assert_ne!(open(&mut first, &wrong), json!([]));
     assert_eq!(open(&mut second, SCENE), json!([]));
     second.ask("studio/png", json!({ "text": SCENE }));
-    // A cancelled picture is not waited for.
+    // The host does not wait for a cancelled picture.
     first.notify("$/cancelRequest", json!({ "id": long + 100 }));
     first.notify("$/cancelRequest", json!({ "id": long }));
     assert_eq!(first.response(long)["error"]["code"], -32800);
     first.ask("studio/png", json!({ "text": SCENE }));
 }
 
-/// The work for a page ends with the page, however it ends.
+/// The host stops the work for a page when the page closes, in whatever way it closes.
 #[cfg(target_os = "linux")]
 #[test]
 fn closing_a_page_cancels_its_work() {
@@ -150,7 +150,7 @@ fn closing_a_page_cancels_its_work() {
 
     let (_folder, studio) = studio();
     let tasks = format!("/proc/{}/task", studio.child.id());
-    // The render threads have the name of the thread that starts them.
+    // Render threads have the same name as the thread that starts them.
     let wait = |name: &str, is_there: bool| {
         for _ in 0..500 {
             let tasks = fs::read_dir(&tasks)

@@ -1,4 +1,5 @@
-//! The scene's file: it is read, saved and changed by other programs, and no other file is touched.
+//! The scene's file: the host reads and saves it, and notices changes by other programs. The host
+//! touches no other file.
 
 use std::{fs, net::TcpListener};
 
@@ -17,7 +18,8 @@ fn save(page: &mut Client<Page>, text: &str, base: Option<&str>) -> Value {
     page.respond("studio/save", json!({ "text": text, "base": base }))
 }
 
-/// Returns the text of the file as the page is notified of it, and the reason if there is none.
+/// Waits for the host's next message about the file. Returns the file's text, and the reason if it
+/// has none.
 fn told(page: &mut Client<Page>) -> [Value; 2] {
     let mut file = page.notification("studio/file");
     ["text", "reason"].map(|field| file[field].take())
@@ -40,11 +42,11 @@ fn a_save_writes_the_file_and_notifies_other_pages() {
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(folder.text("a.scn"), "// é\r\n");
     assert_eq!(told(&mut second), [json!("// é\r\n"), Value::Null]);
-    // A text that the file has already need not be written, whatever its base.
+    // If the file already has the text, saving succeeds whatever the base is.
     for (text, base) in [("// é\r\n", "x"), ("// 2", "// é\r\n")] {
         assert_eq!(save(&mut second, text, Some(base))["result"], saved());
     }
-    // The first page is notified of this save only, and not of its own.
+    // The first page is notified only of this save of the second page, not of its own save.
     assert_eq!(told(&mut first), [json!("// 2"), Value::Null]);
     assert_eq!(studio.page().1["text"], "// 2");
     assert_eq!(folder.names(), ["a.scn"]);
@@ -55,21 +57,21 @@ fn a_save_never_overwrites_a_change_of_another_program() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
     folder.write("a.scn", "// theirs");
-    // The change is noticed whether the page has been notified or not.
+    // The host notices the change even if it has not notified the page of it yet.
     let theirs = json!({ "ok": false, "text": "// theirs" });
     assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], theirs);
     assert_eq!(folder.text("a.scn"), "// theirs");
     assert_eq!(page.notification("studio/file")["text"], "// theirs");
     let answer = save(&mut page, "// mine", Some("// theirs"));
     assert_eq!(answer["result"], saved());
-    // The file is removed.
+    // Now another program removes the file.
     fs::remove_file(folder.path("a.scn")).unwrap();
     assert_eq!(told(&mut page), [Value::Null, Value::Null]);
     let gone = json!({ "ok": false, "text": null });
     assert_eq!(save(&mut page, "// more", Some("// mine"))["result"], gone);
     assert_eq!(save(&mut page, "// mine", None)["result"], saved());
     assert_eq!(folder.text("a.scn"), "// mine");
-    // The file is in another encoding, which a save would lose.
+    // Now the file is in another encoding, which a save would destroy.
     folder.write("a.scn", b"// \xff");
     let reason = "it is not a text in UTF-8";
     assert_eq!(told(&mut page), [Value::Null, json!(reason)]);
@@ -87,7 +89,7 @@ fn a_save_never_overwrites_a_change_of_another_program() {
 fn a_save_that_fails_changes_nothing() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
-    // A new scene beside the file stays in its folder.
+    // A new scene can be saved only in the file's folder.
     for name in ["../b.scn", "sub/b.scn", "b.txt"] {
         let elsewhere = json!({ "text": "x", "base": SCENE, "name": name });
         let error = page.respond("studio/save", elsewhere)["error"].take();
@@ -96,7 +98,7 @@ fn a_save_that_fails_changes_nothing() {
     }
     let own = json!({ "text": SCENE, "base": SCENE, "name": "a.scn" });
     assert_eq!(page.ask("studio/save", own), saved());
-    // A folder replaces the file.
+    // Now a folder takes the file's place.
     fs::remove_file(folder.path("a.scn")).unwrap();
     fs::create_dir(folder.path("a.scn")).unwrap();
     let error = save(&mut page, "// mine", None)["error"].take();
@@ -104,7 +106,8 @@ fn a_save_that_fails_changes_nothing() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
-/// Each way of protecting a file that is possible here: for root, only the last one has an effect.
+/// Tests each way of protecting a file that is possible on this system. Only the last one has an
+/// effect on root.
 #[cfg(unix)]
 #[test]
 fn a_forbidden_save_names_the_file_the_reason_and_a_remedy() {
@@ -133,7 +136,7 @@ fn a_forbidden_save_names_the_file_the_reason_and_a_remedy() {
         let message = format!("a.scn is not saved: {why}; {way_out}");
         assert_eq!(answer["error"]["message"].take(), message, "{protect}");
         assert_eq!(folder.text("a.scn"), SCENE);
-        // Once it is allowed, the file is saved.
+        // Once saving is allowed again, the file is saved.
         assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], saved());
     }
 }
@@ -182,14 +185,14 @@ fn a_new_scene_is_saved_only_under_an_unused_name() {
     assert_eq!(outer.text("inner/there.scn"), "// there");
     assert_eq!(save(&mut page, json!("new one.scn"))["result"], saved());
     assert_eq!(outer.text("inner/new one.scn"), "// new");
-    // From now on the scene is a file like any other.
+    // From now on, the new scene is an ordinary file for all pages.
     for page in [&mut page, &mut other] {
         assert_eq!(
             page.notification("studio/file"),
             file("new one.scn", "// new", true)
         );
     }
-    // Another new scene is saved beside it, and overwrites no file.
+    // The other page saves another new scene beside it. That overwrites no existing file.
     let response = save(&mut other, json!("there.scn"));
     assert_eq!(response["error"]["code"], -32803);
     assert_eq!(outer.text("inner/there.scn"), "// there");
@@ -285,7 +288,7 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         env::var("PATH").unwrap()
     );
     let opened = folder.path("opened");
-    // The text is larger than the socket buffers of a page that does not read.
+    // A page that does not read has socket buffers smaller than this text.
     let long = "// a long scene\n".repeat(1 << 19);
     folder.write("a.scn", &long);
     for (arguments, is_opened) in [("studio --no-open", false), ("studio a.scn", true)] {
@@ -301,17 +304,18 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         while !opened.exists() && Instant::now() < end {
             thread::sleep(Duration::from_millis(10));
         }
-        // Other users can read the command line, so its token is separate and works only once.
+        // Other users can read the command line of the browser, so the token in it is a separate
+        // one that works only once.
         let address = folder.text("opened");
         let (host, once) = address.trim().split_once("/#token=").unwrap();
         assert_eq!(host, format!("http://{}", studio.host()));
         assert_ne!(once, studio.token);
         let (mut first, session) = studio.admitted(once).unwrap();
         assert!(session != once && session != studio.token);
-        // The page connects again with its session's token.
+        // The page reconnects with the token of its session.
         let (mut again, token) = studio.admitted(&session).unwrap();
         assert_eq!(token, session);
-        // Pending messages would arrive before the notice that the session ends.
+        // Read the pending messages, which come before the notice that the session ends.
         first.notification("studio/file");
         again.notification("studio/file");
         let (mut other, _) = studio.page();
@@ -319,13 +323,13 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         set_socket_recv_buffer_size(silent.get_ref(), 1 << 16).unwrap();
         silent.send(session.as_str().into()).unwrap();
         silent.read().unwrap();
-        // A second use of the address ends the session, and gets none.
+        // A second use of the address ends the session, and does not start a new one.
         let twice = CloseCode::from(4003);
         for token in [once, &session, once] {
             assert_eq!(studio.admitted(token).err(), Some(twice));
         }
         assert_eq!([first.closed(), again.closed()], [twice; 2]);
-        // A page that does not read its messages loses its session, too.
+        // The session also ends for a page that does not read its messages.
         thread::sleep(Duration::from_secs(1));
         let mut rest = Vec::new();
         let _ = silent.get_mut().read_to_end(&mut rest);
@@ -355,10 +359,10 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
         let (mut idle, _socket) = (studio.stream(), studio.socket());
         idle.write_all(b"GET / HT").unwrap();
         if is_pipe {
-            // Opening a pipe would wait for a writer.
+            // With a pipe in place of the file, opening the file would wait for a writer.
             fs::remove_file(folder.path("a.scn")).unwrap();
             folder.make_pipe("a.scn");
-            // By then the host has looked at the file.
+            // Wait until the host has looked at the file.
             thread::sleep(Duration::from_millis(2500));
         }
         let begun = Instant::now();
@@ -372,8 +376,8 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
     }
 }
 
-/// Unsaved drafts, one per page's key, survive the program until their text is saved or they are
-/// discarded.
+/// Unsaved drafts, one per page's key, are kept across restarts of the program until their text is
+/// saved or they are discarded.
 #[test]
 fn drafts_survive_a_restart_until_they_are_saved_or_discarded() {
     let folder = Folder::with([("a.scn", SCENE)]);
@@ -395,8 +399,8 @@ fn drafts_survive_a_restart_until_they_are_saved_or_discarded() {
     let twelve: Vec<String> = (0..12).map(|key| key.to_string()).collect();
     let twelve: Vec<(&str, Option<&str>)> =
         twelve.iter().map(|key| (&**key, Some(&**key))).collect();
-    // Rows of drafts stored one after the other, the drafts offered to a later page, and those left
-    // when it has saved `// b`.
+    // Each row has drafts stored one after the other, the drafts offered to a later page, and the
+    // drafts left after that page has saved `// b`.
     let cases = [
         (
             &[("x", Some("// 0")), ("y", Some("// 1"))][..],
@@ -417,7 +421,7 @@ fn drafts_survive_a_restart_until_they_are_saved_or_discarded() {
             "// 0",
             "// 0",
         ),
-        // A draft equal to the file is not offered, and at most ten are.
+        // A draft equal to the file is not offered. At most ten drafts are offered.
         (&[("x", Some(SCENE)), ("y", Some("// 1"))], "// 1", "// 1"),
         (&twelve, "11 10 9 8 7 6 5 4 3 2", "11 10 9 8 7 6 5 4 3 2"),
         (&[("x", None)], "", ""),

@@ -1,10 +1,10 @@
-//! The words that the page highlights are those of the language.
+//! The words that the page highlights are the words of the language.
 
 use std::{collections::BTreeSet, fs, path::Path};
 
 use pinhole::schema::{BLOCKS, FUNCTIONS};
 
-/// Returns the quoted words in a constant of one of the page's source files.
+/// Returns the quoted words in a constant of a source file of the page.
 fn words(file: &str, constant: &str) -> BTreeSet<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studio/page/src");
     let text = fs::read_to_string(path.join(file)).unwrap();

@@ -1,4 +1,4 @@
-//! `pinhole studio` from a browser's side: access, the conversation, and the scene's file.
+//! `pinhole studio` as a browser sees it: access, messages, and the scene's file.
 
 mod access;
 pub mod client;

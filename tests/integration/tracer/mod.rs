@@ -1,5 +1,5 @@
-//! The tracer compared with the oracle, above all within the last bits of every boundary. The tests
-//! of `numerics` cover the catalogue of hard cases.
+//! Compares the tracer with the oracle, mainly within a few units in the last place of each
+//! boundary. The tests of `numerics` cover the catalogue of hard cases.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 pub use pinhole::reference::scenes::{camera, cuboid, scene, sphere};
@@ -24,7 +24,7 @@ pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
     scenes::triangle(centroid, normal, dvec3(2.0, 2.0, 1.0))
 }
 
-/// Returns a triangle given by its vertices.
+/// Returns a black triangle with these vertices.
 pub fn by_vertices(vertices: [DVec3; 3]) -> Shape {
     Shape::Triangle(Triangle {
         outline: TriangleOutline::Vertices(vertices),
@@ -36,8 +36,8 @@ pub fn floor() -> Shape {
     scenes::board(0.0, 1.0)
 }
 
-/// Returns whether a camera does not look along its up vector, in which case a rule about the
-/// world's axes decides.
+/// Returns whether the camera does not look along its up vector. If it does, a rule about the
+/// world's axes determines its orientation.
 pub fn is_upright(scene: &Scene) -> bool {
     let Camera { eye, view, up, .. } = scene.camera;
     let direction = match view {
@@ -47,7 +47,7 @@ pub fn is_upright(scene: &Scene) -> bool {
     direction.cross(up) != DVec3::ZERO
 }
 
-/// Tracer and oracle of one scene, in which each object and square colour is distinct.
+/// Tracer and oracle of the same scene. All objects and squares have different colours.
 struct TracerAndOracle {
     scene: Scene,
     world: World,
@@ -71,7 +71,8 @@ impl TracerAndOracle {
         self.world.palette()[self.world.slot_at(x, y, offset)].srgb
     }
 
-    /// Asserts that the tracer and the oracle see the same. Returns it.
+    /// Asserts that the tracer and the oracle see the same colour at an offset in the pixel (x, y).
+    /// Returns the colour.
     #[track_caller]
     fn check(&self, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
         let expected = match self.oracle.seen(&self.oracle.direction(x, y, offset)) {
@@ -85,9 +86,9 @@ impl TracerAndOracle {
     }
 }
 
-/// Compares the tracer with the oracle at random points, and at neighbouring `f64` points on both
-/// sides of boundaries that random segments within pixels cross. Returns the number of boundaries
-/// found, so that a test can require some.
+/// Compares the tracer with the oracle at random points. Then bisects random segments within
+/// pixels, and compares both sides of each colour boundary at neighbouring `f64` points. Returns
+/// the number of boundaries found, so that a test can require a minimum.
 #[track_caller]
 fn assert_agrees_with_oracle(scene: &Scene, points: usize) -> usize {
     let both = TracerAndOracle::new(scene);
@@ -99,7 +100,7 @@ fn assert_agrees_with_oracle(scene: &Scene, points: usize) -> usize {
         if tries % 16 == 0 {
             both.check(x, y, a);
         }
-        // Bisects along x or y alone, down to neighbouring numbers.
+        // Bisect along x or y alone, down to neighbouring `f64` values.
         let axis = tries % 2;
         b[1 - axis] = a[1 - axis];
         let color = both.color(x, y, a);
@@ -140,7 +141,7 @@ fn scenes_of_random_numbers_agree_with_the_oracle() {
 
 #[test]
 fn scenes_full_of_ties_agree_with_the_oracle() {
-    // All sample points are multiples of 1/8 of a pixel.
+    // All sample points are at multiples of 1/8 pixel.
     let mut random = Random::new(11);
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 11).map(|(_, scene)| scene);
     for scene in scenes.filter(is_upright).take(150) {
@@ -159,7 +160,7 @@ fn fans_of_triangles_agree_with_the_oracle() {
     let mut found = 0;
     for round in 0..24 {
         let camera = camera(random.vector(4.0), random.vector(1.0));
-        // A fan of any size around one vertex.
+        // Surround one vertex with a fan of triangles of any size.
         let size = [1.0, 1e-3, 1e3][round % 3];
         let middle = random.vector(1.0);
         let rim: Vec<DVec3> = (0..5).map(|_| middle + random.vector(2.0) * size).collect();
@@ -170,7 +171,7 @@ fn fans_of_triangles_agree_with_the_oracle() {
     assert!(found > 200, "{found}");
 }
 
-/// Distances close to the least and the greatest number, and ties.
+/// Distances are close to the smallest and the largest `f64`, or equal.
 #[test]
 fn objects_at_the_limits_of_f64_agree_with_the_oracle() {
     for [scene, values, boundaries] in rows(
@@ -210,7 +211,7 @@ fn lenses_at_the_limits_of_f64_show_the_right_objects() {
             "image {{ width 64 height 64 }} camera {{ eye (0, 0, 5) direction (0, 0, -1) {lens} }}
              box {{ min (-1, -1, -1) max (0, 1, 0) }} box {{ min (0, -1, -1) max (1, 1, 0) }}"
         )));
-        // The common face of the boxes is seen edge-on in the middle of the picture.
+        // The face that the boxes share is seen edge-on in the middle of the picture.
         for (x, seen) in [0, 31, 32, 63].into_iter().zip(seen.split(' ')) {
             let found = both.color(x, 31, random.offset())[0];
             assert_eq!(found.to_string(), seen, "{lens}: {x}");
@@ -218,8 +219,8 @@ fn lenses_at_the_limits_of_f64_show_the_right_objects() {
     }
 }
 
-/// The two halves of a square in front of red, along the diagonal that crosses the centres of
-/// pixels.
+/// Two triangles are the halves of a square in front of red. They meet along the diagonal, which
+/// passes through the centres of pixels.
 #[test]
 fn two_halves_of_a_square_leave_no_gap() {
     for other in [
@@ -238,7 +239,8 @@ fn two_halves_of_a_square_leave_no_gap() {
             let (sampled, exact) = (sampled(&scene), exact(&scene));
             let mut seen = 0;
             for (sampled, [_, exact, _]) in sampled.pixels().iter().zip(exact.film.pixels()) {
-                // Half a gap would show. Outside the square both are 0.
+                // Red seen through a gap would make red and green differ. At the square's edges,
+                // where green is below 1, they may.
                 assert!(sampled[0] == sampled[1] || *exact < 1.0, "from {eye}");
                 seen += u32::from(sampled[1] == 1.0);
                 if eye == "(0, 0, 2)" {

@@ -1,13 +1,14 @@
-//! The Lerch series V_s(θ) = Σ_j e^(iθj) (w + j)^(−s) for s = 3, 4, 5, by the expansion at its
-//! pole.
+//! The Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s) for s = 3, 4, 5, by its expansion about the
+//! pole of the integrand ([`tail`](super)).
 
 use super::super::special::{Complex, integrals};
 
-/// Angle |θ| up to which a Taylor series is used for the rest of the pole. The next term,
-/// θ⁹/47900160, is 100 of the 500 roundings that V may be off by.
+/// Angle |θ|, in radians, below which a Taylor series gives the regular function R. The first
+/// omitted term, θ⁹/47900160, is 100 roundings; V may be off by 500.
 const NEAR_POLE: f64 = 0.2;
 
-/// Computes V_3, V_4 and V_5 at θ, |θ| ≤ π, up to R″. `rotation` is e^iθ.
+/// Computes V_3, V_4 and V_5 at `theta`, |θ| ≤ π, by the expansion up to R′; terms from R″ on are
+/// omitted. `rotation` is e^iθ.
 pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     let (r, slope) = rest_of_pole(theta, rotation);
     let h = integrals(theta * w);
@@ -24,7 +25,10 @@ pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     })
 }
 
-/// Returns r and R′ = 1/4sin²(θ/2) − 1/θ², where R at −iθ is ½ + i·r with r = ½ cot(θ/2) − 1/θ.
+/// Returns r and R′ of the regular function R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ at ζ = −iθ, where R = ½ +
+/// i·r:
+///
+/// r = ½·cot(θ/2) − 1/θ, R′ = 1/(4·sin²(θ/2)) − 1/θ².
 fn rest_of_pole(theta: f64, rotation: Complex) -> (f64, f64) {
     let square = theta * theta;
     if theta.abs() < NEAR_POLE {

@@ -1,4 +1,4 @@
-//! The sum over the crossings of an edge along which m does not double, by Fourier modes.
+//! The sum over the crossings of an edge along which the depth m does not double, by Fourier modes.
 
 use std::f64::consts::PI;
 
@@ -9,15 +9,17 @@ use super::super::special::{Complex, cis, reduced_multiple, square, times};
 use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, mode};
 use crate::math::{Double, Real};
 
-/// Truncation error of the modes of a level edge, as a fraction of the tolerance of the pixel.
+/// Truncation error that is always allowed for the modes of an edge along which m does not double,
+/// as a fraction of the pixel's tolerance.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Reciprocal of the relative change of m along an edge below which m counts as constant. The bound
-/// then adds 4/STEADY of the sum, 1e-6 of a value that is itself small if crossings are many.
-/// (Measured: a quarter and four times as much change no bound.)
+/// is then larger by 4/STEADY of the sum of absolute terms: 1e-6 of a value that is itself small if
+/// crossings are many. Measured: with 7.5e5 or 1.2e7, no bound changes.
 const STEADY: f64 = 3e6;
 
-/// Computes Σ (−1)^j X for an edge on which m does not double. The sum is at most `trivial`;
-/// `tolerance` limits the truncation error.
+/// Computes Σ (−1)^j·X over the crossings of an edge along which m does not double. `trivial`
+/// bounds the absolute value of the sum, and `tolerance` limits the truncation error. Returns 0
+/// with the bound `trivial` if the modes are no better or exceed the budget.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -32,22 +34,24 @@ pub(super) fn sum(
     let (w, u) = (start / all.rise, 1.0 / start);
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) * u * u * u, |a| a * (u / PI));
     let neglected = (LEVEL_TRUNCATION * budget.tolerance).max(LATER_TERMS_SHARE * tolerance);
-    // A mode is at most 8/π² n^−3 of the trivial bound.
+    // The mode n is at most 8/π²·n^−3 times the trivial bound.
     let Some((last, beyond)) = last_mode(trivial, neglected, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };
 
     let step = all.alternating_step();
-    // At the first crossing, and at the one after the last, with the sign it would have.
+    // These are the phases of mode 1 at the first crossing, and where the crossing after the last
+    // one would be.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;
     if all.count.floor().1 {
         phases[1] = ends[1].map(|x| -x);
     }
-    // By Abel's inequality, Σ_j of a mode is at most 2/|1 − e^iθ| times its first term, which is at
-    // most π/|θ| times it. All modes that are skipped for this reason add little to the truncation
-    // error: Σ n^−2 over the odd n is π²/8.
+    // By Abel's inequality, the sum of a mode over j is at most 2/|1 − e^iθ| times the mode's first
+    // term, which is at most π/|θ| times that term. A mode is skipped if this is small enough. All
+    // skipped modes together add little to the truncation error, because Σ n^−2 over the odd n is
+    // π²/8.
     let abel = PI
         * amplitudes
             .iter()
@@ -75,17 +79,17 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // m^−s differs from its value in the middle by at most s·gN/2m. Or else each of the two Lerch
-    // series is accurate to about 500 units in the last place of w/2 times its first term, with a
-    // truncation error of at most 0.04·s(s + 1)/w².
+    // If m counts as constant, m^−s differs from its value in the middle by at most s·gN/2m of it.
+    // Otherwise, each of the two Lerch series is accurate to about 500 roundings of w/2 times the
+    // series' first term, and has a truncation error of at most 0.04·s·(s + 1)/w² of that term.
     let model = if is_steady {
         4.0 / STEADY
     } else {
         1000.0 * UNIT * w / lines + 2.4 / (w * lines)
     };
-    // To reach mode n, the phase of an end is rotated n/2 times, by products with four roundings:
-    // 4n for two ends, and as many for the rotation steps. A mode has about 30 operations of its
-    // own at each end.
+    // Up to mode n, the phase of an end is rotated n/2 times, by products with four roundings each:
+    // 4n for two ends, and as many for the rotations themselves. A mode has about 30 more
+    // operations at each end.
     let rounding = UNIT * (64.0 + 8.0 * last);
     BoundedSum {
         value,
@@ -93,8 +97,8 @@ pub(super) fn sum(
     }
 }
 
-/// Returns Σ e^(iθj) over j < N, times the phase of the first term. `last` is that phase times
-/// e^(iθN).
+/// Returns e^(iφ)·Σ e^(iθj) over j < N, the number of `lines`. `place` is the phase e^(iφ) of the
+/// first term, and `last` is e^(iφ + iθN).
 fn geometric(theta: f64, lines: f64, [place, last]: [Complex; 2]) -> Complex {
     let half = 0.5 * theta;
     let sine = libm::sin(half);
@@ -106,14 +110,14 @@ fn geometric(theta: f64, lines: f64, [place, last]: [Complex; 2]) -> Complex {
         let middle = cis(half * (lines - 1.0));
         return times(place, middle.map(|x| ratio * x));
     }
-    // 1 − e^(iθ) is −2i·sin(θ/2)·e^(iθ/2).
+    // The sum is the difference divided by 1 − e^(iθ) = −2i·sin(θ/2)·e^(iθ/2).
     let difference = [place[0] - last[0], place[1] - last[1]];
     let [x, y] = times(difference, cis(-half));
     [-0.5 * y / sine, 0.5 * x / sine]
 }
 
-/// Returns Σ e^(iθj) (1 + j/w)^(−s) over j < N for s = 3, 4, 5, times the phase of the first term.
-/// `last` is that phase times e^(iθN).
+/// Returns e^(iφ)·Σ e^(iθj)·(1 + j/w)^(−s) over j < N for s = 3, 4, 5, where N is the number of
+/// `lines`. `place` is the phase e^(iφ) of the first term, and `last` is e^(iφ + iθN).
 fn partial(theta: f64, w: f64, lines: f64, [place, last]: [Complex; 2]) -> [Complex; MODE_TERMS] {
     let angle = cis(theta);
     let (from, to) = (lerch(theta, angle, w), lerch(theta, angle, w + lines));
@@ -141,7 +145,8 @@ mod tests {
         sum
     }
 
-    /// Phases that start at 0.
+    /// Returns the last argument of [`geometric`] and [`partial`] for φ = 0: the numbers 1 and
+    /// e^(iθN), where N is the number of `lines`.
     fn places(theta: f64, lines: f64) -> [Complex; 2] {
         [cis(0.0), cis(theta * lines)]
     }
@@ -154,7 +159,7 @@ mod tests {
     #[test]
     fn geometric_sums() {
         for theta in [0.0, 1e-9, -1e-3, 0.7, 3.0, -PI] {
-            // The angles of the direct sum are off by up to 1000·3·2⁻⁵³.
+            // In the direct sum, angles are off by up to 1000·3·2⁻⁵³.
             close(
                 geometric(theta, 1000.0, places(theta, 1000.0)),
                 one_by_one(theta, f64::INFINITY, 1000.0, 3),
@@ -168,8 +173,8 @@ mod tests {
         for theta in [0.0, 1e-6, -1e-3, 0.02, 0.7, 3.0, -PI] {
             let found = partial(theta, 5000.0, 3000.0, places(theta, 3000.0));
             for (s, found) in (3..).zip(found) {
-                // Of the truncation error of `lerch`, 0.04·s(s + 1)/w², 5e-8 is left; 500 roundings
-                // of w/2 are 3e-10.
+                // The truncation error of `lerch`, 0.04·s·(s + 1)/w², leaves 5e-8 at w = 5000. 500
+                // roundings of w/2 add 3e-10.
                 close(found, one_by_one(theta, 5000.0, 3000.0, s), 1e-7);
             }
         }

@@ -1,4 +1,4 @@
-//! The board at its horizon and with squares of any size, in ordinary views and in extreme ones.
+//! The board near its horizon, and with squares of any size, in ordinary and in extreme views.
 
 mod extreme;
 mod ordinary;
@@ -10,7 +10,7 @@ use crate::{
     table::rows,
 };
 
-/// The horizon passes close to the centres of pixels, level or diagonally.
+/// The horizon passes close to the centres of pixels, either level or along their diagonals.
 #[test]
 fn pixels_crossed_by_the_horizon_are_known_within_1e_9() {
     for side in [8, 9, 65] {

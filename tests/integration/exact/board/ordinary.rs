@@ -1,12 +1,12 @@
-//! Ordinary views: a field of view from 1 to 170 degrees, and squares from 1e-4 to 1e6 times the
-//! eye's height. There the bound is at most 1e-9.
+//! The board in ordinary views: fields of view from 1° to 170°, and squares from 1e-4 to 1e6 times
+//! the eye's height above the board. There the error bound is at most 1e-9.
 
 use std::fmt::Write;
 
 use super::{super::assert_agrees_with_samples, *};
 use crate::scenes::whole;
 
-/// Returns a random view of a board with up to three objects.
+/// Returns the text of a random view of a board and up to three objects.
 fn view(random: &mut Random) -> String {
     let which = random.bits() as usize;
     let mut number = |low: f64, high: f64| random.within(low, high);
@@ -51,8 +51,8 @@ fn view(random: &mut Random) -> String {
 
 sampled_and_exhaustive!(ordinary_views_are_known_within_1e_9);
 
-/// Compares 384 000 pixels with their bounds and with samples, and the first scenes also with their
-/// quarters. Prints how many bounds are above 1e-11.
+/// Compares 384 000 pixels with samples, within their error bounds, and in the first scenes also
+/// with the sums of their quarters. Prints how many bounds exceed 1e-11.
 fn ordinary_views_are_known_within_1e_9(effort: Effort) {
     let mut random = Random::new(31);
     let (mut pixels, mut above) = (0, 0);

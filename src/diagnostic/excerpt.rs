@@ -1,0 +1,257 @@
+//! Excerpts of sources for reports: the labelled lines, cut to the width of a terminal.
+
+use std::ops::Range;
+
+use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+
+use super::{
+    Diagnostic, Label, clamp,
+    visible::{push_visible, visible_line},
+};
+use crate::source::{Source, SourceId, Sources, Span};
+
+/// Excerpt of a source: the labelled lines, with long lines cut to the parts around the labels.
+///
+/// miette reads the excerpt instead of the text, so a line of ten megabytes is neither printed nor
+/// scanned, and every label lies within the text that miette sees. (miette omits a label at the end
+/// of a text, and panics at a label past it.)
+#[derive(Debug)]
+pub struct Excerpt<'s> {
+    source: &'s Source,
+    text: String,
+    lines: Vec<ExcerptLine>,
+    /// The labels, at their places in the excerpt.
+    pub labels: Vec<LabeledSpan>,
+}
+
+#[derive(Debug)]
+struct ExcerptLine {
+    /// Line number in the source, counted from 1.
+    number: usize,
+    /// Start of the line in the excerpt, in bytes.
+    start: usize,
+    /// End of the line in the excerpt, in bytes, without the line feed.
+    end: usize,
+    /// Offsets of each shown character in the source and in the excerpt, and those of the end of
+    /// each shown part.
+    shown: Vec<(usize, usize)>,
+}
+
+/// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
+pub const LONG_LINE_BYTES: usize = 160;
+/// Minimum width of an excerpt, in columns, even if the terminal is narrower.
+pub const MIN_COLUMNS: usize = 30;
+/// Number of columns between a label and its message.
+const HOOK_COLUMNS: usize = 4;
+/// Minimum number of columns for a message, even if its label stands far to the right.
+const MIN_MESSAGE_COLUMNS: usize = 16;
+/// Maximum number of lines of a label. A longer label is drawn under its first line only.
+const MAX_LABEL_LINES: usize = 6;
+
+/// Returns an excerpt of every source that has labels, in the order of the labels.
+pub fn excerpts<'s>(
+    diagnostic: &Diagnostic,
+    sources: &'s Sources,
+    columns: usize,
+) -> Vec<Excerpt<'s>> {
+    let mut ids: Vec<SourceId> = Vec::new();
+    for label in &diagnostic.labels {
+        if !ids.contains(&label.span.source) {
+            ids.push(label.span.source);
+        }
+    }
+    let excerpt = |id| {
+        let labels = diagnostic.labels.iter().filter(|l| l.span.source == id);
+        Excerpt::new(sources.get(id), labels, columns)
+    };
+    ids.into_iter().map(excerpt).collect()
+}
+
+impl<'s> Excerpt<'s> {
+    /// Makes the excerpt of a source, with lines of at most about `columns` bytes.
+    fn new<'l>(
+        source: &'s Source,
+        labels: impl Iterator<Item = &'l Label>,
+        columns: usize,
+    ) -> Self {
+        let labels: Vec<_> = labels
+            .map(|label| (shorten(label.span, source, columns), label.message.as_str()))
+            .collect();
+        let mut numbers: Vec<usize> = labels
+            .iter()
+            .flat_map(|(span, _)| source.line(span.start)..=source.line(span.end))
+            .collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let mut excerpt = Self {
+            source,
+            text: String::new(),
+            lines: Vec::new(),
+            labels: Vec::new(),
+        };
+        for number in numbers {
+            excerpt.push_line(number, &labels, columns);
+        }
+        for (index, (span, message)) in labels.into_iter().enumerate() {
+            let start = excerpt.offset_of(span.start);
+            let end = excerpt.offset_of(span.end).max(start + 1);
+            let inner = SourceSpan::from((start, end - start));
+            let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
+            // miette draws the hook of a label at the label's middle.
+            let left = start.midpoint(end) - line + HOOK_COLUMNS;
+            let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
+            let message = textwrap::fill(&visible_line(message), room);
+            // miette shows the line and column of the primary label in its header.
+            excerpt.labels.push(match index {
+                0 => LabeledSpan::new_primary_with_span(Some(message), inner),
+                _ => LabeledSpan::new_with_span(Some(message), inner),
+            });
+        }
+        excerpt
+    }
+
+    fn push_line(&mut self, number: usize, labels: &[(Span, &str)], columns: usize) {
+        let mut range = self.source.line_range(number);
+        if number == 1 {
+            range.start = self.source.bom_len().min(range.end);
+        }
+        // miette joins the frames of labels on consecutive lines and numbers the lines onwards from
+        // the first, so lines that are not consecutive are separated by an empty one.
+        let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
+        if apart {
+            self.text.push('\n');
+        }
+        let start = self.text.len();
+        let mut shown = Vec::new();
+        for piece in shown_pieces(self.source, range.clone(), labels, columns) {
+            if piece.start > range.start {
+                self.text.push('…');
+            }
+            for (at, character) in self.source.slice(piece.clone()).char_indices() {
+                shown.push((piece.start + at, self.text.len()));
+                // A control character is escaped, which is longer than its own bytes.
+                push_visible(&mut self.text, character);
+            }
+            shown.push((piece.end, self.text.len()));
+        }
+        if shown.last().is_some_and(|(end, _)| *end < range.end) {
+            self.text.push('…');
+        }
+        // A label at the end of the line needs a character to be drawn under.
+        self.text.push(' ');
+        self.lines.push(ExcerptLine {
+            number,
+            start,
+            end: self.text.len(),
+            shown,
+        });
+        self.text.push('\n');
+    }
+
+    /// Converts an offset in the source to an offset in the excerpt.
+    fn offset_of(&self, offset: usize) -> usize {
+        let number = self.source.line(offset);
+        let line = self.lines.iter().find(|line| line.number == number);
+        let mut shown = line.into_iter().flat_map(|line| line.shown.iter().rev());
+        let found = shown.find(|(at, _)| *at <= offset);
+        // A byte order mark is not shown, so an offset before all shown characters is the line's
+        // start.
+        let start = line.map_or(0, |line| line.start);
+        found.map_or(start, |(_, place)| *place)
+    }
+
+    fn line_at(&self, offset: usize) -> Option<(usize, &ExcerptLine)> {
+        let index = self.lines.partition_point(|line| line.start <= offset);
+        let index = index.checked_sub(1)?;
+        Some((index, self.lines.get(index)?))
+    }
+}
+
+impl SourceCode for Excerpt<'_> {
+    fn read_span<'a>(
+        &'a self,
+        span: &SourceSpan,
+        _before: usize,
+        _after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        let last = (span.offset() + span.len()).saturating_sub(1);
+        let (Some((first_index, first)), Some((last_index, last))) = (
+            self.line_at(span.offset()),
+            self.line_at(last.max(span.offset())),
+        ) else {
+            return Err(MietteError::OutOfBounds);
+        };
+        // Lines that are not consecutive are refused, so that miette draws them in frames of their
+        // own.
+        if last.number - first.number != last_index - first_index {
+            return Err(MietteError::OutOfBounds);
+        }
+        let data = self.text.as_bytes();
+        let data = data.get(first.start..last.end).unwrap_or_default();
+        let mut shown = first.shown.iter().rev();
+        let real = shown.find(|(_, place)| *place <= span.offset());
+        let real = real.map_or(0, |(at, _)| *at);
+        Ok(Box::new(MietteSpanContents::new_named(
+            visible_line(self.source.name()).into_owned(),
+            data,
+            (first.start, last.end - first.start).into(),
+            first.number - 1,
+            self.source.place(real).column - 1,
+            last_index - first_index + 1,
+        )))
+    }
+}
+
+/// Returns the part of a label that is drawn: its first line if it has too many lines, and at most
+/// half of the columns if its line is long.
+fn shorten(span: Span, source: &Source, columns: usize) -> Span {
+    let mut span = clamp(span, source);
+    let first = source.line(span.start);
+    let line = source.line_range(first);
+    if source.line(span.end) - first >= MAX_LABEL_LINES {
+        span.end = line.end.max(span.start);
+    }
+    if source.line(span.end) == first && line.len() > columns {
+        let long = source.floor_char_boundary(span.start + columns / 2);
+        span.end = span.end.min(long);
+    }
+    span
+}
+
+/// Returns the parts of a line that are shown. A line that fits is shown whole. A line that is too
+/// long, or leaves no room for a label's message, is shown for a quarter of the columns to the left
+/// and right of each label.
+fn shown_pieces(
+    source: &Source,
+    line: Range<usize>,
+    labels: &[(Span, &str)],
+    columns: usize,
+) -> Vec<Range<usize>> {
+    let mut ends: Vec<usize> = labels
+        .iter()
+        .flat_map(|(span, _)| [span.start, span.end])
+        .filter(|&end| line.start <= end && end <= line.end)
+        .collect();
+    ends.sort_unstable();
+    let with_message = ends.last().unwrap_or(&line.start) + HOOK_COLUMNS + MIN_MESSAGE_COLUMNS;
+    if line.end.max(with_message) - line.start <= columns {
+        return vec![line];
+    }
+    let around = columns / 4;
+    let mut pieces: Vec<Range<usize>> = Vec::new();
+    for end in ends {
+        let from = source.floor_char_boundary(end.saturating_sub(around).max(line.start));
+        let to = source.floor_char_boundary((end + around).min(line.end));
+        match pieces.last_mut() {
+            // Parts with up to three bytes between them are joined, since an ellipsis would not be
+            // shorter.
+            Some(last) if from <= last.end + 3 => last.end = last.end.max(to),
+            _ => pieces.push(from..to),
+        }
+    }
+    if pieces.is_empty() {
+        let to = source.floor_char_boundary((line.start + 2 * around).min(line.end));
+        pieces.push(line.start..to);
+    }
+    pieces
+}

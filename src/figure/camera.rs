@@ -1,0 +1,223 @@
+//! `camera`: eye, window and one ray, from outside.
+
+use glam::{DVec2, DVec3};
+
+use super::{
+    canvas::{Canvas, WIDTH, number},
+    outside::{Outside, bounds3, draw_objects},
+};
+use crate::{
+    area::Area,
+    editor::viewport::{ShownObjects, overlays},
+    inspect::inspect_camera,
+    probe::{Probe, probe},
+    projection::Projection,
+    scene::{Scene, Shape},
+    seen::{Visibility, seen},
+    tracer::Hit,
+};
+
+const HEIGHT: f64 = 460.0;
+
+/// A ray that goes farther than this many sizes of the window's pyramid is cut off: the window
+/// would be too small to be seen.
+const FARTHEST: f64 = 15.0;
+
+/// Maximum number of objects that are drawn, and of lines of a board in either direction.
+const MOST_OBJECTS: usize = 60;
+const MOST_LINES: f64 = 14.0;
+
+/// Draws the figure, with the ray through the middle of a pixel.
+pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
+    let [x, y] = pixel.unwrap_or_else(|| pixel_of_largest(scene));
+    let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+    let Probe { hits, .. } = probe(scene, middle);
+    let hit = hits.into_iter().find(|(hit, _)| hit.visible);
+    let view = Projection::new(&scene.camera, &scene.image);
+    let (facts, _) = inspect_camera(&scene.camera, &scene.image);
+    let size = view.size;
+    let corners = [DVec2::ZERO, size.with_y(0.0), size, size.with_x(0.0)];
+    let corners = corners.map(|corner| view.at_depth(corner, facts.d));
+    let window = view.eye + view.ahead * facts.d;
+    let in_window = view.at_depth(middle, facts.d);
+    let size = corners[0].distance(view.eye);
+    let is_near = |hit: &Hit| hit.t <= FARTHEST * size;
+    let end = match &hit {
+        Some((hit, _)) if is_near(hit) => hit.point,
+        Some(_) => view.eye + (in_window - view.eye) * 3.0,
+        None => view.eye + (in_window - view.eye) * 2.0,
+    };
+    let reach = 1.6 * end.distance(view.eye).max(size);
+
+    let mut points = vec![view.eye, window, end];
+    points.extend(corners);
+    let shown = objects_within(scene, &view, reach, hit.as_ref().map(|(hit, _)| hit.object));
+    for (_, middle, radius) in &shown {
+        let corner =
+            |i: u32| DVec3::from([1, 2, 4].map(|bit| if i & bit > 0 { *radius } else { -radius }));
+        points.extend((0..8).map(|i| *middle + corner(i)));
+    }
+    let boards = boards(scene, &mut points, reach);
+    let (min, max) = bounds3(&points);
+    let arrow = 0.13 * (max - min).length();
+    points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
+
+    // From the right, behind and above, so that the ray runs to the right.
+    let level = (view.ahead + view.top * 0.2).with_y(0.0);
+    let level = level.normalize_or(DVec3::NEG_Z);
+    let side = level.cross(DVec3::Y) * 0.72 - level * 0.55 + DVec3::Y * 0.42;
+    let panel = [
+        DVec2::new(50.0, 34.0),
+        DVec2::new(WIDTH - 50.0, HEIGHT - 34.0),
+    ];
+    let outside = Outside::new(&points, [side, DVec3::Y], panel);
+
+    let mut canvas = Canvas::new(HEIGHT);
+    for line in boards {
+        outside.line(&mut canvas, "faint", &line);
+    }
+    let indices = shown.iter().map(|(index, ..)| *index).collect();
+    outside.objects(&mut canvas, scene, indices);
+    for corner in corners {
+        outside.line(&mut canvas, "faint", &[view.eye, corner]);
+    }
+    // The picture in the window.
+    let picture = overlays(scene, &ShownObjects::First(None));
+    let in_frame = |at: DVec2| view.at_depth(at.clamp(DVec2::ZERO, view.size), facts.d);
+    draw_objects(
+        &mut canvas,
+        scene,
+        &picture,
+        |at| outside.at(in_frame(at)),
+        panel,
+    );
+    let [a, b, c, d] = corners;
+    outside.line(&mut canvas, "blue", &[a, b, c, d, a]);
+    outside.line(&mut canvas, "green dash", &[view.eye, window]);
+    canvas.arrow(
+        "ink dash",
+        outside.at(window),
+        outside.at(window + view.ahead * arrow),
+    );
+    let eye = outside.at(view.eye);
+    for (axis, name) in [(view.right, "*u*"), (view.top, "*v*"), (-view.ahead, "*w*")] {
+        let tip = outside.at(view.eye + axis * arrow);
+        canvas.arrow("ink", eye, tip);
+        canvas.label("ink", [tip, eye], name);
+    }
+    match hit {
+        Some((hit, _)) if is_near(&hit) => outside.line(&mut canvas, "red", &[view.eye, end]),
+        _ => canvas.arrow("red", eye, outside.at(end)),
+    }
+    canvas.dot("ink", eye, 5.0);
+    canvas.dot("green", outside.at(window), 3.0);
+    canvas.dot("red", outside.at(in_window), 5.0);
+
+    let distance = number(facts.d);
+    let axis = outside.at(window);
+    let tip = outside.at(window + view.ahead * arrow);
+    let [d_at, pixel_at, corner] =
+        [view.eye.midpoint(window), in_window, a].map(|it| outside.at(it));
+    canvas.label("green", [d_at; 2], format!("*d* = {distance}"));
+    canvas.label("ink", [eye, axis], "eye");
+    canvas.label("red", [pixel_at; 2], format!("pixel ({x}, {y})"));
+    canvas.label("blue", [corner, axis], "window");
+    canvas.label("ink", [tip; 2], "view direction −*w*");
+    let met = match &hit {
+        Some((hit, object)) => {
+            let name = object.name.as_deref().unwrap_or(object.shape.kind());
+            let far = if is_near(hit) { "" } else { ", farther on" };
+            let t = number(hit.t);
+            format!("{name}, *t* = {t}{far}")
+        }
+        None => "the background".to_owned(),
+    };
+    if hit.as_ref().is_some_and(|(hit, _)| is_near(hit)) {
+        canvas.dot("red", outside.at(end), 5.0);
+    }
+    canvas.label("red", [outside.at(end); 2], &*met);
+    canvas.finish(
+        "A pinhole camera, seen from outside",
+        &format!(
+            "All rays leave the eye. The window lies at the distance d = {distance} along the view direction −w and is {} tall. \
+            The ray through the middle of pixel ({x}, {y}) meets: {}. At the eye stand the axes u (the picture's right), v (its top) and w.",
+            number(facts.view_height),
+            met.replace('*', "")
+        ),
+    )
+}
+
+/// Returns the middle of the visible part of the largest object, boards excepted; the middle of the
+/// picture if there is none.
+fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
+    let (seen, _) = seen(scene);
+    let mut largest = (0.0, Area::whole(scene.image.width, scene.image.height));
+    for (seen, object) in seen.iter().zip(scene.objects.iter()) {
+        let is_board = matches!(object.shape, Shape::Checkerboard(_));
+        if let Visibility::Part(around, pixels) = *seen
+            && !is_board
+            && pixels > largest.0
+        {
+            largest = (pixels, around);
+        }
+    }
+    let (_, around) = largest;
+    [around.x + around.width / 2, around.y + around.height / 2]
+}
+
+/// Returns the objects that lie in front of the eye and within reach of it, or are hit, each with a
+/// sphere around it.
+fn objects_within(
+    scene: &Scene,
+    view: &Projection,
+    reach: f64,
+    hit: Option<usize>,
+) -> Vec<(usize, DVec3, f64)> {
+    let around = scene
+        .objects
+        .iter()
+        .enumerate()
+        .filter_map(|(index, object)| {
+            let (middle, radius) = object.shape.bounding_sphere()?;
+            Some((index, middle, radius))
+        });
+    let is_within = |&(index, middle, radius): &(usize, DVec3, f64)| {
+        let is_in_front = view.depth(middle) + radius > 0.0;
+        let is_small = radius < reach && middle.distance(view.eye) + radius < 1.5 * reach;
+        is_small && (is_in_front || hit == Some(index))
+    };
+    around.filter(is_within).take(MOST_OBJECTS).collect()
+}
+
+/// Returns lines of the boards beneath what is drawn: every second or third one if they would be
+/// many.
+fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
+    let mut lines = Vec::new();
+    let (min, max) = bounds3(points);
+    let extent = (max - min).x.max((max - min).z);
+    for object in scene.objects.iter() {
+        let Shape::Checkerboard(board) = object.shape else {
+            continue;
+        };
+        if (board.y - scene.camera.eye.y).abs() > reach || board.square > 4.0 * extent {
+            continue;
+        }
+        let step = board.square * (extent / (board.square * MOST_LINES)).ceil().max(1.0);
+        let (from, to) = ((min / step).floor() * step, (max / step).ceil() * step);
+        let at = |x: f64, z: f64| DVec3::new(x, board.y, z);
+        for i in (0..=MOST_LINES as u32 + 2).map(|i| step * f64::from(i)) {
+            let (x, z) = (from.x + i, from.z + i);
+            let is_within = [x <= to.x, z <= to.z];
+            let both = [[at(x, from.z), at(x, to.z)], [at(from.x, z), at(to.x, z)]];
+            lines.extend(
+                both.into_iter()
+                    .zip(is_within)
+                    .filter(|it| it.1)
+                    .map(|it| it.0),
+            );
+        }
+        points
+            .extend([from, to, from.with_x(to.x), to.with_x(from.x)].map(|it| it.with_y(board.y)));
+    }
+    lines
+}

@@ -1,0 +1,240 @@
+//! A drawing, as SVG.
+//!
+//! In: marks in the order in which they are drawn, and labels with the points that they name. Out:
+//! the file. Labels are placed last, where they cover neither marks nor each other. Every length
+//! is written with one decimal, so that the bytes are the same on every machine.
+//!
+//! The style sheet has no variables, which printing programs such as librsvg do not know. The
+//! colours are those of Okabe and Ito, darkened on white until letters have a contrast of 4.5 to 1.
+
+use std::fmt::Write;
+
+use glam::DVec2;
+
+use crate::{color::Color, editor::viewport::clip, numbers};
+
+/// Width of every figure: half a point each where a page shows it 12 cm wide.
+pub const WIDTH: f64 = 680.0;
+
+/// Size of the letters: 9 points on such a page.
+const LETTERS: f64 = 18.0;
+
+/// Width of a letter, on average, of wide typefaces such as DejaVu Sans; and the height of a line.
+const LETTER: DVec2 = DVec2::new(10.2, 21.0);
+
+const STYLE: &str = "\
+text{font:18px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:currentColor;stroke:#fff;stroke-width:5px;stroke-linejoin:round;paint-order:stroke}\
+tspan{font-style:italic}.strong{font-weight:bold}\
+path{fill:none;stroke:currentColor;stroke-width:2;stroke-linejoin:round;stroke-linecap:round}\
+circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
+.fill{stroke:none;fill-opacity:.4}.swatch{stroke:none}\
+.paper{fill:#fff}.ink{color:#1b1f24}.faint{color:#59636e}path.faint{stroke-width:.8;stroke-opacity:.5}path.cell{stroke-width:1.6;stroke-opacity:.8}\
+.blue{color:#0067a3}.red{color:#b34700}.green{color:#00735a}.dash{stroke-dasharray:6 5}\
+@media(prefers-color-scheme:dark){.paper{fill:#15181d}.fill{fill-opacity:.65}text{stroke:#15181d}.ink{color:#eceff4}.faint{color:#a3adb8}\
+.blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
+
+/// Cost of a label over a mark; a step farther away costs 6.
+const MARK: f64 = 40.0;
+
+/// Drawing, as it grows.
+pub struct Canvas {
+    size: DVec2,
+    marks: String,
+    /// What labels should not cover, with the cost of doing it.
+    obstacles: Vec<([DVec2; 2], f64)>,
+    /// Texts beside points: class, point, preferred side and text.
+    labels: Vec<(&'static str, DVec2, DVec2, String)>,
+}
+
+impl Canvas {
+    /// Returns an empty drawing of a height.
+    pub fn new(height: f64) -> Self {
+        Self {
+            size: DVec2::new(WIDTH, height),
+            marks: String::new(),
+            obstacles: Vec::new(),
+            labels: Vec::new(),
+        }
+    }
+
+    /// Draws a line through some points.
+    pub fn line(&mut self, class: &str, points: &[DVec2]) {
+        let cost = if class.contains("faint") { 1.5 } else { MARK };
+        let segments = points.windows(2).map(|ends| ([ends[0], ends[1]], cost));
+        self.obstacles.extend(segments);
+        self.path(class, points, "");
+    }
+
+    /// Fills a polygon with a colour of the scene.
+    pub fn fill(&mut self, class: &str, color: Color, points: &[DVec2]) {
+        self.path(class, points, &format!(" style=\"fill:{color}\""));
+    }
+
+    fn path(&mut self, class: &str, points: &[DVec2], more: &str) {
+        let mut path = String::new();
+        for (point, command) in points.iter().zip("M".chars().chain(std::iter::repeat('L'))) {
+            let _ = write!(path, "{command}{}", pair(*point));
+        }
+        self.raw_path(class, &path, more);
+    }
+
+    /// Draws a path in the notation of SVG, which labels may cover.
+    pub fn raw_path(&mut self, class: &str, path: &str, more: &str) {
+        if !path.is_empty() {
+            let _ = writeln!(self.marks, "<path class=\"{class}\"{more} d=\"{path}\"/>");
+        }
+    }
+
+    /// Draws an arrow.
+    pub fn arrow(&mut self, class: &str, from: DVec2, to: DVec2) {
+        let along = (to - from).normalize_or_zero() * 11.0;
+        let side = along.perp() * 0.4;
+        self.line(class, &[from, to]);
+        let head = class.replace(" dash", "");
+        self.line(&head, &[to - along + side, to, to - along - side]);
+    }
+
+    /// Draws a dot.
+    pub fn dot(&mut self, class: &str, at: DVec2, radius: f64) {
+        self.circle(class, at, radius, "");
+    }
+
+    /// Draws a dot in a colour of the scene, with a ring around it.
+    pub fn seen(&mut self, color: Color, at: DVec2, radius: f64) {
+        self.circle("seen ink", at, radius, &format!(" style=\"fill:{color}\""));
+    }
+
+    fn circle(&mut self, class: &str, at: DVec2, radius: f64, more: &str) {
+        for across in [DVec2::ONE, DVec2::new(1.0, -1.0)] {
+            let ends = [at - across * radius, at + across * radius];
+            self.obstacles.push((ends, MARK));
+        }
+        let [x, y, radius] = [at.x, at.y, radius].map(length);
+        let _ = writeln!(
+            self.marks,
+            "<circle class=\"{class}\"{more} cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>"
+        );
+    }
+
+    /// Names a point, if possible on the side that points away from another; what stands between
+    /// asterisks is italic.
+    pub fn label(&mut self, class: &'static str, [at, from]: [DVec2; 2], text: impl Into<String>) {
+        let away = (at - from).normalize_or_zero();
+        self.labels.push((class, at, away, text.into()));
+    }
+
+    /// Writes a text at a place of its own: `at` is the `start`, the `middle` or the `end` of its
+    /// base line.
+    pub fn text(&mut self, class: &str, anchor: &str, at: DVec2, text: &str) {
+        let mut spans = String::new();
+        for (part, text) in text.split('*').enumerate() {
+            let text = escaped(text);
+            spans += &match part % 2 {
+                1 => format!("<tspan>{text}</tspan>"),
+                _ => text,
+            };
+        }
+        let [x, y] = [at.x, at.y].map(length);
+        let _ = writeln!(
+            self.marks,
+            "<text class=\"{class}\" x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{spans}</text>"
+        );
+    }
+
+    /// Returns the file, with a title and a description for screen readers.
+    pub fn finish(mut self, title: &str, description: &str) -> String {
+        self.place_labels();
+        let [width, height] = [self.size.x, self.size.y].map(length);
+        let (title, description) = (escaped(title), escaped(description));
+        let marks = self.marks;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-labelledby=\"t d\">\n\
+            <title id=\"t\">{title}</title>\n<desc id=\"d\">{description}</desc>\n<style>{STYLE}</style>\n\
+            <path class=\"paper swatch\" d=\"M0 0H{width}V{height}H0Z\"/>\n{marks}</svg>\n"
+        )
+    }
+
+    /// Writes each label on that side of its point, and as far from it, where it covers least.
+    fn place_labels(&mut self) {
+        let mut taken: Vec<[DVec2; 2]> = Vec::new();
+        for (class, at, away, text) in std::mem::take(&mut self.labels) {
+            let letters = text.chars().filter(|letter| *letter != '*').count();
+            let size = DVec2::new(letters as f64, 1.0) * LETTER;
+            let mut best = (f64::INFINITY, at, DVec2::ZERO);
+            for (far, gap) in [9.0, 18.0, 30.0, 46.0, 66.0].into_iter().enumerate() {
+                for (turn, side) in SIDES.into_iter().enumerate() {
+                    let side = DVec2::from(side);
+                    let middle = at + side * (size / 2.0 + gap);
+                    let rectangle = [middle - size / 2.0, middle + size / 2.0];
+                    let preferred = 6.0 * far as f64 + 0.1 * turn as f64 - 8.0 * side.dot(away);
+                    let cost = self.cost(rectangle, &taken) + preferred;
+                    if cost < best.0 {
+                        best = (cost, middle, side);
+                    }
+                }
+            }
+            let (_, middle, side) = best;
+            taken.push([middle - size / 2.0, middle + size / 2.0]);
+            let anchor = match side.x {
+                x if x > 0.0 => "start",
+                x if x < 0.0 => "end",
+                _ => "middle",
+            };
+            let base = DVec2::new(middle.x - side.x * size.x / 2.0, middle.y + LETTERS * 0.36);
+            self.text(class, anchor, base, &text);
+        }
+    }
+
+    /// Returns the cost of a label in a rectangle: outside of the drawing, over other labels, over
+    /// marks.
+    fn cost(&self, rectangle: [DVec2; 2], taken: &[[DVec2; 2]]) -> f64 {
+        let [min, max] = rectangle;
+        let is_outside = min.cmplt(DVec2::splat(4.0)).any() || max.cmpgt(self.size - 4.0).any();
+        let covered = taken
+            .iter()
+            .filter(|[from, to]| min.cmplt(*to).all() && max.cmpgt(*from).all());
+        let crossed = self
+            .obstacles
+            .iter()
+            .filter(|(ends, _)| clip(*ends, rectangle).is_some());
+        let crossed: f64 = crossed.map(|(_, cost)| cost).sum();
+        1e7 * f64::from(u8::from(is_outside)) + 1e5 * covered.count() as f64 + crossed
+    }
+}
+
+/// The sides of a point where its label may stand, those that are preferred first.
+const SIDES: [[f64; 2]; 8] = [
+    [1.0, 0.0],
+    [1.0, -0.6],
+    [1.0, 0.6],
+    [0.0, -1.0],
+    [0.0, 1.0],
+    [-1.0, 0.0],
+    [-1.0, -0.6],
+    [-1.0, 0.6],
+];
+
+/// Returns a number for people, with four significant digits.
+pub fn number(x: f64) -> String {
+    numbers::short(numbers::significant(x, 4)).replace('-', "−")
+}
+
+/// Returns a length with one decimal.
+pub fn length(x: f64) -> String {
+    // What is no number, or very large, is not seen anyway; the conversion keeps within bounds.
+    let tenths = (x.clamp(-1e6, 1e6) * 10.0).round() as i64;
+    let sign = if tenths < 0 { "-" } else { "" };
+    match (tenths.abs() / 10, tenths.abs() % 10) {
+        (whole, 0) => format!("{sign}{whole}"),
+        (whole, tenth) => format!("{sign}{whole}.{tenth}"),
+    }
+}
+
+fn pair(point: DVec2) -> String {
+    format!("{} {}", length(point.x), length(point.y))
+}
+
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;");
+    text.replace('<', "&lt;").replace('>', "&gt;")
+}

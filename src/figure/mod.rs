@@ -1,0 +1,114 @@
+//! Figures for a page of a course, drawn from what the program knows of a scene.
+//!
+//! In: a scene and the kind of figure. Out: an SVG file, the same bytes on every machine. A figure
+//! has one idea and few marks, each named where it stands. Nothing is computed here that another
+//! part of the program knows: samples come from [`sampling`](crate::sampling), what is seen from
+//! the tracer, outlines from the editor's overlays, axes and angles from
+//! [`inspect`](crate::inspect).
+//!
+//! A file for each kind. `canvas` writes the file and places the labels; `outside` looks at the
+//! scene from beside its camera.
+
+mod camera;
+mod canvas;
+mod methods;
+mod outside;
+mod pixel;
+mod roll;
+mod triangle;
+
+use crate::{
+    scene::{Image, Scene, Shape, Triangle},
+    suggest,
+};
+
+/// Kind of figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The camera from outside.
+    Camera,
+    /// A pixel with its samples.
+    Pixel,
+    /// A triangle with its measures.
+    Triangle,
+    /// The frame of the picture before and after the camera's roll.
+    Roll,
+    /// The patterns of all methods.
+    Methods,
+}
+
+/// All kinds of figures with their names.
+pub const KINDS: [(&str, Kind); 5] = [
+    ("camera", Kind::Camera),
+    ("pixel", Kind::Pixel),
+    ("triangle", Kind::Triangle),
+    ("roll", Kind::Roll),
+    ("methods", Kind::Methods),
+];
+
+/// The part of the scene that a figure shows; a field that is `None` leaves the choice to it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Choice<'a> {
+    /// The column and the row of a pixel, for figures of cameras, pixels and methods.
+    pub pixel: Option<[u32; 2]>,
+    /// The name of a triangle.
+    pub object: Option<&'a str>,
+}
+
+/// Draws a figure of a scene, as the text of an SVG file.
+///
+/// # Errors
+///
+/// Why the scene has no such figure, and which it has, in a sentence.
+pub fn figure(scene: &Scene, kind: Kind, choice: Choice<'_>) -> Result<String, String> {
+    let Image { width, height, .. } = scene.image;
+    match (choice.pixel, kind, choice.object) {
+        (Some(_), Kind::Triangle | Kind::Roll, _) => {
+            return Err("`--pixel` is for the figures camera, pixel and methods".to_owned());
+        }
+        (_, kind, Some(_)) if kind != Kind::Triangle => {
+            return Err("`--object` is for the figure triangle".to_owned());
+        }
+        (Some([x, y]), ..) if x >= width || y >= height => {
+            return Err(format!(
+                "pixel {x},{y} lies outside of the picture: X goes from 0 to {}, Y from 0 to {}",
+                width - 1,
+                height - 1
+            ));
+        }
+        _ => {}
+    }
+    match kind {
+        Kind::Camera => Ok(camera::draw(scene, choice.pixel)),
+        Kind::Pixel => pixel::draw(scene, choice.pixel),
+        Kind::Triangle => Ok(triangle::draw(triangle_of(scene, choice.object)?)),
+        Kind::Roll => Ok(roll::draw(scene)),
+        Kind::Methods => methods::draw(scene, choice.pixel.unwrap_or_default()),
+    }
+}
+
+/// The triangle of a name, or else the first one.
+fn triangle_of<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s Triangle, String> {
+    let objects = scene.objects.iter();
+    let triangles = objects.filter_map(|object| match &object.shape {
+        Shape::Triangle(triangle) => Some((object.name.as_deref().unwrap_or_default(), triangle)),
+        _ => None,
+    });
+    let triangles: Vec<_> = triangles.collect();
+    let Some(&(_, first)) = triangles.first() else {
+        return Err("the scene has no triangle: draw camera, pixel, roll or methods, or add one, such as `triangle { centroid (0, 1, 0) normal (0, 0, 1) }`".to_owned());
+    };
+    let Some(wanted) = wanted else {
+        return Ok(first);
+    };
+    let found = triangles.iter().find(|(name, _)| *name == wanted);
+    found.map(|&(_, triangle)| triangle).ok_or_else(|| {
+        let names = triangles.iter().map(|&(name, _)| name);
+        match suggest::nearest(wanted, names) {
+            Some(near) => format!("no triangle is named `{wanted}`: did you mean `{near}`?"),
+            None => format!(
+                "no triangle is named `{wanted}`: without `--object`, the first one is drawn"
+            ),
+        }
+    })
+}

@@ -1,0 +1,195 @@
+//! A scene seen from outside: the view that fits some points into a rectangle of the drawing.
+//!
+//! In: points, and the side from which they are seen. Out: where points of the world lie in the
+//! drawing. The observer is a camera of the language as any other, so that
+//! [`Projection`] and the editor's outlines serve here too.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::canvas::Canvas;
+use crate::{
+    color::Color,
+    editor::viewport::{Overlays, ShownObjects, clip, overlays},
+    math::Angle,
+    projection::Projection,
+    scene::{Camera, Image, Lens, Scene, Shape, View},
+};
+
+/// Distance of the observer, in radii of what is looked at: parallels are nearly parallel.
+const DISTANCE: f64 = 6.0;
+
+/// Largest coordinates that are drawn.
+const MOST: f64 = 1e100;
+
+/// View of the world from outside of the camera, in a rectangle of the drawing.
+pub struct Outside {
+    camera: Camera,
+    image: Image,
+    projection: Projection,
+    panel: [DVec2; 2],
+    scale: f64,
+    offset: DVec2,
+}
+
+impl Outside {
+    /// Fits some points into a panel, seen from a side of them with a direction up.
+    pub fn new(points: &[DVec3], [side, up]: [DVec3; 2], panel: [DVec2; 2]) -> Self {
+        let (min, max) = bounds3(points);
+        // Scenes may have numbers of any size, of which no sums are made.
+        let within = |v: DVec3| v.clamp(DVec3::splat(-MOST), DVec3::splat(MOST));
+        let (min, max) = (within(min), within(max));
+        let radius = ((max - min).length() / 2.0).max(1.0 / MOST);
+        let side = side.normalize_or(DVec3::Z);
+        let camera = Camera {
+            eye: min.midpoint(max) + side * (DISTANCE * radius),
+            view: View::Direction(-side),
+            up,
+            roll: Angle::default(),
+            lens: Lens::Fov(Angle::from_degrees(30.0)),
+            view_height: 2.0,
+            near: 0.0,
+            far: None,
+        };
+        let image = Image {
+            width: 1000,
+            height: 1000,
+            background: Color::BLACK,
+        };
+        let projection = Projection::new(&camera, &image);
+        let seen: Vec<DVec2> = points
+            .iter()
+            .map(|point| projection.projected(*point))
+            .collect();
+        let (scale, offset) = fit(&seen, panel);
+        Self {
+            camera,
+            image,
+            projection,
+            panel,
+            scale,
+            offset,
+        }
+    }
+
+    /// Returns the place of a point of the world in the drawing.
+    pub fn at(&self, point: DVec3) -> DVec2 {
+        self.projection.projected(point) * self.scale + self.offset
+    }
+
+    /// Draws a line through points of the world.
+    pub fn line(&self, canvas: &mut Canvas, class: &str, points: &[DVec3]) {
+        for line in self.projection.line(points) {
+            let line: Vec<DVec2> = line
+                .iter()
+                .map(|at| *at * self.scale + self.offset)
+                .collect();
+            draw_within(canvas, class, &line, self.panel);
+        }
+    }
+
+    /// Draws the outlines of some objects of a scene, filled with their colours.
+    pub fn objects(&self, canvas: &mut Canvas, scene: &Scene, indices: Vec<usize>) {
+        let scene = Scene {
+            camera: self.camera,
+            image: self.image,
+            sampler: scene.sampler,
+            objects: Arc::clone(&scene.objects),
+        };
+        let overlays = overlays(&scene, &ShownObjects::Only(indices));
+        let place = |at: DVec2| at * self.scale + self.offset;
+        draw_objects(canvas, &scene, &overlays, place, self.panel);
+    }
+}
+
+/// Draws the outlines of a picture, whose points `place` puts into the drawing. Skips boards, of
+/// which the editor outlines a single square.
+pub fn draw_objects(
+    canvas: &mut Canvas,
+    scene: &Scene,
+    overlays: &Overlays,
+    place: impl Fn(DVec2) -> DVec2,
+    panel: [DVec2; 2],
+) {
+    for outline in &overlays.objects {
+        let shape = &scene.objects[outline.object].shape;
+        if matches!(shape, Shape::Checkerboard(_)) {
+            continue;
+        }
+        let lines = outline.lines.iter();
+        let lines = lines.map(|line| thinned(line.iter().map(|at| place(*at)).collect()));
+        let lines: Vec<Vec<DVec2>> = lines.collect();
+        let [color, ..] = shape.colors();
+        let points = lines.iter().flatten();
+        let hull = hull(points.map(|at| at.clamp(panel[0], panel[1])).collect());
+        canvas.fill("fill", color, &hull);
+        for line in &lines {
+            draw_within(canvas, "faint", line, panel);
+        }
+    }
+}
+
+/// Leaves out points of a line that are nearer than one unit to the point before: small spheres
+/// would fill the file.
+fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
+    let end = line.last().copied();
+    line.dedup_by(|next, kept| next.distance_squared(*kept) < 1.0);
+    line.extend(end.filter(|end| line.last() != Some(end)));
+    line
+}
+
+/// Draws the parts of a line that lie in a panel.
+pub fn draw_within(canvas: &mut Canvas, class: &str, line: &[DVec2], panel: [DVec2; 2]) {
+    let mut part: Vec<DVec2> = Vec::new();
+    for ends in line.windows(2) {
+        let Some([from, to]) = clip([ends[0], ends[1]], panel) else {
+            continue;
+        };
+        if part.last() != Some(&from) {
+            canvas.line(class, &part);
+            part = vec![from];
+        }
+        part.push(to);
+    }
+    canvas.line(class, &part);
+}
+
+/// Returns the scale and the offset that put points into the middle of a panel.
+pub fn fit(points: &[DVec2], panel: [DVec2; 2]) -> (f64, DVec2) {
+    let least = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+    let greatest = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let scale = ((panel[1] - panel[0]) / (greatest - least)).min_element();
+    (
+        scale,
+        panel[0].midpoint(panel[1]) - least.midpoint(greatest) * scale,
+    )
+}
+
+/// Returns the least and the greatest coordinates of some points.
+pub fn bounds3(points: &[DVec3]) -> (DVec3, DVec3) {
+    let least = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let greatest = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    (least, greatest)
+}
+
+/// Returns the convex polygon around some points (Andrew's monotone chain).
+fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    let chain = |points: &mut dyn Iterator<Item = &DVec2>| {
+        let mut chain: Vec<DVec2> = Vec::new();
+        for &point in points {
+            while let [.., a, b] = chain[..]
+                && (b - a).perp_dot(point - b) <= 0.0
+            {
+                chain.pop();
+            }
+            chain.push(point);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = chain(&mut points.iter());
+    hull.extend(chain(&mut points.iter().rev()));
+    hull
+}

@@ -1,0 +1,244 @@
+//! `pixel`: one pixel with its strata, its samples and what each of them sees.
+
+use glam::DVec2;
+
+use super::{
+    canvas::{Canvas, length},
+    methods::{most, strata},
+};
+use crate::{
+    area::Area,
+    cancel,
+    color::Color,
+    editor::viewport::{PixelSamples, pick, samples},
+    exact::Integrator,
+    scene::{Method, Sampler, Scene},
+    tracer::World,
+};
+
+/// Where the pixel is drawn, and its side there.
+const CORNER: DVec2 = DVec2::new(16.0, 16.0);
+const SIDE: f64 = 360.0;
+
+/// Number of rows of points that show the regions between the samples. A whole number of them goes
+/// into the side, so that rounding leaves no gaps.
+const ROWS: u32 = 120;
+
+/// Maximum number of colours that are told apart beside the pixel.
+const COLORS: usize = 4;
+
+/// Draws the figure of a pixel.
+pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
+    let world = World::new(scene);
+    let [x, y] = pixel.unwrap_or_else(|| most_colors(scene, &world));
+    let PixelSamples {
+        samples: seen,
+        color: mean,
+    } = samples(scene, &world, [x, y])?;
+    most(seen.len() as u64)?;
+    let exact = Sampler {
+        method: Method::Exact,
+        ..scene.sampler
+    };
+    let exact = samples(
+        &Scene {
+            sampler: exact,
+            ..scene.clone()
+        },
+        &world,
+        [x, y],
+    )?
+    .color;
+
+    let mut canvas = Canvas::new(2.0 * CORNER.y + SIDE + 26.0);
+    let colors = regions(&mut canvas, &world, [x, y]);
+    strata(
+        &mut canvas,
+        scene.sampler.method,
+        seen.len() as u64,
+        CORNER,
+        SIDE,
+    );
+    let radius = (30.0 / (seen.len().max(1) as f64).sqrt()).clamp(3.0, 9.0);
+    for (at, color) in &seen {
+        canvas.seen(*color, CORNER + *at * SIDE, radius);
+    }
+    let method = scene.sampler.method.name();
+    let below = CORNER + DVec2::new(0.0, SIDE + 28.0);
+    let count = match seen.len() {
+        1 => "1 sample".to_owned(),
+        count => format!("{count} samples"),
+    };
+    canvas.text(
+        "ink",
+        "start",
+        below,
+        &format!("pixel ({x}, {y}), {method}, {count}"),
+    );
+
+    let columns = [570.0, 664.0];
+    let cell = |canvas: &mut Canvas, column: usize, y: f64, text: &str| {
+        canvas.text("ink", "end", DVec2::new(columns[column], y), text);
+    };
+    cell(&mut canvas, 0, 44.0, "samples");
+    cell(&mut canvas, 1, 44.0, "exact");
+    let shares = shares(&world, [x, y], &colors);
+    let mut told = Vec::new();
+    for (row, (&(slot, at), share)) in colors.iter().zip(shares).enumerate() {
+        let color = world.palette()[slot];
+        let name = name(scene, &world, at);
+        let count = seen.iter().filter(|(_, seen)| *seen == color).count();
+        let share = format!("{} %", crate::numbers::rounded(100.0 * share, 0.1));
+        let y = 84.0 + 32.0 * row as f64;
+        canvas.seen(color, DVec2::new(408.0, y - 6.0), 8.0);
+        canvas.text("ink", "start", DVec2::new(424.0, y), &name);
+        let counted = if seen.is_empty() {
+            "–".to_owned()
+        } else {
+            count.to_string()
+        };
+        cell(&mut canvas, 0, y, &counted);
+        cell(&mut canvas, 1, y, &share);
+        told.push(format!(
+            "{name} ({color}): {count} samples, exactly {share}"
+        ));
+    }
+    let y = 116.0 + 32.0 * colors.len().min(COLORS) as f64;
+    canvas.text("ink", "start", DVec2::new(400.0, y + 46.0), "mean");
+    for (x, color) in [(472.0, mean), (568.0, exact)] {
+        let more = format!(" style=\"fill:{color}\"");
+        canvas.raw_path("swatch", &format!("M{x} {y}h96v76h-96z"), &more);
+        let below = DVec2::new(x + 48.0, y + 100.0);
+        canvas.text("ink", "middle", below, &color.to_string());
+    }
+    canvas.raw_path("faint", &format!("M472 {y}h192v76h-192z"), "");
+    let channels = mean.to_bytes().into_iter().zip(exact.to_bytes());
+    let off = channels
+        .map(|(a, b)| a.abs_diff(b))
+        .max()
+        .unwrap_or_default();
+    let off = match off {
+        0 => "equal in 8 bits".to_owned(),
+        off => format!("off by {off} of 255"),
+    };
+    canvas.text("ink", "end", DVec2::new(columns[1], y + 132.0), &off);
+    let told = told.join("; ");
+    Ok(canvas.finish(
+        "One pixel and its samples",
+        &format!(
+            "Pixel ({x}, {y}) has {count} by the method {method}; lines show the strata, each with one sample. Seen there: {told}. \
+            The mean of the samples is {mean}, the exact mean {exact}: {off}."
+        ),
+    ))
+}
+
+/// Fills the pixel with what is seen in it; returns the colours by their slots in the palette, each
+/// with a point where it is seen, those with the largest areas first.
+fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, DVec2)> {
+    let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(ROWS) - 0.5;
+    let step = SIDE / f64::from(ROWS);
+    let slots = world.palette().len();
+    let mut paths = vec![String::new(); slots];
+    let mut points = vec![(0, DVec2::ZERO); slots];
+    for j in 0..ROWS {
+        let slot = |i: u32| world.slot_at(x, y, DVec2::new(offset(i), offset(j)));
+        let row: Vec<usize> = (0..ROWS).map(slot).collect();
+        let mut first = 0;
+        for run in row.chunk_by(|a, b| a == b) {
+            let (slot, width) = (run[0], run.len());
+            let corner = CORNER + DVec2::new(first as f64, f64::from(j)) * step;
+            let [left, top, width, height] =
+                [corner.x, corner.y, width as f64 * step, step].map(length);
+            paths[slot] += &format!("M{left} {top}h{width}v{height}h-{width}z");
+            let (count, point) = &mut points[slot];
+            if *count == 0 {
+                let middle = offset(first as u32 + run.len() as u32 / 2);
+                *point = DVec2::new(f64::from(x) + 0.5 + middle, f64::from(y) + 0.5 + offset(j));
+            }
+            *count += run.len();
+            first += run.len();
+        }
+    }
+    for (path, color) in paths.iter().zip(world.palette()) {
+        let more = format!(" style=\"fill:{color}\" shape-rendering=\"crispEdges\"");
+        canvas.raw_path("fill", path, &more);
+    }
+    let mut seen: Vec<usize> = (0..slots).filter(|&slot| points[slot].0 > 0).collect();
+    seen.sort_by_key(|&slot| std::cmp::Reverse(points[slot].0));
+    let seen = seen.into_iter().map(|slot| (slot, points[slot].1));
+    seen.take(COLORS).collect()
+}
+
+/// Returns the exact shares of a pixel that show some colours.
+fn shares(world: &World, [x, y]: [u32; 2], colors: &[(usize, DVec2)]) -> [f64; COLORS] {
+    let shown: Vec<Color> = colors
+        .iter()
+        .map(|(slot, _)| world.palette()[*slot])
+        .collect();
+    let numbers =
+        |color: Color| std::array::from_fn(|i| f64::from(u8::from(shown.get(i) == Some(&color))));
+    let integrator = Integrator::<COLORS>::for_values(world, numbers);
+    let pixels = integrator.pixels(Area::pixel(x, y), &cancel::NEVER);
+    pixels
+        .and_then(|pixels| pixels.first().copied())
+        .map_or([0.0; COLORS], |pixel| pixel.mean)
+}
+
+/// Returns the name of what is seen at a point of the picture, for people.
+fn name(scene: &Scene, world: &World, at: DVec2) -> String {
+    let Some((Some(hit), _)) = pick(scene, world, at) else {
+        return "background".to_owned();
+    };
+    let object = &scene.objects[hit.object];
+    let name = object.name.as_deref().unwrap_or(object.shape.kind());
+    match name.chars().count() {
+        0..=12 => name.to_owned(),
+        _ => name.chars().take(11).chain("…".chars()).collect(),
+    }
+}
+
+/// Returns the pixel with the most colours and the evenest shares of them, of those on edges
+/// between neighbours in a coarse grid over the picture.
+fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
+    let (width, height) = (scene.image.width, scene.image.height);
+    let (columns, rows) = (width.min(64), height.min(90));
+    let slot = |x: u32, y: u32| world.slot_at(x, y, DVec2::ZERO);
+    let mut best = (f64::NEG_INFINITY, [width / 2, height / 2]);
+    for y in (0..rows).map(|j| (height / rows) * j + height / rows / 2) {
+        for i in 1..columns {
+            let [mut from, mut to] = [i - 1, i].map(|i| width / columns * i);
+            let first = slot(from, y);
+            if first == slot(to, y) {
+                continue;
+            }
+            while to - from > 1 {
+                let middle = from.midpoint(to);
+                if slot(middle, y) == first {
+                    from = middle;
+                } else {
+                    to = middle;
+                }
+            }
+            let score = evenness(world, [to, y]);
+            if score > best.0 {
+                best = (score, [to, y]);
+            }
+        }
+    }
+    best.1
+}
+
+/// Returns a score of a pixel: higher for more colours, up to three, and for evener shares (less
+/// Simpson's index); lower for each change of colour in a row, of which there are many near the
+/// horizon.
+fn evenness(world: &World, [x, y]: [u32; 2]) -> f64 {
+    let at = |i: u32| (f64::from(i) + 0.5) / 8.0 - 0.5;
+    let slot = |cell: u32| world.slot_at(x, y, DVec2::new(at(cell % 8), at(cell / 8)));
+    let mut slots: Vec<usize> = (0..64).map(slot).collect();
+    let changes = slots.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    slots.sort_unstable();
+    let runs = slots.chunk_by(|a, b| a == b).map(|run| run.len() as f64);
+    let colors = runs.clone().count().min(3) as f64;
+    let alike = runs.map(|run| run * run).sum::<f64>() / 4096.0;
+    0.2 * colors - alike - 0.02 * changes as f64
+}

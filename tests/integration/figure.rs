@@ -1,0 +1,244 @@
+//! `figure`: the bytes of some figures, what holds of all of them, and what is refused.
+//!
+//! `PINHOLE_BLESS=1 cargo test figure` writes the real figures into `tests/figures` and
+//! `docs/handout`: look at them, light, dark and small, before they are kept.
+
+use std::path::Path;
+
+use glam::DVec2;
+use pinhole::figure::{Choice, KINDS, Kind, figure};
+
+use crate::{
+    generated::{Numbers, generated},
+    program::Folder,
+    scenes::{example_names, example_text, read, read_with},
+    snapshot::assert_file,
+};
+
+/// A figure of an example by default.
+fn drawn(example: &str, kind: Kind, sets: &[&str]) -> Result<String, String> {
+    let scene = read_with(&example_text(example), sets.iter().copied());
+    figure(&scene, kind, Choice::default())
+}
+
+/// Those that pages of the handout show are kept beside them.
+#[test]
+fn figures_keep_their_bytes() {
+    const VERTICES: [&str; 3] = [
+        "Sail.v0=(0, 0, 0)",
+        "Sail.v1=(2, 0, 0)",
+        "Sail.v2=(1, 1, 1)",
+    ];
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut expected = Vec::new();
+    for (file, example, kind, sets) in [
+        ("docs/handout/camera", "figure_9_9", Kind::Camera, &[][..]),
+        ("docs/handout/methods", "figure_9_9", Kind::Methods, &[]),
+        ("docs/handout/pixel", "figure_9_9", Kind::Pixel, &[]),
+        (
+            "docs/handout/roll",
+            "figure_9_9",
+            Kind::Roll,
+            &["camera.roll=20deg"],
+        ),
+        (
+            "docs/handout/triangle",
+            "figure_9_9",
+            Kind::Triangle,
+            &["Sail.spin=50deg"],
+        ),
+        (
+            "tests/figures/camera_down",
+            "straight_down",
+            Kind::Camera,
+            &[],
+        ),
+        (
+            "tests/figures/methods_12",
+            "figure_9_9",
+            Kind::Methods,
+            &["sampler.per_pixel=12"],
+        ),
+        (
+            "tests/figures/pixel_exact",
+            "figure_9_9",
+            Kind::Pixel,
+            &["sampler.method=exact"],
+        ),
+        (
+            "tests/figures/triangle_vertices",
+            "figure_9_9",
+            Kind::Triangle,
+            &VERTICES,
+        ),
+    ] {
+        let figure = drawn(example, kind, sets).unwrap();
+        assert_file(&root.join(format!("{file}.svg")), &figure);
+        expected.extend(
+            file.strip_prefix("tests/figures/")
+                .map(|name| format!("{name}.svg")),
+        );
+    }
+    assert_eq!(crate::program::names(&root.join("tests/figures")), expected);
+}
+
+/// The boxes of the texts of a figure, by the width that the program expects of a letter.
+fn texts(svg: &str) -> Vec<(String, [DVec2; 2])> {
+    let mut found = Vec::new();
+    for element in svg.split("<text ").skip(1) {
+        let attribute = |name: &str| {
+            let (_, rest) = element.split_once(&format!(" {name}=\"")).unwrap();
+            rest.split('"').next().unwrap()
+        };
+        let number = |name: &str| attribute(name).parse::<f64>().unwrap();
+        let (_, text) = element.split_once('>').unwrap();
+        let (text, _) = text.split_once("</text>").unwrap();
+        let text = text.replace("<tspan>", "").replace("</tspan>", "");
+        let width = 10.0 * text.chars().count() as f64;
+        let left = match attribute("text-anchor") {
+            "start" => 0.0,
+            "middle" => -0.5 * width,
+            _ => -width,
+        };
+        let min = DVec2::new(number("x") + left, number("y") - 15.0);
+        found.push((text, [min, min + DVec2::new(width, 18.0)]));
+    }
+    found
+}
+
+/// Names of one scene are longer than there is room for in any figure.
+#[test]
+fn texts_lie_in_the_figure_and_none_upon_another() {
+    let mut count = 0;
+    for example in example_names() {
+        for (name, kind) in KINDS {
+            let Ok(svg) = drawn(&example, kind, &["camera.roll=20deg"]) else {
+                assert_eq!(kind, Kind::Triangle, "{example}");
+                continue;
+            };
+            let what = format!("{example}, {}", name);
+            for part in [
+                "<title id=",
+                "<desc id=",
+                "role=\"img\"",
+                "prefers-color-scheme:dark",
+            ] {
+                assert!(svg.contains(part), "{what}: {part}");
+            }
+            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{what}");
+            let (_, size) = svg.split_once("viewBox=\"0 0 ").unwrap();
+            let mut size = size
+                .split(['"', ' '])
+                .map(|side| side.parse::<f64>().unwrap());
+            let size = DVec2::new(size.next().unwrap(), size.next().unwrap());
+            let texts = texts(&svg);
+            count += texts.len();
+            for (at, (text, [min, max])) in texts.iter().enumerate() {
+                assert!(
+                    min.cmpge(DVec2::ZERO).all() && max.cmple(size).all(),
+                    "{what}: {text}"
+                );
+                for (other, [from, to]) in &texts[..at] {
+                    let is_upon = min.cmplt(*to).all() && max.cmpgt(*from).all();
+                    assert!(!is_upon, "{what}: {text} upon {other}");
+                }
+            }
+        }
+    }
+    assert!(count > 500, "{count}");
+}
+
+#[test]
+fn every_scene_has_figures_that_are_drawn_in_finite_numbers() {
+    for numbers in [Numbers::MultiplesOf(0.5), Numbers::Wild(30)] {
+        for (text, scene) in generated(numbers, [9, 7], 3).take(12) {
+            for (_, kind) in KINDS {
+                match figure(&scene, kind, Choice::default()) {
+                    Ok(figure) => assert!(!figure.contains("NaN"), "{text}"),
+                    Err(_) => assert_eq!(kind, Kind::Triangle, "{text}"),
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_pixel_of_a_plain_picture_is_its_middle() {
+    let scene = read("image { width 9 height 5 } camera { eye (0, 1, 5) direction (0, 0, 1) }");
+    let figure = figure(&scene, Kind::Pixel, Choice::default()).unwrap();
+    assert!(figure.contains("pixel (4, 2)"), "{}", figure);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_told_with_a_way_out() {
+    let folder = Folder::with([(
+        "a.scn",
+        "image { width 32 height 18 } camera { eye (0, 1, 8) lookat (0, 1, 0) } sphere Ball { center (0, 1, 0) }",
+    )]);
+    folder.write("b.scn", "camera { eye (0, 1, 8) lookat (0, 1, 0) } sphere Ball { center (0, 1, 0) } triangle Sail { centroid (0, 1, 0) normal (0, 0, 1) }");
+    for (line, status, told) in [
+        ("figure camera a.scn -o a.png", 2, "should end in .svg"),
+        ("figure camera none.scn", 2, "there is no such file"),
+        (
+            "figure camera a.scn -o no/a.svg",
+            2,
+            "there is no such folder",
+        ),
+        ("figure camara a.scn", 2, "'camera'"),
+        ("figure camera a.scn --set Ball.radus=2", 1, "radius"),
+        (
+            "figure triangle a.scn",
+            2,
+            "the scene has no triangle: draw camera, pixel, roll or methods, or add one",
+        ),
+        (
+            "figure triangle b.scn --object Sial",
+            2,
+            "did you mean `Sail`?",
+        ),
+        (
+            "figure triangle b.scn --object Ball",
+            2,
+            "no triangle is named `Ball`: without `--object`, the first one is drawn",
+        ),
+        (
+            "figure pixel a.scn --pixel 32,0",
+            2,
+            "X goes from 0 to 31, Y from 0 to 17",
+        ),
+        ("figure pixel a.scn --pixel 3", 2, "as in `200,150`"),
+        (
+            "figure roll a.scn --pixel 3,3",
+            2,
+            "`--pixel` is for the figures camera, pixel and methods",
+        ),
+        (
+            "figure camera a.scn --object Ball",
+            2,
+            "`--object` is for the figure triangle",
+        ),
+        (
+            "figure methods a.scn --set sampler.per_pixel=4096",
+            2,
+            "`--set sampler.per_pixel=16`",
+        ),
+        (
+            "figure roll a.scn -o roll.svg",
+            0,
+            "`--set camera.roll=20deg`",
+        ),
+    ] {
+        let said = folder.run(line);
+        assert_eq!(said.status, status, "{line}: {}", said.errors);
+        assert!(said.errors.contains(told), "{line}: {}", said.errors);
+    }
+    // To standard output the same bytes as into a file.
+    folder.done("figure camera a.scn -o camera.svg");
+    for line in ["figure camera a.scn", "figure camera a.scn -o -"] {
+        assert_eq!(
+            folder.done(line).text().as_bytes(),
+            folder.read("camera.svg")
+        );
+    }
+    assert_eq!(folder.names(), ["a.scn", "b.scn", "camera.svg", "roll.svg"]);
+}

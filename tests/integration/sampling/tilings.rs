@@ -1,0 +1,39 @@
+//! The tilings that are told of a method hold one sample in each cell.
+
+use pinhole::sampling::tilings;
+
+use super::*;
+
+/// The cell of a tiling that holds a point, as its row and its place in the row.
+fn cell(rows: &[u64], point: DVec2) -> (usize, u64) {
+    let n: u64 = rows.iter().sum();
+    let height = ((point.y + 0.5) * n as f64).floor() as u64;
+    let mut above = 0;
+    let row = rows.iter().position(|cells| {
+        above += cells;
+        height < above
+    });
+    let row = row.expect("the point lies in the pixel");
+    (row, ((point.x + 0.5) * rows[row] as f64).floor() as u64)
+}
+
+#[test]
+fn each_cell_of_a_tiling_holds_one_sample() {
+    for method in Method::SAMPLED {
+        let mut told = 0;
+        for n in (1..40).chain([49, 64, 81, 100, 128]) {
+            for tiling in tilings(method, n) {
+                told += 1;
+                assert_eq!(tiling.rows.iter().sum::<u64>(), n, "{method:?} {n}");
+                for (seed, pixel) in [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])] {
+                    let points = points(method, n, seed, pixel);
+                    let cells = points.iter().map(|point| cell(&tiling.rows, *point));
+                    let cells: std::collections::HashSet<_> = cells.collect();
+                    assert_eq!(cells.len() as u64, n, "{method:?} {n} {tiling:?}");
+                }
+            }
+        }
+        let has_none = matches!(method, Method::Random | Method::Scatter);
+        assert_eq!(told == 0, has_none, "{method:?}");
+    }
+}
