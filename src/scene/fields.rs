@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     math::compare_half_turns,
-    schema::{CAMERA, IMAGE, NamedField, Value},
+    schema::{CAMERA, FieldValue, IMAGE, Value},
 };
 
 /// An image, a camera or a shape, whose fields are read and changed by their names.
@@ -31,9 +31,7 @@ impl FieldOwner {
         {
             return Some(Value::Vector(value));
         }
-        let mut fields = self.fields().into_iter();
-        let (_, found) = fields.find(|(name, _)| *name == field)?;
-        Some(found.value())
+        Some(self.field_mut(field)?.value())
     }
 
     /// Returns the same with another value of a field; `None` if the field is not used, or the
@@ -44,22 +42,21 @@ impl FieldOwner {
         {
             return Some(self);
         }
-        let is_it = |(name, _): &NamedField<'_>| *name == field;
-        self.fields().into_iter().find(is_it)?.1.set(value)?;
+        self.field_mut(field)?.set(value)?;
         Some(self)
     }
 
-    /// Returns the fields that are used, except the width and the height of an image, which are no
-    /// `f64`s, and the derived ones of a box.
-    fn fields(&mut self) -> Vec<NamedField<'_>> {
+    /// Returns a field that is used, by its name. The width and the height of an image, which are
+    /// no `f64`s, and the derived fields of a box are not reached so.
+    fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
         match self {
             Self::Image(Image {
                 width: _,
                 height: _,
                 background,
-            }) => vec![IMAGE.background.of(background)],
-            Self::Camera(camera) => camera_fields(camera),
-            Self::Shape(shape) => shape.fields(),
+            }) => IMAGE.background.of(name, background),
+            Self::Camera(camera) => camera_field_mut(camera, name),
+            Self::Shape(shape) => shape.field_mut(name),
         }
     }
 
@@ -87,28 +84,31 @@ impl FieldOwner {
     }
 }
 
-fn camera_fields(camera: &mut Camera) -> Vec<NamedField<'_>> {
+fn camera_field_mut<'a>(camera: &'a mut Camera, name: &str) -> Option<&'a mut dyn FieldValue> {
     let Camera {
         eye,
         view,
         up,
         roll,
-        lens,
         view_height,
+        lens,
         near,
         far,
     } = camera;
-    let mut fields = vec![CAMERA.eye.of(eye), CAMERA.up.of(up), CAMERA.roll.of(roll)];
-    fields.push(CAMERA.near.of(near));
-    fields.extend(far.as_mut().map(|far| CAMERA.far.of(far)));
-    fields.push(match view {
-        View::Lookat(point) => CAMERA.lookat.of(point),
-        View::Direction(along) => CAMERA.direction.of(along),
+    let field = CAMERA.eye.of(name, eye).or(CAMERA.up.of(name, up));
+    let field = field.or(CAMERA.roll.of(name, roll));
+    let field = field.or(CAMERA.near.of(name, near));
+    let field = field.or(far.as_mut().and_then(|far| CAMERA.far.of(name, far)));
+    let field = field.or(match view {
+        View::Lookat(point) => CAMERA.lookat.of(name, point),
+        View::Direction(along) => CAMERA.direction.of(name, along),
     });
-    match lens {
-        Lens::Distance(d) => fields.extend([CAMERA.d.of(d), CAMERA.view_height.of(view_height)]),
-        Lens::Fov(angle) => fields.push(CAMERA.fov.of(angle)),
-        Lens::HorizontalFov(angle) => fields.push(CAMERA.hfov.of(angle)),
-    }
-    fields
+    field.or(match lens {
+        Lens::Distance(d) => {
+            let field = CAMERA.d.of(name, d);
+            field.or(CAMERA.view_height.of(name, view_height))
+        }
+        Lens::Fov(angle) => CAMERA.fov.of(name, angle),
+        Lens::HorizontalFov(angle) => CAMERA.hfov.of(name, angle),
+    })
 }

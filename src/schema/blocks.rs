@@ -9,23 +9,21 @@ use Condition::{
 };
 use Condition::{NotZero, Whole};
 
-/// Makes the rows of all kinds of blocks in the order of [`BlockKind`], and a handle for each
-/// field.
+/// Makes the rows of all kinds of blocks, and a handle for each field.
 ///
-/// The head of a block gives its kind, the type and the name of its handles, its keyword with the
-/// article, whether it is an object, and its help. Each line of fields gives a field's name, type,
-/// preset and help; then any other columns of its row. The second braces hold any other columns of
-/// the block's row.
+/// The head of a block gives its kind, and the type and the name of its handles. A line in the
+/// first braces gives a field's name, type, preset and help; then any other columns of its row. The
+/// second braces hold columns of the block's row.
 macro_rules! blocks {
-    ($($kind:ident $handles:ident $constant:ident $article:literal $name:literal is_object($is_object:literal) $help:literal {
-        $($field:ident $takes:ident $preset:ident $(($default:literal))? $about:literal $($column:ident($value:expr))*;)*
+    ($($kind:ident $handles:ident $constant:ident {
+        $($field:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*
     } {
-        $($more:ident($content:expr))*
+        $($column:ident: $content:expr,)*
     })*) => {
         $(#[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
         #[derive(Clone, Copy, Debug)]
         pub struct $handles {
-            $(#[doc = $about] pub $field: FieldHandle<contents::$takes>,)*
+            $(#[doc = $help] pub $field: FieldHandle<contents::$takes>,)*
         }
 
         #[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
@@ -47,22 +45,39 @@ macro_rules! blocks {
         );)*
 
         /// The rows of all kinds of blocks, in the order of [`BlockKind`].
+        #[allow(clippy::needless_update, reason = "a row may have all columns")]
         pub const BLOCKS: &[BlockRow] = &[$(BlockRow {
-            is_object: $is_object,
+            kind: BlockKind::$kind,
             fields: &[$(FieldRow {
-                $($column: $value,)*
+                $($more: $value,)*
                 ..FieldRow::new(
                     stringify!($field),
                     Type::$takes,
                     Preset::$preset $(($default))?,
-                    $about,
+                    $help,
                 )
             }),*],
-            $($more: $content,)*
-            ..BlockRow::new(BlockKind::$kind, $name, concat!($article, " ", $name), $help)
+            $($column: $content,)*
+            ..BLOCK
         }),*];
     };
 }
+
+/// A row without fields or other words, which the table's rows start from.
+const BLOCK: BlockRow = BlockRow {
+    kind: BlockKind::Image,
+    name: "",
+    noun: "",
+    is_object: false,
+    help: "",
+    fields: &[],
+    choices: &[],
+    together: &[],
+    several: &[],
+    parted: &[],
+    also_tried: "",
+    elsewhere: &[],
+};
 
 /// Returns the names of fields of a block, by their handles.
 macro_rules! names {
@@ -71,24 +86,20 @@ macro_rules! names {
     };
 }
 
-/// Makes a choice of a block: why only one of its ways can be given, and the fields of each way.
-macro_rules! choice {
-    ($handles:ident $why:literal $($($field:ident)+)|+) => {
-        Choice { ways: &[$(&[$($handles.$field.name),+]),+], why: $why }
-    };
-}
-
 blocks! {
-    Image ImageFields IMAGE "an" "image" is_object(false) "the picture's size, and what is seen where nothing is hit" {
+    Image ImageFields IMAGE {
         width Number Value("800") "the columns of pixels" must(PIXELS) also_tried("columns w");
         height Number Value("450") "the rows of pixels" must(PIXELS) also_tried("rows h");
         background Color Value("black") "the colour where nothing is hit" also_tried("bg color colour sky");
     } {
-        several(&[("resolution size dimensions", names!(IMAGE width height))])
-        also_tried("picture window film output")
+        name: "image",
+        noun: "an image",
+        help: "the picture's size, and what is seen where nothing is hit",
+        several: &[("resolution size dimensions", names!(IMAGE width height))],
+        also_tried: "picture window film output",
     }
 
-    Camera CameraFields CAMERA "a" "camera" is_object(false) "the pinhole camera: where it stands, where it looks, how much it sees" {
+    Camera CameraFields CAMERA {
         eye Vector Required "the point that all rays pass through" example("(0, 2, 8)")
             also_tried("position pos from center centre origin location look_from");
         lookat Vector Alternative "the point that it looks at" example("(0, 1, 0)") also_tried("look_at target at to") perhaps("look");
@@ -106,13 +117,22 @@ blocks! {
         near Number Value("0") "nothing at this depth or nearer is seen" must(&[AtLeast(0.0)]);
         far Number Nothing "nothing at this depth or farther is seen" example("100");
     } {
-        choices(&[
-            choice!(CAMERA "either a point or a direction says where the camera looks" lookat | direction),
-            choice!(CAMERA "one of d, fov and hfov says how much the camera sees" d | fov | hfov),
-        ])
-        together(&["lookat ≠ eye", "near < far"])
-        also_tried("cam view viewer eye")
-        elsewhere(&[
+        name: "camera",
+        noun: "a camera",
+        help: "the pinhole camera: where it stands, where it looks, how much it sees",
+        choices: &[
+            Choice {
+                ways: &[names!(CAMERA lookat), names!(CAMERA direction)],
+                why: "either a point or a direction says where the camera looks",
+            },
+            Choice {
+                ways: &[names!(CAMERA d), names!(CAMERA fov), names!(CAMERA hfov)],
+                why: "one of d, fov and hfov says how much the camera sees",
+            },
+        ],
+        together: &["lookat ≠ eye", "near < far"],
+        also_tried: "cam view viewer eye",
+        elsewhere: &[
             ("aspect aspect_ratio ratio right",
              "write the size of the picture, `image { width 1280  height 720 }`: aspect = width / height, here 16 / 9"),
             ("width height resolution size dimensions image_width image_height",
@@ -121,10 +141,10 @@ blocks! {
              "write `d`, the distance of the view plane: d = zoom * 2 as `view_height` is 2, and the picture is twice as large for twice the `d`"),
             ("focal_length focal_distance focal lens sensor_width sensor_height film_height film_width",
              "write `d`: d = view_height * focal length / height of the film, such as `d 2 * 35 / 24` for 35 mm and a film of 36 by 24 mm"),
-        ])
+        ],
     }
 
-    Sampler SamplerFields SAMPLER "a" "sampler" is_object(false) "where in a pixel samples are taken, and how many" {
+    Sampler SamplerFields SAMPLER {
         method Method Value("multi_jittered") "the sampling technique" also_tried("technique type kind pattern");
         per_pixel Number Value("16") "the samples in each pixel" must(&[Whole, AtLeast(1.0)])
             also_tried("samples spp") perhaps("count n");
@@ -132,21 +152,31 @@ blocks! {
             must(&[Whole, AtLeast(1.0), AtMostTwoTo(53)]) example("1_000_000");
         seed Number Value("0") "another seed gives other random samples" must(&[Whole, AtLeast(0.0), LessThanTwoTo(53)]);
     } {
-        choices(&[choice!(SAMPLER "either one says how many samples there are" per_pixel | total)])
-        together(&["per_pixel times the number of pixels is at most 2^53"])
-        also_tried("sampling samples antialiasing")
+        name: "sampler",
+        noun: "a sampler",
+        help: "where in a pixel samples are taken, and how many",
+        choices: &[Choice {
+            ways: &[names!(SAMPLER per_pixel), names!(SAMPLER total)],
+            why: "either one says how many samples there are",
+        }],
+        together: &["per_pixel times the number of pixels is at most 2^53"],
+        also_tried: "sampling samples antialiasing",
     }
 
-    Sphere SphereFields SPHERE "a" "sphere" is_object(true) "a sphere" {
+    Sphere SphereFields SPHERE {
         center Vector Required "its centre" example("(0, 1, 0)") also_tried(POSITION);
         radius Number Value("1") "its radius" must(POSITIVE) also_tried("r") perhaps("size") doubled("diameter");
         color Color Value("olive") "its colour" also_tried(COLOR);
     } {
-        parted(&[("x y z|cx cy cz", names!(SPHERE center))])
-        also_tried("ball circle globe")
+        name: "sphere",
+        noun: "a sphere",
+        is_object: true,
+        help: "a sphere",
+        parted: &[("x y z|cx cy cz", names!(SPHERE center))],
+        also_tried: "ball circle globe",
     }
 
-    Triangle TriangleFields TRIANGLE "a" "triangle" is_object(true) "a triangle, by centroid, normal and the lengths of its sides or by its vertices" {
+    Triangle TriangleFields TRIANGLE {
         centroid Vector Alternative "the mean of its vertices" example("(0, 1, 0)")
             also_tried("center centre position pos at middle location");
         normal Vector Alternative "what its plane is perpendicular to, of any length" must(&[NotZero])
@@ -160,18 +190,25 @@ blocks! {
         v2 Vector Alternative "one of its vertices, together with the two others" example("(0, 1, 0)") also_tried("c p2 vertex2");
         color Color Value("teal") "its colour" also_tried(COLOR);
     } {
-        choices(&[choice!(TRIANGLE "a triangle is given by centroid, normal and sides, or by v0, v1 and v2" centroid normal sides spin | v0 v1 v2)])
-        several(&[("vertices points corners vertex", names!(TRIANGLE v0 v1 v2))])
-        parted(&[("v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3", names!(TRIANGLE v0 v1 v2))])
-        together(&[
+        name: "triangle",
+        noun: "a triangle",
+        is_object: true,
+        help: "a triangle, by centroid, normal and the lengths of its sides or by its vertices",
+        choices: &[Choice {
+            ways: &[names!(TRIANGLE centroid normal sides spin), names!(TRIANGLE v0 v1 v2)],
+            why: "a triangle is given by centroid, normal and sides, or by v0, v1 and v2",
+        }],
+        several: &[("vertices points corners vertex", names!(TRIANGLE v0 v1 v2))],
+        parted: &[("v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3", names!(TRIANGLE v0 v1 v2))],
+        together: &[
             "the sides form a triangle: each is shorter than the two others together",
             "v0, v1 and v2 do not lie on one line",
-        ])
-        also_tried("tri sail polygon")
-        elsewhere(&[("v3 v4 v5 p3 d", "a triangle has three vertices; a second one with v0, v2 and this makes a quadrilateral of it")])
+        ],
+        also_tried: "tri sail polygon",
+        elsewhere: &[("v3 v4 v5 p3 d", "a triangle has three vertices; a second one with v0, v2 and this makes a quadrilateral of it")],
     }
 
-    Box BoxFields BOX "a" "box" is_object(true) "a box along the axes, by centre and size or by two corners" {
+    Box BoxFields BOX {
         center Vector Alternative "its centre" example("(0, 1, 0)") also_tried(POSITION);
         size Vector Value("(0.5, 1.5, 2)") "its extents along x, y and z" must(&[EachMoreThanZero])
             also_tried("sides dimensions extent");
@@ -181,36 +218,50 @@ blocks! {
         colors FaceColors Nothing "the colours of its faces across x, y and z, instead of color" example("(tan, wheat, peru)")
             also_tried("faces colours");
     } {
-        choices(&[
-            choice!(BOX "a box is given by center and size, or by min and max" center size | min max),
-            choice!(BOX "a box has one colour, or one for its faces across each axis" color | colors),
-        ])
-        parted(&[
+        name: "box",
+        noun: "a box",
+        is_object: true,
+        help: "a box along the axes, by centre and size or by two corners",
+        choices: &[
+            Choice {
+                ways: &[names!(BOX center size), names!(BOX min max)],
+                why: "a box is given by center and size, or by min and max",
+            },
+            Choice {
+                ways: &[names!(BOX color), names!(BOX colors)],
+                why: "a box has one colour, or one for its faces across each axis",
+            },
+        ],
+        parted: &[
             ("corner1 corner2|p1 p2|p0 p1|from to|lower upper|a b", names!(BOX min max)),
             ("width height depth|w h d|size_x size_y size_z", names!(BOX size)),
             ("x y z|cx cy cz", names!(BOX center)),
             ("color1 color2 color3|colour1 colour2 colour3|color_x color_y color_z", names!(BOX colors)),
-        ])
-        together(&["min < max on every axis"])
-        also_tried("cube cuboid block crate brick wall slab")
-        elsewhere(&[
+        ],
+        together: &["min < max on every axis"],
+        also_tried: "cube cuboid block crate brick wall slab",
+        elsewhere: &[
             ("width height depth x y z", "write `size (WIDTH, HEIGHT, DEPTH)`, its extents along x, y and z"),
             ("turn rotate rotation rotated roll spin angle tilt yaw pitch",
              "boxes stand along the axes; a shape that is turned is made of triangles, by v0, v1 and v2"),
-        ])
+        ],
     }
 
-    Checkerboard CheckerboardFields CHECKERBOARD "a" "checkerboard" is_object(true) "the infinite checkered floor in a horizontal plane" {
+    Checkerboard CheckerboardFields CHECKERBOARD {
         y Number Value("0") "the height of its plane" also_tried("height level");
         square Number Value("1") "the side of a square" must(POSITIVE) also_tried("side squares");
         colors Colors Value("(gray, white)") "the colours of the even and of the odd squares" also_tried("color colour colours");
     } {
-        parted(&[("color1 color2|colour1 colour2|color_a color_b|even odd", names!(CHECKERBOARD colors))])
-        also_tried("plane floor ground checker chessboard board")
-        elsewhere(&[(
+        name: "checkerboard",
+        noun: "a checkerboard",
+        is_object: true,
+        help: "the infinite checkered floor in a horizontal plane",
+        parted: &[("color1 color2|colour1 colour2|color_a color_b|even odd", names!(CHECKERBOARD colors))],
+        also_tried: "plane floor ground checker chessboard board",
+        elsewhere: &[(
             "size width depth length extent extents rows columns",
             "a checkerboard has no end, and `square` is the side of a square; a board that ends is made of boxes, such as `box for i < 8, j < 8 { center (i, 0, j)  size (1, 0.1, 1)  color (gray, white) }`",
-        )])
+        )],
     }
 }
 

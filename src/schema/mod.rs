@@ -17,9 +17,7 @@ mod types;
 pub use blocks::*;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
 pub use methods::{METHODS, Method, is_sure_method, method, method_names, nearest_method};
-pub use row_types::{
-    BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, NamedField, Preset,
-};
+pub use row_types::{BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset};
 pub use types::{FieldValue, Type, Value};
 
 use crate::suggest::{self, is_among};

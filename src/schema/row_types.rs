@@ -151,14 +151,11 @@ impl<T> FieldHandle<T> {
 }
 
 impl<T: FieldValue> FieldHandle<T> {
-    /// Returns the field's name with a reference to its value.
-    pub fn of(self, value: &mut T) -> NamedField<'_> {
-        (self.name, value)
+    /// Returns a reference to the field's value if the name is the field's.
+    pub fn of<'a>(self, name: &str, value: &'a mut T) -> Option<&'a mut dyn FieldValue> {
+        (name == self.name).then_some(value)
     }
 }
-
-/// The name of a field, and a reference to its value, whatever its type.
-pub type NamedField<'a> = (&'static str, &'a mut dyn FieldValue);
 
 /// The value of a field that is not given.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -231,29 +228,6 @@ impl fmt::Display for Condition {
 }
 
 impl BlockRow {
-    /// Returns the row of a setting without fields or other words.
-    pub(super) const fn new(
-        kind: BlockKind,
-        name: &'static str,
-        noun: &'static str,
-        help: &'static str,
-    ) -> Self {
-        Self {
-            kind,
-            name,
-            noun,
-            is_object: false,
-            help,
-            fields: &[],
-            choices: &[],
-            together: &[],
-            several: &[],
-            parted: &[],
-            also_tried: "",
-            elsewhere: &[],
-        }
-    }
-
     /// Returns the row of a field by its name.
     pub fn field(&self, name: &str) -> Option<&'static FieldRow> {
         self.fields.iter().find(|field| field.name == name)

@@ -6,10 +6,10 @@ use crate::{math::Angle, numbers};
 
 /// Makes the language's types and their values, each with a Rust type.
 ///
-/// A line gives the variant, its Rust type, the type with its article, the plural, and the help that
-/// says what to write for a value of the type.
+/// A line gives the variant with its Rust type, the type with its article, the plural, and the help
+/// that says what to write for a value of the type.
 macro_rules! types {
-    ($($variant:ident $contents:ty, $noun:literal $plural:literal $such_as:literal;)*) => {
+    ($($variant:ident($contents:ty) noun $noun:literal plural $plural:literal such_as $such_as:literal;)*) => {
         /// A type of the language.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Type {
@@ -80,13 +80,20 @@ macro_rules! types {
 }
 
 types! {
-    Number f64, "a number" "numbers" "write a number, such as `2`";
-    Angle crate::math::Angle, "an angle" "angles" "write an angle, such as `30deg`";
-    Vector glam::DVec3, "a vector" "vectors" "write three numbers, such as `(0, 1, 0)`";
-    Color crate::color::Color, "a colour" "colours" "write a colour, such as `olive` or `rgb(255, 165, 0)`";
-    Colors [crate::color::Color; 2], "a pair of colours" "pairs of colours" "write two colours, such as `(gray, white)`";
-    FaceColors [crate::color::Color; 3], "a list of three colours" "lists of three colours" "write three colours, such as `(tan, wheat, peru)`";
-    Method crate::schema::Method, "a method" "methods" "write a method, such as `jittered`";
+    Number(f64) noun "a number" plural "numbers"
+        such_as "write a number, such as `2`";
+    Angle(crate::math::Angle) noun "an angle" plural "angles"
+        such_as "write an angle, such as `30deg`";
+    Vector(glam::DVec3) noun "a vector" plural "vectors"
+        such_as "write three numbers, such as `(0, 1, 0)`";
+    Color(crate::color::Color) noun "a colour" plural "colours"
+        such_as "write a colour, such as `olive` or `rgb(255, 165, 0)`";
+    Colors([crate::color::Color; 2]) noun "a pair of colours" plural "pairs of colours"
+        such_as "write two colours, such as `(gray, white)`";
+    FaceColors([crate::color::Color; 3]) noun "a list of three colours" plural "lists of three colours"
+        such_as "write three colours, such as `(tan, wheat, peru)`";
+    Method(crate::schema::Method) noun "a method" plural "methods"
+        such_as "write a method, such as `jittered`";
 }
 
 impl Type {

@@ -91,12 +91,11 @@ fn slider<'a>(
     let range = behind.and_then(range_behind);
     let Some(literal) = Literal::of(value) else {
         let note = "a range is for a number or an angle that stands alone".to_owned();
-        let (span, limits, note) = (value.span, None, range.map(|_| note));
-        return note.is_some().then_some(Slider {
+        return range.map(|_| Slider {
             name,
-            span,
-            limits,
-            note,
+            span: value.span,
+            limits: None,
+            note: Some(note),
         });
     };
     let bounds = Bounds::of_name(analysis, name, literal.unit);
@@ -105,11 +104,10 @@ fn slider<'a>(
         Some(Err(note)) => (tried(&literal, bounds, trials), Some(note)),
         None => (tried(&literal, bounds, trials), None),
     };
-    let (span, limits) = (literal.span, Some(limits));
     Some(Slider {
         name,
-        span,
-        limits,
+        span: literal.span,
+        limits: Some(limits),
         note,
     })
 }

@@ -113,17 +113,22 @@ impl<'s> Evaluator<'_, 's> {
         };
         let (noun, count) = (list.noun(), elements.len());
         let message = format!("{noun} has {most} parts, and this has {count}");
+        let help = match &meant {
+            Some(meant) if count == 4 => {
+                format!("write `{}`: a decimal point is a point", shorten(meant))
+            }
+            Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
+            None if count > 4 => format!(
+                "{}; the language has no other lists: a block stands for each value, or `for` in its head computes them",
+                list.such_as()
+            ),
+            None => list.such_as().to_owned(),
+        };
         error("part_count", message)
-                .at(span, format!("{count} {}", part.plural()))
-                .help(match &meant {
-                    Some(meant) if count == 4 => {
-                        format!("write `{}`: a decimal point is a point", shorten(meant))
-                    }
-                    Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
-                    None if count > 4 => format!("{}; the language has no other lists: a block stands for each value, or `for` in its head computes them", list.such_as()),
-                    None => list.such_as().to_owned(),
-                })
-                .writing(span, applicability, meant).report(self.problems);
+            .at(span, format!("{count} {}", part.plural()))
+            .help(help)
+            .writing(span, applicability, meant)
+            .report(self.problems);
     }
 }
 

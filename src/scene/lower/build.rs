@@ -124,10 +124,12 @@ impl<'s> Lowering<'s> {
         if let Shape::Checkerboard(board) = shape {
             self.boards.push((board, block.place(CHECKERBOARD.square)));
         }
-        let listed = || Vec::from_iter(indices.iter().map(u32::to_string)).join(", ");
         let name = block.name.map(|name| match indices {
             [] => name.text.to_owned(),
-            _ => format!("{}[{}]", name.text, listed()),
+            _ => {
+                let indices: Vec<String> = indices.iter().map(u32::to_string).collect();
+                format!("{}[{}]", name.text, indices.join(", "))
+            }
         });
         self.objects.push(Object {
             name,

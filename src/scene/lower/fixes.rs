@@ -1,9 +1,9 @@
-//! Fixes that add or remove whole fields and blocks, and the report of fields that a block needs.
+//! Fixes that add or remove whole fields and blocks.
 
 use super::lowering::Lowering;
 use crate::{
     diagnostic::{Applicability, Edit, Fix},
-    scene::{error::error, examples::example_beside, lowered_block::LoweredBlock},
+    scene::{examples::example_beside, lowered_block::LoweredBlock},
     schema::{Choice, Preset},
     source::{SourceId, Sources, Span},
     suggest,
@@ -44,61 +44,6 @@ pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix 
 }
 
 impl Lowering<'_> {
-    /// Reports the fields that a block needs and is not given.
-    pub(super) fn missing_fields(&mut self, block: &LoweredBlock<'_>) {
-        if block.unfinished {
-            return;
-        }
-        let row = block.row;
-        let has = |name: &&str| block.given_by_name(name).is_some() || block.meant.contains(name);
-        let is_missing = |name: &&str, preset| {
-            row.field(name).is_some_and(|field| field.preset == preset) && !has(name)
-        };
-        let required = row.field_names();
-        let required = required.filter(|name| is_missing(name, Preset::Required));
-        // Each element is one way to give what is missing.
-        let mut ways: Vec<Vec<&'static str>> = vec![required.collect()];
-        for choice in row.choices {
-            let is_taken = |way: &&&[&str]| way.iter().any(has);
-            let taken = choice.ways.iter().filter(is_taken).count();
-            // Two ways that are taken exclude each other, which is reported elsewhere.
-            let open = choice
-                .ways
-                .iter()
-                .filter(|way| taken == 0 || (taken == 1 && is_taken(way)));
-            let needs = open.map(|way| {
-                let names = way.iter().copied();
-                let needed = names.filter(|name| is_missing(name, Preset::Alternative));
-                needed.collect()
-            });
-            let needs: Vec<Vec<&str>> = needs.collect();
-            if !needs.iter().any(Vec::is_empty) && !needs.is_empty() {
-                let kept = ways.iter();
-                let longer =
-                    kept.flat_map(|kept| needs.iter().map(|need| [&kept[..], need].concat()));
-                ways = longer.collect();
-            }
-        }
-        let Some(first) = ways.first().filter(|first| !first.is_empty()) else {
-            return;
-        };
-        let all: Vec<String> = ways.iter().map(|way| quoted(way)).collect();
-        let is_short = ways.iter().all(|way| way.len() == 1);
-        let or = if is_short { " or " } else { ", or " };
-        let fixes = ways.iter().filter_map(|names| {
-            let title = format!("add {}", quoted(names));
-            self.add_fields(block, title, &examples(block, names))
-        });
-        let problem = error(
-            "missing_field",
-            format!("{} needs {}", row.noun, all.join(or)),
-        )
-        .at(block.keyword, "not complete")
-        .help(format!("write `{}`", examples(block, first).join("  ")))
-        .fixes(fixes);
-        self.problems.push(problem);
-    }
-
     /// Returns a fix that adds fields with made-up values at the end of a block: on its line, or on
     /// lines of their own. Returns `None` if the block is not in the file.
     pub(super) fn add_fields(
@@ -155,7 +100,7 @@ pub(super) fn quoted(names: &[&str]) -> String {
 }
 
 /// Writes fields with values that fit those of the given fields.
-fn examples(block: &LoweredBlock<'_>, names: &[&str]) -> Vec<String> {
+pub(super) fn examples(block: &LoweredBlock<'_>, names: &[&str]) -> Vec<String> {
     let rows = names.iter().filter_map(|name| block.row.field(name));
     rows.map(|row| {
         let value = example_beside(row, &|other| block.given_by_name(other)?.value);

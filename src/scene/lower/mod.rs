@@ -11,6 +11,7 @@ mod field_value;
 mod fixes;
 mod items;
 mod lowering;
+mod missing;
 mod read;
 mod repetition;
 mod suggestions;

@@ -6,7 +6,7 @@ use crate::{
     color::Color,
     numbers::short,
     scene::lowered_block::LoweredBlock,
-    schema::{CHECKERBOARD, CheckerboardFields, NamedField},
+    schema::{CHECKERBOARD, CheckerboardFields, FieldValue},
 };
 
 /// The infinite checkerboard in a horizontal plane.
@@ -30,12 +30,10 @@ impl Checkerboard {
         })
     }
 
-    pub(super) fn fields(&mut self) -> Vec<NamedField<'_>> {
-        vec![
-            CHECKERBOARD.y.of(&mut self.y),
-            CHECKERBOARD.square.of(&mut self.square),
-            CHECKERBOARD.colors.of(&mut self.colors),
-        ]
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        let field = CHECKERBOARD.y.of(name, &mut self.y);
+        let field = field.or(CHECKERBOARD.square.of(name, &mut self.square));
+        field.or(CHECKERBOARD.colors.of(name, &mut self.colors))
     }
 
     pub(super) fn is_possible(&self) -> bool {

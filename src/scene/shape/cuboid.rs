@@ -8,7 +8,7 @@ use crate::{
     math::predicates,
     numbers::{self, short_vector},
     scene::{error::error, lowered_block::LoweredBlock},
-    schema::{BOX, BoxFields, NamedField},
+    schema::{BOX, BoxFields, FieldValue},
 };
 
 /// A closed, axis-aligned box.
@@ -87,12 +87,13 @@ impl Cuboid {
         true
     }
 
-    pub(super) fn fields(&mut self) -> Vec<NamedField<'_>> {
-        let color = match &mut self.faces {
-            Some(faces) => BOX.colors.of(faces),
-            None => BOX.color.of(&mut self.color),
-        };
-        vec![BOX.min.of(&mut self.min), BOX.max.of(&mut self.max), color]
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        let field = BOX.min.of(name, &mut self.min);
+        let field = field.or(BOX.max.of(name, &mut self.max));
+        field.or(match &mut self.faces {
+            Some(faces) => BOX.colors.of(name, faces),
+            None => BOX.color.of(name, &mut self.color),
+        })
     }
 
     pub(super) fn is_possible(&self) -> bool {

@@ -23,7 +23,7 @@ use super::lowered_block::LoweredBlock;
 use crate::{
     color::Color,
     diagnostic::Problems,
-    schema::{self, BlockKind, NamedField, TRIANGLE, Value},
+    schema::{self, BlockKind, FieldValue, TRIANGLE, Value},
 };
 
 /// A shape with its colours. Lengths are in metres.
@@ -128,10 +128,10 @@ impl Shape {
         for_each_kind!(self, own => own.greatest_length(from))
     }
 
-    /// Returns the fields that the shape is written with. Those of a box are its corners, and not
-    /// the centre and the size that are derived from the corners.
-    pub(super) fn fields(&mut self) -> Vec<NamedField<'_>> {
-        for_each_kind!(self, own => own.fields())
+    /// Returns a field that the shape is written with, by its name. Those of a box are its corners,
+    /// and not the centre and the size that are derived from the corners.
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        for_each_kind!(self, own => own.field_mut(name))
     }
 
     /// Whether the language's conditions hold, as far as rounded numbers tell.
@@ -162,8 +162,11 @@ impl Shape {
                 (TRIANGLE.color.name, json(Value::Color(triangle.color))),
             ],
             mut shape @ (Self::Sphere(_) | Self::Box(_) | Self::Checkerboard(_)) => {
-                let fields = shape.fields().into_iter();
-                let facts = fields.map(|(name, field)| (name, json(field.value())));
+                let names = schema::of_kind(self.block_kind()).field_names();
+                let facts = names.filter_map(|name| {
+                    let field = shape.field_mut(name)?;
+                    Some((name, json(field.value())))
+                });
                 facts.collect()
             }
         }

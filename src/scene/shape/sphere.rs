@@ -6,7 +6,7 @@ use crate::{
     color::Color,
     numbers::{short, short_vector},
     scene::lowered_block::LoweredBlock,
-    schema::{NamedField, SPHERE, SphereFields},
+    schema::{FieldValue, SPHERE, SphereFields},
 };
 
 /// A sphere.
@@ -34,12 +34,10 @@ impl Sphere {
         })
     }
 
-    pub(super) fn fields(&mut self) -> Vec<NamedField<'_>> {
-        vec![
-            SPHERE.center.of(&mut self.center),
-            SPHERE.radius.of(&mut self.radius),
-            SPHERE.color.of(&mut self.color),
-        ]
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        let field = SPHERE.center.of(name, &mut self.center);
+        let field = field.or(SPHERE.radius.of(name, &mut self.radius));
+        field.or(SPHERE.color.of(name, &mut self.color))
     }
 
     pub(super) fn is_possible(&self) -> bool {

@@ -8,7 +8,7 @@ use crate::{
     math::{Angle, predicates},
     numbers::{self, short, short_vector},
     scene::{error::error, lowered_block::LoweredBlock},
-    schema::{NamedField, TRIANGLE, TriangleFields},
+    schema::{FieldValue, TRIANGLE, TriangleFields},
 };
 
 /// A triangle.
@@ -91,20 +91,22 @@ impl Triangle {
         })
     }
 
-    pub(super) fn fields(&mut self) -> Vec<NamedField<'_>> {
-        let mut fields = match &mut self.outline {
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        let field = TRIANGLE.color.of(name, &mut self.color);
+        match &mut self.outline {
             TriangleOutline::Vertices([v0, v1, v2]) => {
-                vec![TRIANGLE.v0.of(v0), TRIANGLE.v1.of(v1), TRIANGLE.v2.of(v2)]
+                let field = field.or(TRIANGLE.v0.of(name, v0));
+                field
+                    .or(TRIANGLE.v1.of(name, v1))
+                    .or(TRIANGLE.v2.of(name, v2))
             }
-            TriangleOutline::Centered(own) => vec![
-                TRIANGLE.centroid.of(&mut own.centroid),
-                TRIANGLE.normal.of(&mut own.normal),
-                TRIANGLE.sides.of(&mut own.sides),
-                TRIANGLE.spin.of(&mut own.spin),
-            ],
-        };
-        fields.push(TRIANGLE.color.of(&mut self.color));
-        fields
+            TriangleOutline::Centered(own) => {
+                let field = field.or(TRIANGLE.centroid.of(name, &mut own.centroid));
+                let field = field.or(TRIANGLE.normal.of(name, &mut own.normal));
+                let field = field.or(TRIANGLE.sides.of(name, &mut own.sides));
+                field.or(TRIANGLE.spin.of(name, &mut own.spin))
+            }
+        }
     }
 
     pub(super) fn is_possible(&self) -> bool {
