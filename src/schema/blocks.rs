@@ -1,15 +1,88 @@
 //! The table of blocks and their fields.
 
+use std::marker::PhantomData;
+
 use super::{
-    row_types::{BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset},
-    types::{Type, contents},
+    row_types::{Choice, Condition, FieldRow, Preset},
+    types::{FieldValue, Type, contents},
 };
 use Condition::{
     AtLeast, AtMostTwoTo, EachMoreThanZero, LessThanHalfTurn, LessThanTwoTo, MoreThan,
 };
 use Condition::{NotZero, Whole};
 
-/// Makes the rows of all kinds of blocks, and a handle for each field.
+/// The table's row for a kind of block.
+#[derive(Debug)]
+pub struct BlockRow {
+    /// The kind.
+    pub kind: BlockKind,
+    /// The keyword that the block starts with.
+    pub name: &'static str,
+    /// The keyword with its article, for messages.
+    pub noun: &'static str,
+    /// Whether the block describes an object: a scene may have many, and each may have a name.
+    pub is_object: bool,
+    /// One line of help.
+    pub help: &'static str,
+    /// The fields.
+    pub fields: &'static [FieldRow],
+    /// Groups of fields that say the same in several ways.
+    pub choices: &'static [Choice],
+    /// Conditions between fields, written with the fields' names.
+    pub together: &'static [&'static str],
+    /// Words that people try for several of the fields at once, with a list of the fields' values,
+    /// and these fields.
+    pub several: &'static [(&'static str, &'static [&'static str])],
+    /// Sets of words that people try together for the parts of one field, or for one field each.
+    ///
+    /// The words of a set are separated by blanks, and sets by `|`. The second part names the one
+    /// field whose parts the words stand for, or as many fields as there are words.
+    pub parted: &'static [(&'static str, &'static [&'static str])],
+    /// Other words that people try for the keyword.
+    pub also_tried: &'static str,
+    /// Words of other programs that no field stands for, each with what to write instead.
+    pub elsewhere: &'static [(&'static str, &'static str)],
+    /// Lists of fields that values without names stand for, at the start of the block.
+    pub nameless: &'static [&'static [&'static str]],
+    /// The fields that an editor writes for a new object. It replaces `{at}` by a free place,
+    /// `{across}` by the direction from there towards the camera, `{size}` by half the extent there
+    /// is room for, `{twice}` by the whole, and `{below}` by a height below everything.
+    pub added: &'static str,
+}
+
+/// A field of one kind of block whose values are of the Rust type `T`.
+///
+/// Code names a field by such a constant, so that a misspelt name does not compile.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldHandle<T> {
+    /// The field's name.
+    pub name: &'static str,
+    /// The kind of block that has the field.
+    pub kind: BlockKind,
+    /// The index of the field's row among those of its block.
+    pub index: usize,
+    values: PhantomData<T>,
+}
+
+impl<T> FieldHandle<T> {
+    pub(super) const fn new(name: &'static str, kind: BlockKind, index: usize) -> Self {
+        Self {
+            name,
+            kind,
+            index,
+            values: PhantomData,
+        }
+    }
+}
+
+impl<T: FieldValue> FieldHandle<T> {
+    /// Returns a reference to the field's value if the name is the field's.
+    pub fn of<'a>(self, name: &str, value: &'a mut T) -> Option<&'a mut dyn FieldValue> {
+        (name == self.name).then_some(value)
+    }
+}
+
+/// Makes the kinds of blocks, their rows, and a handle for each field.
 ///
 /// The head of a block gives its kind, and the type and the name of its handles. A line in the
 /// first braces gives a field's name, type, preset and help; then any other columns of its row. The
@@ -20,6 +93,12 @@ macro_rules! blocks {
     } {
         $($column:ident: $content:expr,)*
     })*) => {
+        /// A kind of block.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum BlockKind {
+            $(#[doc = concat!("The kind of [`", stringify!($constant), "`].")] $kind,)*
+        }
+
         $(#[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
         #[derive(Clone, Copy, Debug)]
         pub struct $handles {
@@ -37,12 +116,7 @@ macro_rules! blocks {
                     Index::$field as usize,
                 ),)*
             }
-        };
-
-        const _: () = assert!(
-            BLOCKS[BlockKind::$kind as usize].kind as usize == BlockKind::$kind as usize,
-            "rows stand in the order of their kinds"
-        );)*
+        };)*
 
         /// The rows of all kinds of blocks, in the order of [`BlockKind`].
         #[allow(clippy::needless_update, reason = "a row may have all columns")]
@@ -77,6 +151,8 @@ const BLOCK: BlockRow = BlockRow {
     parted: &[],
     also_tried: "",
     elsewhere: &[],
+    nameless: &[],
+    added: "",
 };
 
 /// Returns the names of fields of a block, by their handles.
@@ -173,6 +249,8 @@ blocks! {
         is_object: true,
         help: "a sphere",
         parted: &[("x y z|cx cy cz", names!(SPHERE center))],
+        nameless: &[names!(SPHERE center), names!(SPHERE center radius)],
+        added: "center {at}  radius {size}",
         also_tried: "ball circle globe",
     }
 
@@ -199,6 +277,7 @@ blocks! {
             why: "a triangle is given by centroid, normal and sides, or by v0, v1 and v2",
         }],
         several: &[("vertices points corners vertex", names!(TRIANGLE v0 v1 v2))],
+        added: "centroid {at}  normal {across}  sides ({twice}, {twice}, {size})",
         parted: &[("v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3", names!(TRIANGLE v0 v1 v2))],
         together: &[
             "the sides form a triangle: each is shorter than the two others together",
@@ -238,6 +317,8 @@ blocks! {
             ("x y z|cx cy cz", names!(BOX center)),
             ("color1 color2 color3|colour1 colour2 colour3|color_x color_y color_z", names!(BOX colors)),
         ],
+        nameless: &[names!(BOX min max)],
+        added: "center {at}  size ({twice}, {twice}, {twice})",
         together: &["min < max on every axis"],
         also_tried: "cube cuboid block crate brick wall slab",
         elsewhere: &[
@@ -256,6 +337,7 @@ blocks! {
         noun: "a checkerboard",
         is_object: true,
         help: "the infinite checkered floor in a horizontal plane",
+        added: "y {below}",
         parted: &[("color1 color2|colour1 colour2|color_a color_b|even odd", names!(CHECKERBOARD colors))],
         also_tried: "plane floor ground checker chessboard board",
         elsewhere: &[(
@@ -276,3 +358,6 @@ const POSITION: &str = "position pos at centroid middle location";
 
 /// Words that people try for the colour of an object.
 const COLOR: &str = "fill material";
+
+/// Shapes of other programs that can be built of triangles.
+pub const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";

@@ -4,7 +4,7 @@
 use std::{
     io,
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, MutexGuard, atomic::AtomicBool},
+    sync::{Arc, atomic::AtomicBool},
 };
 
 use super::draft::{Drafts, Read, Unsaved};
@@ -34,12 +34,6 @@ pub struct SceneFile {
     drafts: Drafts,
     /// New scenes in the same folder that pages have saved, and may save again.
     beside: Vec<PathBuf>,
-}
-
-/// Locks the file that pages share. A lock that a panic has poisoned can still be used, since no
-/// change is left half done.
-pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
-    crate::lock::lock(file)
 }
 
 /// Error: a text was not saved.

@@ -16,9 +16,6 @@ use crate::{
     syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
 
-/// Shapes of other programs that can be built of triangles.
-const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";
-
 impl<'s> Lowering<'s> {
     /// Lowers the next items of the file.
     pub(super) fn items(&mut self, items: &[Item<'s>]) {
@@ -207,7 +204,10 @@ impl<'s> Lowering<'s> {
                     kind.text
                 )
             }
-            None if OTHER_SHAPES.split(' ').any(|shape| shape == kind.text) => {
+            None if schema::OTHER_SHAPES
+                .split(' ')
+                .any(|shape| shape == kind.text) =>
+            {
                 format!("the kinds are {kinds}; other shapes are made of triangles")
             }
             None => format!("the kinds are {kinds}"),
@@ -436,7 +436,7 @@ mod tests {
 
     #[test]
     fn shapes_of_other_programs_are_no_kinds_of_blocks() {
-        for shape in OTHER_SHAPES.split(' ') {
+        for shape in schema::OTHER_SHAPES.split(' ') {
             assert!(schema::nearest_block(shape).is_none(), "{shape}");
         }
     }

@@ -94,6 +94,14 @@ impl Shape {
         }
     }
 
+    /// Returns the contents of a box; `None` for any other shape.
+    pub fn cuboid(&self) -> Option<&Cuboid> {
+        match self {
+            Self::Box(cuboid) => Some(cuboid),
+            Self::Sphere(_) | Self::Triangle(_) | Self::Checkerboard(_) => None,
+        }
+    }
+
     /// Returns the middle of the shape; `None` if it has no end.
     pub fn center(&self) -> Option<DVec3> {
         self.bounding_sphere().map(|(center, _)| center)
