@@ -50,7 +50,7 @@ pub enum Track<'a> {
 
 /// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions of x:
 ///
-///     y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − C·g, g = Ax² + 2Dx + F
+/// y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − C·g, g = Ax² + 2Dx + F
 #[derive(Clone, Copy, Debug)]
 pub struct ConicGraph {
     factors: [Double; 6],

@@ -38,7 +38,7 @@ const CHUNK: usize = 64;
 /// The series X along an edge, where t is the coordinate along the edge, m the depth, and A_k are
 /// the periodic Euler polynomials ([`waves`]):
 ///
-///     X = Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … `terms`
+/// X = Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … `terms`
 pub(super) struct EdgeSeries {
     pub terms: usize,
     pub factors: [f64; MAX_TERMS + 1],

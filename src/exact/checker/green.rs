@@ -142,11 +142,11 @@ pub(super) fn sum(
 /// |∂m/∂a| and |∂m/∂b|, and m the smallest depth. The integral of the error is at most the
 /// polygon's area in the picture times
 ///
-///     ½π^(1−n)·(n+2)!/2·(p/m)^n
+/// ½π^(1−n)·(n+2)!/2·(p/m)^n
 ///
 /// The truncation errors of Ψ and X on an edge have an integral of at most
 ///
-///     n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|
+/// n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|
 ///
 /// Here g is the larger of two slopes of m, the one along the edge and the one along its coordinate
 /// t. The integral ∫ J |dt| is at most J·min(|Δt|, m/2γ), with J at the near end.

@@ -276,12 +276,12 @@ fn at_step(terms: &Expansion, step: f64) -> Complex {
 /// (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) give the differential
 /// equation
 ///
-///     y·F_s′ = (s − 1 − iy)·F_s − 1
+/// y·F_s′ = (s − 1 − iy)·F_s − 1
 ///
 /// The coefficients c_k about y therefore satisfy a recurrence, from whose right side 1 is
 /// subtracted if k = 0:
 ///
-///     (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1
+/// (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1
 fn expansions() -> Vec<Expansion> {
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
     let mut value = asymptotic(LARGE);
@@ -319,7 +319,7 @@ fn power_series(y: f64) -> Complex {
 
 /// Computes F_1(y) for |y| < `SMALL` (DLMF 6.6.2) from
 ///
-///     E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!)
+/// E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!)
 ///
 /// At y = 0, F_1 has a logarithmic pole. The function returns 0 there, because the caller needs
 /// only y·F_1, whose limit is 0.

@@ -152,7 +152,7 @@ fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Optio
 /// Returns the Fourier mode `n` of the first terms of X, from the terms' amplitudes and from the
 /// sums
 ///
-///     Σ_j e^(iπnt + iθj)·(w + j)^(−s)
+/// Σ_j e^(iπnt + iθj)·(w + j)^(−s)
 fn mode(n: f64, amplitudes: &[f64; MODE_TERMS], sums: [Complex; MODE_TERMS]) -> f64 {
     let per_mode = 1.0 / n;
     let cube = per_mode * per_mode * per_mode;
