@@ -248,7 +248,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         self.objects[at].get_or_init(|| {
             self.charge_big_curve();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
-            // With more candidates than slots, the cache rarely holds the prepared object.
+            // With more candidates than slots, the cache cannot keep all prepared objects.
             if self.candidates.len() > CACHE_SLOTS && matches!(*object, Object::Convex(_)) {
                 self.budget.charge(PREPARATION_WORK);
             }

@@ -131,7 +131,6 @@ fn series(z: f64) -> f64 {
 
 impl Homography {
     /// Integrates the board's sign s(a)·s(b) over the region between an arc and its chord, in
-    /// Integrates the board's sign s(a)·s(b) over the region between an arc and its chord, in
     /// square pixels.
     ///
     /// The arc is cut where it crosses a line of the board, so that the segment of each piece lies

@@ -282,7 +282,6 @@ impl Sphere<f64> {
     /// The factors of Q consist of the same products as Q, and the rectangle lies within the
     /// window. Q's error bound therefore counts eight times: once for the value at the centre,
     /// twice for each of the two gradients, and once for each of the three second derivatives.
-    /// the two gradients, and once for each of the three second derivatives: eight times.
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;

@@ -61,7 +61,7 @@ impl SceneGenerator {
                 DVec3::splat(size.x),
                 self.within(0.0, 360.0),
             ),
-            // A triangle in a plane that contains the eye, about parallel to the rays.
+            // A triangle in a plane that contains the eye, and that is about parallel to the rays.
             2 => triangle(
                 eye + dvec3(1.0, 0.0, -2.0),
                 dvec3(0.0, 1.0, 0.0),
@@ -149,8 +149,8 @@ fn the_quadtree_changes_nothing() {
         let scene = random.scene(3 + seed as usize * 4);
         let world = World::new(&scene);
         let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
-        // Points at the ends of the bounds, within the last bits of their coordinates, are tested
-        // as well.
+        // The samples include points on the edges of the bounds, within the last bits of their
+        // coordinates.
         for Extent { across, .. } in extents(&world, &scene).into_iter().flatten() {
             for _ in 0..2 {
                 let [x, y] = across.map(|range| match random.below(3) {

@@ -95,8 +95,7 @@ fn what_a_wall_hides_is_not_found() {
         assert!(all_within(whole, usize::MAX, &mut found));
         assert_eq!(found.len() == 1, behind);
         assert!(behind || found.len() == 1001, "{}", found.len());
-        // Behind the wall, nothing is found either in parts where several cells of the quadtree
-        // list the wall.
+        // Where several cells of the quadtree list the wall, nothing is found behind it, either.
         for part in whole.tiles(7) {
             assert!(all_within(part, usize::MAX, &mut found));
             assert!(found.len() == 1 || !behind, "{part:?}");

@@ -365,8 +365,9 @@ impl World {
         Ok(true)
     }
 
-    /// Returns the nearer of an object's two crossings that lies between the near and the far
-    /// plane, and whether this is the second crossing. Returns `None` if neither lies there.
+    /// Returns the nearest crossing with an object between the near and the far plane, and whether
+    /// it is the object's second crossing. `first` is its first crossing. Returns `None` if neither
+    /// crossing lies between the planes.
     #[inline]
     fn clip<T: Precision>(
         &self,
