@@ -57,6 +57,7 @@ impl Threads {
     /// current threads if their number is right, or if the system cannot start others.
     ///
     /// # Errors
+    ///
     /// Not even the calling thread can be used.
     pub(crate) fn new(threads: Option<NonZero<usize>>) -> Result<Self, NoThreads> {
         let wanted = threads.map_or_else(available, |threads| threads.get().min(MAX_THREADS));

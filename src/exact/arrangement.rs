@@ -22,9 +22,9 @@ use super::{
 /// of this area has sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
 const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Upper bound on the area of a cell, in square pixels, divided by n·|h|, where n is the number of
-/// vertices and h the value of a line's form at the cell's centre. A cell of larger area certainly
-/// has its centre on the correct side of a line whose error is |h|.
+/// Constant k of the bound area ≤ k·n·|h| for a cell of n vertices, where the area is in square
+/// pixels and h is the value of a line's form at the cell's centre. A larger cell certainly has its
+/// centre on the correct side of a line whose error is |h|.
 ///
 /// Derivation: the line does not cut the cell, so the form has the same sign at all vertices, and
 /// is at most n·|h| there. Each vertex is at most 2n·|h| from the line, because the larger factor

@@ -26,11 +26,11 @@ const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 const PAIR_WORK: f64 = 1.0 / 16.0;
 /// Work charged per object or pair of objects whose curves are computed, in units of about 50 ns.
 const CURVES_WORK: f64 = 8.0;
-/// Work charged to prepare a triangle or cuboid when the candidates outnumber the cache's slots, in
-/// units of about 50 ns.
+/// Work charged to prepare a triangle or cuboid, in units of about 50 ns. It is charged only if the
+/// candidates outnumber the cache's slots, because the cache then cannot keep all prepared objects.
 const PREPARATION_WORK: f64 = 140.0;
-/// Work charged in addition, in the highest precision, per object and per pair of surfaces, in
-/// units of about 50 ns.
+/// Additional work charged per object, and per pair of surfaces, whose curves are computed in the
+/// highest precision, in units of about 50 ns.
 const BIG_CURVE_WORK: f64 = 1500.0;
 
 /// Source of boundary curves: an object or a pair of objects, as indices into the candidates.
@@ -101,8 +101,8 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // `room` exceeds this only if more than `max_curves` curves are left after merging equal
-        // ones.
+        // `room` exceeds `2 * max_curves` only if more than `max_curves` curves are left after
+        // merging equal curves.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }

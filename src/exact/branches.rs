@@ -20,7 +20,7 @@ use super::conic_segment::Arc;
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
 /// Maximum |dy/dx| of a line that is treated as a function y(x); above it, the line counts as
-/// vertical. Its x then changes by less than eight unit roundoffs across the pixel.
+/// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
 /// Distance in y from the pixel beyond which a branch is ignored, divided by the branch's largest
@@ -184,8 +184,8 @@ impl<'a> ConicSpan<'a> {
         if !y[1].is_finite() {
             return None;
         }
-        // A function with curvature of one sign is at most twice as far from its chord anywhere as
-        // in the middle.
+        // If the curvature has one sign, the distance from the chord is nowhere more than twice the
+        // distance in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -204,8 +204,8 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // A branch without an arc may be too flat to distinguish its tangents; it is then
-            // straight. Each y has six operations, and the mean of two y has two.
+            // A branch without an arc may be too flat to distinguish its tangents; its section is
+            // then straight. Each y has six operations, and the mean of two y has two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -230,6 +230,7 @@ impl<'a> ConicSpan<'a> {
         });
         let mut tangents = Tangents::new(&factors, &rounded);
         // If the conic is almost a line, its gradient in `f64` is hardly more than rounding error.
+        // The tangents are then computed again in double-double.
         let is_good = tangents.off <= ARC_TOLERANCE * (end.x - start.x);
         if !is_good {
             let ends = ends.map(|at| graph.end_in_double(at.x, side));
@@ -250,8 +251,8 @@ impl<'a> ConicSpan<'a> {
     }
 }
 
-/// A point of a conic with √Δ there, which has the sign of the branch and is half of the derivative
-/// of the conic's form by y.
+/// A point of a conic, with √Δ there. √Δ has the sign of the branch, and is half of the derivative
+/// of the conic's form with respect to y.
 struct ArcEnd<T> {
     at: [T; 2],
     root: T,
@@ -297,8 +298,8 @@ impl Tangents {
             1.0 + terms / length(&gradients[i])
         });
         let kappa = kappa[0].max(kappa[1]);
-        // Returns Q at the vector `v` and its relative error in roundings, given an error of `v` of
-        // `off` roundings.
+        // Returns the conic's quadratic part Q at the vector `v`, and its relative error in
+        // roundings. `v` has an error of `off` roundings.
         let quadratic = |v: &[T; 2], off: f64| {
             let half = [
                 product(&[a.clone(), b.clone()], v),
@@ -372,7 +373,7 @@ impl Section {
     /// Returns an upper bound of the section's y at `x` if `up` is 1, and a lower bound if `up` is
     /// −1. On the side to which the arc bulges, the bound follows the two tangents; on the other
     /// side, it follows the chord. The section's error is included. `x` must be `left`, `right`, or
-    /// the x of a control point, because the sections' differences are only compared there.
+    /// the x of a control point.
     fn hull(&self, up: f64, x: f64, left: f64, right: f64) -> f64 {
         let chord = |a: DVec2, b: DVec2| {
             if b.x > a.x {

@@ -79,7 +79,7 @@ impl Arc {
     }
 
     /// Evaluates the curve's polar form (blossom) at the parameters `s` and `t`. Returns the point
-    /// in homogeneous coordinates: times its weight, and the weight.
+    /// in homogeneous coordinates: the point times its weight, and the weight.
     fn blossom(&self, s: f64, t: f64) -> (DVec2, f64) {
         let (first, last) = ((1.0 - s) * (1.0 - t), s * t);
         let middle = self.weight * (s * (1.0 - t) + t * (1.0 - s));
@@ -122,7 +122,7 @@ fn series(z: f64) -> f64 {
         }
         all
     };
-    // Because |z| < 2^−`bits`, the terms after these add up to less than a rounding.
+    // Because |z| < 2^−`bits`, the terms after the first `terms` add up to less than a rounding.
     let bits = (-1 - libm::ilogb(z)).max(1);
     let terms = (f64::MANTISSA_DIGITS as usize / bits as usize + 1).min(TERMS);
     let terms = COEFFICIENTS[..terms].iter().rev();
@@ -174,7 +174,8 @@ impl Homography {
         }
         let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
         let areas = halves.map(|half| half.area());
-        // The comparison fails if numbers are too large or too small to represent the arc.
+        // The comparison fails if numbers are too large or too small to represent the arc, which is
+        // then not halved.
         let is_halved = areas[0] + areas[1] < MAX_HALVES_SHARE * area;
         if !is_halved {
             chords.sum.bound += if area.is_nan() { 1.0 } else { area };
@@ -211,7 +212,7 @@ impl Homography {
                     .across
                     .map(|across| square_wave(form(&across, middle) * depth));
                 let mut segment = over_one_square(piece.area(), a * b);
-                // The lines of the board are displaced by roundings.
+                // Rounding errors displace the lines of the board.
                 segment.bound += self.displacement_error(&[piece.start, piece.control, piece.end]);
                 chords.sum.add(segment);
                 chords.points.push(piece.end);

@@ -77,8 +77,8 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// 24 as with 6, and seven times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves grows with each quartering. Curves that pass
-/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap: 1
-/// takes two thirds of the time, and 16 takes four times as long.
+/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap:
+/// with 1 instead of 4, the time is two thirds; with 16, it is four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed piece is quartered to reduce its
 /// bound. The piece with the largest bound comes first, while the pixel's bound exceeds the
@@ -115,7 +115,7 @@ pub struct ExactPixel<const N: usize = 3> {
     pub bound: f64,
 }
 
-/// Computes the exact pixels of a picture.
+/// Integrator that computes the exact pixels of a picture.
 #[derive(Debug)]
 pub struct Integrator<'a, const N: usize = 3> {
     world: &'a World,
@@ -245,7 +245,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // `Quartering::new` sets no limit on candidates.
+                // `Quartering::new` sets no limit on candidates, so that no part is crowded.
                 PicturePart::Crowded { .. } => {
                     unreachable!("every part of an exact picture is quartered")
                 }

@@ -103,7 +103,7 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         }
         let Some(at) = self.board(object) else {
-            // Only boards have two colours.
+            // This cannot happen, because only boards have two colours.
             self.add_doubtful_area(region.area);
             return self.shares.add(first, region.area);
         };

@@ -14,9 +14,10 @@ use super::{
 };
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
-/// Maximum number of lines of one family that cross a pixel; a pixel with more is returned without
-/// an integral. There is a batch for each pair of numbers of lines, and few pixels have more lines.
-/// Not critical: with 8 or 128, the measured running time changes by at most about 10 %.
+/// Maximum number of lines of one of the board's two families that cross a pixel; a pixel with more
+/// is returned without an integral. There is a batch for each pair of numbers of lines, and few
+/// pixels have more lines. Not critical: with 8 or 128, the measured running time changes by at
+/// most about 10 %.
 const MAX_LINES: usize = 32;
 
 /// A pixel that shows only a checkerboard.
@@ -30,14 +31,15 @@ pub(in crate::exact) struct BoardPixel {
     pub candidate: VisibilityCandidate,
 }
 
-/// Queues of pixels, one for each pair of numbers of lines of the two families.
+/// Queues of checkerboard pixels. In one queue, all pixels are crossed by the same numbers of lines
+/// of the board's two families.
 #[derive(Debug)]
 pub(in crate::exact) struct BoardBatches {
     batches: Vec<Batch>,
     buffer: StripBuffer,
 }
 
-/// A queue of pixels that are crossed by the same numbers of lines.
+/// A queue of pixels that are crossed by the same numbers of lines of the board's two families.
 #[derive(Debug, Default)]
 struct Batch {
     /// The pixels, fewer than [`PIXELS`] between calls.

@@ -15,9 +15,10 @@ use multiversion::multiversion;
 
 /// Maximum number of terms of the series X ([`EdgeSeries`]). The omitted terms count as an error.
 pub(super) const MAX_TERMS: usize = 20;
-/// Upper limit on the number of blocks of a sum; each block may have the tolerance divided by this
-/// as its truncation error. The depth m grows by half over a block, so that after 15 blocks, a
-/// block has `MAX_BLOCK` crossings. The longest sum, 300,000 crossings, has 74 such blocks.
+/// Upper limit on the number of blocks of a sum. The truncation error of a block is limited to the
+/// tolerance divided by this number. The depth m grows by half over a block, so that after 15
+/// blocks, a block has `MAX_BLOCK` crossings. The longest sum, 300,000 crossings, has 74 such
+/// blocks.
 const MAX_BLOCKS: f64 = 128.0;
 
 /// Minimum number of crossings in a block of a sum. With this many, choosing the block's number of

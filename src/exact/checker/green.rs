@@ -138,15 +138,15 @@ pub(super) fn sum(
 /// and a bound on the error. If no number of terms is enough, returns the one with the smallest
 /// bound.
 ///
-/// The truncation error of P follows from |A_k| ≤ ½π^(1−k). Let p be the larger of the slopes
-/// |∂m/∂a| and |∂m/∂b|, and m the smallest depth. The integral of the error is at most the
-/// polygon's area in the picture times
+/// The module's documentation defines P, Ψ, X and γ. The truncation error of P follows from
+/// |A_k| ≤ ½π^(1−k). Let p be the larger of the slopes |∂m/∂a| and |∂m/∂b|, and m the smallest depth.
+/// The integral of the error is at most the polygon's area in the picture times
 ///
-/// ½π^(1−n)·(n+2)!/2·(p/m)^n
+/// ½π^(1−n)·(n+2)!/2·(p/m)^n.
 ///
 /// The truncation errors of Ψ and X on an edge have an integral of at most
 ///
-/// n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|
+/// n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|.
 ///
 /// Here g is the larger of two slopes of m, the one along the edge and the one along its coordinate
 /// t. The integral ∫ J |dt| is at most J·min(|Δt|, m/2γ), with J at the near end.
@@ -223,9 +223,9 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
-/// An edge of a polygon, directed from its near end to its far end. Of the floor's two coordinates,
-/// t is the one that changes more along the edge, and c is the other. The edge crosses lines of
-/// constant c.
+/// An edge of a polygon, directed from its near end to its far end. Of the two coordinates (a, b)
+/// on the board's plane, t is the one that changes more along the edge, and c is the other. The sum
+/// over the edge's crossings runs over the lines of constant c.
 struct Edge {
     /// Sign of the integral ρ·∫ s(c) dX in the polygon's sum: +1 if the boundary runs from the near
     /// to the far end and t is b, or if neither holds; otherwise −1.
@@ -312,8 +312,9 @@ impl Edge {
         })
     }
 
-    /// Computes ρ·∫ s(c) dX from the near to the far end. `tolerance` limits the truncation error
-    /// of the sum over crossings.
+    /// Computes the edge's contribution ρ·∫ s(c) dX to the polygon's integral, with the square wave
+    /// s and the series X, from the near to the far end. `tolerance` limits the truncation error of
+    /// the sum over crossings.
     fn integral(
         &self,
         board: &Homography,

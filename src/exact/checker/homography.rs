@@ -131,8 +131,8 @@ pub(in crate::exact) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
 }
 
-/// Returns an upper bound of the sum of the absolute values of a form's terms x·X, y·Y and z in a
-/// pixel, where |X| and |Y| are at most ½.
+/// Returns an upper bound of |c0·x| + |c1·y| + |c2| for the points (x, y) of a pixel, where |x| and
+/// |y| are at most ½. The parameter has the factors c0, c1 and c2 of a linear form.
 pub(in crate::exact) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }

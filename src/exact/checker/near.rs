@@ -17,10 +17,10 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// Maximum number of corners that the rest of a polygon may have in addition to those of the
-/// polygon before any cut. Above it, the area of the rest is added to the error bound, and cutting
-/// ends. With exact cuts, the rest has at most two corners more, both on the last line. Many more
-/// show that the lines are closer to each other than rounding errors.
+/// Maximum number of corners that cutting may add to the rest of a polygon, the part that is not
+/// yet cut off. Above it, the area of the rest is added to the error bound, and cutting ends. Exact
+/// cuts add at most two corners, both on the last line. Many more show that the lines are closer to
+/// each other than rounding errors.
 const MAX_EXTRA_CORNERS: usize = 32;
 
 /// Maximum coordinate, in squares, of a polygon that is cut; beyond it, the integral is unknown. Up
@@ -69,7 +69,7 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
 }
 
 /// Cuts a convex polygon into the strips between neighbouring lines of one family, one strip after
-/// another.
+/// another. `rest` is the part that is not yet cut off.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],
@@ -79,7 +79,7 @@ struct Cutter {
     /// Numbers of the next strip and of the last one; `None` if the polygon is empty or a
     /// coordinate is not below [`MAX_SQUARE`].
     strips: Option<(i64, i64)>,
-    /// Maximum number of corners of a rest that is cut.
+    /// Maximum number of corners of the rest; above it, the rest is not cut any further.
     too_many: usize,
 }
 

@@ -183,19 +183,22 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
     all
 }
 
-/// Order s of the first exponential integral F_s that is computed, F_3.
+/// Order s of the first exponential integral F_s ([`integrals`]) that is computed, F_3.
 const ORDER: u32 = 3;
 
-/// Value of |y| below which F_3(y) is computed by the power series.
+/// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the
+/// power series.
 const SMALL: f64 = 3.0;
-/// Value of |y| from which on F_3(y) is computed by the asymptotic series.
+/// Value of |y| from which on the exponential integral F_3(y) ([`integrals`]) is computed by the
+/// asymptotic series.
 const LARGE: f64 = 64.0;
 
-/// Distance in y between the expansion points of the Taylor series of F_3, which are used for |y|
-/// from `SMALL` to `LARGE`.
+/// Distance in y between the expansion points of the Taylor series of the exponential integral F_3
+/// ([`integrals`]), which are used for |y| from `SMALL` to `LARGE`.
 const STEP: f64 = 0.5;
-/// Number of terms of a Taylor series of F_3. The distance from the expansion point is at most ¼,
-/// and y is at least 3, so that the first omitted term is at most (¼/3)^16 = 5e-18.
+/// Number of terms of a Taylor series of the exponential integral F_3 ([`integrals`]). The distance
+/// from the expansion point is at most ¼, and y is at least 3, so that the first omitted term is at
+/// most (¼/3)^16 = 5e-18.
 const EXPANSION_TERMS: usize = 16;
 type Expansion = [Complex; EXPANSION_TERMS];
 static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
@@ -207,7 +210,7 @@ pub(super) fn integrals(y: f64) -> [Complex; 3] {
     [third, fourth, next(y, fourth, 4.0)]
 }
 
-/// Returns F_3(y) by the series for the range of |y|.
+/// Returns the exponential integral F_3(y) ([`integrals`]), by the series for the range of |y|.
 fn third(y: f64) -> Complex {
     let size = y.abs();
     let integral = if size >= LARGE {

@@ -3,14 +3,15 @@
 
 use super::super::special::{Complex, integrals};
 
-/// Angle |θ|, in radians, below which the regular function R is computed by a Taylor series,
-/// because its closed formula cancels. The first omitted term, θ⁹/47900160, is 100 roundings; the
-/// Lerch series may have an error of 500.
+/// Angle |θ|, in radians, below which the regular function R ([`rest_of_pole`]) is computed by a
+/// Taylor series, because its closed formula cancels. The first omitted term, θ⁹/47900160, is 100
+/// roundings; the Lerch series may have an error of 500 roundings.
 const NEAR_POLE: f64 = 0.2;
 
-/// Computes the Lerch series V_3, V_4 and V_5 at the angle `theta`, |θ| ≤ π, by the expansion about
-/// the pole of the integrand, up to the first derivative R′ of the regular function. `rotation` is
-/// e^iθ.
+/// Computes the Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s) for s = 3, 4 and 5 at θ = `theta`,
+/// where
+/// |θ| ≤ π. Expands it about the pole of the integrand, up to the first derivative R′ of the regular
+/// function ([`rest_of_pole`]). `rotation` is e^iθ.
 pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     let (r, slope) = rest_of_pole(theta, rotation);
     let h = integrals(theta * w);

@@ -11,7 +11,8 @@ use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, 
 use crate::math::{Double, Real};
 
 /// Truncation error that is always allowed for the Fourier modes of an edge along which the depth m
-/// less than doubles, as a fraction of the pixel's tolerance.
+/// less than doubles, as a fraction of the pixel's tolerance. It applies if the edge's own
+/// tolerance allows less.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Reciprocal of the relative change of the depth m along an edge below which m counts as constant.
 /// The error bound is then larger by 4/STEADY of the sum of absolute terms, that is by 1e-6 of a
@@ -37,7 +38,7 @@ pub(super) fn sum(
     let (w, u) = (start / all.rise, 1.0 / start);
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) * u * u * u, |a| a * (u / PI));
     let neglected = (LEVEL_TRUNCATION * budget.tolerance).max(LATER_TERMS_SHARE * tolerance);
-    // Mode n is at most 8/π²·n^−3 times the trivial bound.
+    // Mode n is at most 8/π²·n^−3 times `trivial`.
     let Some((last, beyond)) = last_mode(trivial, neglected, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };

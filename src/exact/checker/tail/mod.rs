@@ -43,7 +43,8 @@ use super::homography::BoundedSum;
 use super::special::Complex;
 use crate::math::{Double, Real};
 
-/// Number of terms of the series X that are summed by Fourier modes; later terms count as an error.
+/// Number of terms of the series X ([`EdgeSeries`]) that are summed by Fourier modes; later terms
+/// count as an error.
 const MODE_TERMS: usize = 3;
 
 /// Maximum number of crossings of an edge that are all added one by one; above it, Fourier modes
@@ -57,8 +58,9 @@ const MAX_TERMS_ADDED: f64 = 300_000.0;
 /// Fourier modes may have the same fraction. The fractions of all kinds of errors add up to less
 /// than 1.
 const SKIPPED_SHARE: f64 = 0.25;
-/// Fraction of the tolerance for the later terms of X, which are not summed by Fourier modes. Not
-/// critical: with 0.0125 or 0.2, the measured running time changes by less than 10 %.
+/// Fraction of the tolerance for the later terms of the series X ([`EdgeSeries`]), which are not
+/// summed by Fourier modes. Not critical: with 0.0125 or 0.2, the measured running time changes by
+/// less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
 /// Work charged per crossing that is added directly, in units of about 50 ns.
 const CROSSING_WORK: f64 = 1.0 / 16.0;

@@ -21,14 +21,16 @@ const MODE_COST: f64 = 4.0;
 const FIRST_MODES: f64 = 31.0;
 /// Fraction of the tolerance for all Fourier modes beyond the last computed one.
 const BEYOND_LAST_SHARE: f64 = 0.6;
-/// Fraction of the tolerance for the truncation error of the Lerch series in the first term of X.
-/// Not critical: with 0.005 or 0.08, the measured running time changes by less than 10 %.
+/// Fraction of the tolerance for the truncation error of the Lerch series ([`lerch`]) in the first
+/// term of X. Not critical: with 0.005 or 0.08, the measured running time changes by less than 10
+/// %.
 const LERCH_SHARE: f64 = 0.02;
-/// Minimum of w, the depth m divided by its step from line to line, at which the series in 1/w is
-/// used. Each term of the series is then at most about s/w, a third, of the previous term.
+/// Minimum of w, the depth m divided by its step from line to line, at which the Lerch series
+/// ([`lerch`]) is expanded in 1/w. Each term is then at most about s/w, a third, of the previous
+/// term; s is at most 5.
 const MIN_W: f64 = 16.0;
-/// Angle |θ|, in radians, below which |1 − e^iθ|² = 2 − 2·cos θ is replaced by a lower bound in θ²,
-/// because the subtraction cancels most digits there.
+/// Angle |θ| of a Fourier mode, in radians, below which |1 − e^iθ|² = 2 − 2·cos θ is replaced by a
+/// lower bound in θ², because the subtraction cancels most digits there.
 const SMALL_ANGLE: f64 = 0.2;
 /// Lower bound on (2 − 2·cos θ)/θ² for |θ| < `SMALL_ANGLE`. The ratio differs from 1 by at most
 /// θ²/12, a third of a percent.
