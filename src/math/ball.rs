@@ -72,7 +72,8 @@ impl<T: Real> Ball<T> {
     /// computation in a higher precision is then not worthwhile: it would help only with decisions
     /// that [`Double`](super::Double) leaves in doubt, and these decisions allow for such an error.
     pub fn is_precise(&self) -> bool {
-        /// Relative error 2^−80, 27 bits below the 53 of an `f64`.
+        /// Maximum relative error of a precise ball: 2^−80, which is 27 bits below the unit
+        /// roundoff of `f64`.
         const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
         self.rad <= self.size() * PRECISE
     }

@@ -21,7 +21,8 @@ pub trait Real: Clone + Debug + Sized {
     type Radius: Radius;
     /// Maximum relative error of one operation.
     const UNIT: f64;
-    /// Maximum absolute error of one operation that underflows, including that of its radius.
+    /// Maximum absolute error of one operation that underflows. It also covers an underflow of the
+    /// result's radius.
     const TINY: Self::Radius;
     /// Whether this is the highest precision, in which a value that cannot be distinguished from
     /// zero counts as zero.

@@ -23,7 +23,7 @@ const TILE: u32 = 2 * GRID;
 /// An exactly computed picture, with its error bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exact<P = [f64; 3]> {
-    /// The means, or another kind of pixel.
+    /// The pixels' means in linear light, or converted to another kind of pixel.
     pub film: Film<P>,
     /// Error bound of each pixel's mean, row by row. It holds for every channel.
     pub bounds: Vec<f32>,

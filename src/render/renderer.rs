@@ -31,8 +31,8 @@ use crate::{
 const WIDE_SAMPLES: u64 = 8;
 
 /// Maximum number of samples per candidate for which a pixel's samples are traced one by one; with
-/// more, the pixel is prepared and samples are traced many at a time. Measured: with 1 or 4, a
-/// picture takes up to 2 % longer.
+/// more, the pixel is prepared and samples are traced many at a time. Not critical: with 1 or 4, a
+/// picture takes up to 2 % longer, as measured.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
 /// Maximum number of a pixel's samples that are traced between two checks for cancellation. So many
@@ -43,7 +43,7 @@ const SAMPLES_A_CHUNK: u64 = 1 << 12;
 const CROWD_SIDE: u32 = 4;
 
 /// Minimum number of a pixel's samples for which the list of objects near its square is reduced to
-/// those near the pixel.
+/// those near the pixel. With fewer samples, each is tested against the longer list.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
 /// Data that all tiles of a picture share.

@@ -60,7 +60,8 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
         let (u, v) = (rng.random::<f64>() - 0.5, rng.random::<f64>());
         let us = 0.5 - u.abs();
         let k = ((2.0 * a / us + b) * u + n / 2.0 + 0.5).floor();
-        // The excluded values occur less than once in 10^27 draws (Hoeffding 1963).
+        // Values of k farther than n/4 from n/2 are excluded. They occur less than once in 10^27
+        // draws (Hoeffding 1963).
         if (k - n / 2.0).abs() > n / 4.0 {
             continue;
         }

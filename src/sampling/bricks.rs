@@ -12,7 +12,7 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub struct Bricks {
     n: u64,
-    /// Number of rows, m.
+    /// Number m of rows.
     rows: u64,
     /// Length of a short row: ⌊n/m⌋ cells.
     short: u64,

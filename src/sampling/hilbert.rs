@@ -41,7 +41,8 @@ pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
             rank += u64::from(columns) * u64::from(rows);
             step += 1;
         }
-        // The first and the last quadrant have the curve mirrored, and the last has it rotated.
+        // In the first and the last quadrant, the curve is mirrored. In the last one, it is also
+        // rotated by half a turn.
         mirrored ^= step == 0 || step == 3;
         turned ^= step == 3;
     }

@@ -69,7 +69,8 @@ pub struct Sampling {
     count: u64,
     /// Number of pixels that have one sample more than the minimum.
     extra: u64,
-    /// Patterns of `count` points and of `count` + 1 points. For `scatter`, both have any number.
+    /// Patterns of `count` points and of `count` + 1 points. For `scatter`, each pattern serves for
+    /// any number of points.
     patterns: Box<[PointPattern; 2]>,
 }
 
@@ -149,7 +150,7 @@ impl Sampling {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
             None if self.method == Method::Scatter => {
-                // No pixel has this part's key.
+                // No pixel has the part number `u64::MAX`.
                 let key = self.key.part(u64::MAX);
                 scatter::counts(key, self.total, self.picture, part)
             }

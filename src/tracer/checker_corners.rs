@@ -416,6 +416,6 @@ impl CheckerForms {
 }
 
 pub(super) fn is_odd(whole: f64) -> bool {
-    // `ranges` returns only numbers far below 2^53.
+    // `ranges` returns only whole numbers far below 2^53, so that the conversion is exact.
     whole as i64 & 1 == 1
 }

@@ -27,11 +27,11 @@ const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 pub struct Checkerboard<T: Real> {
     /// The board's plane. A ray hits it if the plane's inverse depth ℓ is positive along the ray.
     pub plane: Convex<T>,
-    /// The form ℓ, scaled by the power of two that brings the height of the eye above the plane to
-    /// about 1. `across` has the same scale.
+    /// Inverse depth ℓ of the board's plane as a form, scaled by the power of two that brings the
+    /// height of the eye above the plane to about 1. `across` has the same scale.
     pub below: Form<T>,
-    /// The forms N for x and for z. N/ℓ is the coordinate in squares, measured from the line
-    /// between squares that is nearest to the eye.
+    /// Numerators N of the board's coordinates x and z as forms. N/ℓ, where ℓ is `below`, is the
+    /// coordinate in squares, measured from the line between squares that is nearest to the eye.
     pub across: [Form<T>; 2],
     /// Whether the sum of the indices of the two lines nearest to the eye, in x and in z, is odd.
     pub odd: bool,
@@ -103,8 +103,8 @@ impl<T: Real> Checkerboard<T> {
         Ok(odd)
     }
 
-    /// Expands the board's forms about the direction `center` of a rectangle. `sides` are the sides
-    /// of the rectangle in X and Y, which become the unit.
+    /// Expands the board's forms about the direction `center` of a rectangle, to those of
+    /// [`LocalBoard`]. `sides` are the sides of the rectangle in X and Y, which become the unit.
     ///
     /// A multiple of ℓ is subtracted from N₀ and N₁, which moves the origin to a nearby corner of
     /// squares. The multiple makes N₀ and N₁ small at the corner of the rectangle where ℓ is

@@ -36,8 +36,8 @@ pub struct Sphere<T: Real> {
     rad_square: T::Radius,
     /// C = c·c − R², with a small relative error however close the eye is to the surface.
     power: Ball<T>,
-    /// The exact sign of C: greater if the eye is outside, equal if it is on the surface, less if
-    /// it is inside.
+    /// The exact sign of C: `Greater` if the eye is outside, `Equal` if it is on the surface,
+    /// `Less` if it is inside.
     side: Ordering,
     /// Power of two that converts an inverse depth in the sphere's unit to the world's unit.
     scale: f64,
@@ -428,7 +428,7 @@ fn radii<T: Real>(
     let unit = SPHERE_ROUNDINGS * T::UNIT;
     let mut rad_q = T::Radius::ZERO;
     let mut cross = T::Radius::ZERO;
-    // The components of c × r, each a difference of two products.
+    // Each component of c × r is a difference of two products.
     for (size, reach) in [
         (cy * z + cz * y, y + z),
         (cz * x + cx * z, x + z),

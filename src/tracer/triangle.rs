@@ -59,7 +59,7 @@ fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> B
         }
     }
     // Vertices may be so far away that their directions from the eye differ only after hundreds of
-    // bits.
+    // bits. The normal is then computed exactly.
     let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));
     let normal = Dyadic::cross(&a, &b).map(|x| Ball::<Big>::from_big(&x.to_big()));
     camera.turned(&scaled_to_one(&normal).map(|x| Ball::from_big(&x.mid)))

@@ -138,9 +138,9 @@ pub(super) fn sum(
 /// and a bound on the error. If no number of terms is enough, returns the one with the smallest
 /// bound.
 ///
-/// The module's documentation defines P, Ψ, X and γ. The truncation error of P follows from
-/// |A_k| ≤ ½π^(1−k). Let p be the larger of the slopes |∂m/∂a| and |∂m/∂b|, and m the smallest depth.
-/// The integral of the error is at most the polygon's area in the picture times
+/// The module's documentation defines P, Ψ, X and γ. The truncation error of P follows from |A_k| ≤
+/// ½π^(1−k). Let p be the larger of the slopes |∂m/∂a| and |∂m/∂b|, and m the smallest depth. The
+/// integral of the error is at most the polygon's area in the picture times
 ///
 /// ½π^(1−n)·(n+2)!/2·(p/m)^n.
 ///

@@ -34,7 +34,7 @@ impl Number {
     }
 
     /// Returns the sign of the number `x`, which was computed from terms of the size `size`. The
-    /// sign is zero if `x` is smaller than `size` by 5/14 of the bits.
+    /// sign is zero if |`x`| is at most `size` times 2^(−5/14 · `bits`).
     pub fn sign(self, x: &N, size: &N) -> Ordering {
         if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
             Ordering::Equal

@@ -30,8 +30,8 @@ use crate::area::Area;
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
 /// Minimum number of samples per candidate in an area that is quartered further. Measured: with 8,
-/// 10³ and 10⁵ spheres change by less than 10 %, but 3000 slivers with one sample per pixel take
-/// twice as long. With 2, the time rises by up to 25 %.
+/// the time for 10³ and 10⁵ spheres changes by less than 10 %, but 3000 slivers with one sample per
+/// pixel take twice as long. With 2, the time rises by up to 25 %.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
 /// Cost of finding where one candidate is seen within a square of the grid. The unit is the time to

@@ -7,12 +7,12 @@ use std::collections::HashMap;
 
 use crate::{color::Color, scene};
 
-/// The colours of the objects.
+/// The palette of a picture, and the palette slots of each object.
 #[derive(Debug)]
 pub(super) struct Colors {
     /// The distinct colours: those of the objects in file order, then the background.
     pub palette: Vec<Color>,
-    /// For each object, the slots of its colour and of a checkerboard's second colour.
+    /// For each object, the palette slots of its colour and of a checkerboard's second colour.
     pub of_objects: Vec<[u32; 2]>,
 }
 

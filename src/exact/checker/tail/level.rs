@@ -11,8 +11,8 @@ use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, 
 use crate::math::{Double, Real};
 
 /// Truncation error that is always allowed for the Fourier modes of an edge along which the depth m
-/// less than doubles, as a fraction of the pixel's tolerance. It applies if the edge's own
-/// tolerance allows less.
+/// less than doubles, as a fraction of the pixel's tolerance. It is used if it exceeds
+/// [`LATER_TERMS_SHARE`] of the edge's tolerance.
 const LEVEL_TRUNCATION: f64 = 1e-3;
 /// Reciprocal of the relative change of the depth m along an edge below which m counts as constant.
 /// The error bound is then larger by 4/STEADY of the sum of absolute terms, that is by 1e-6 of a
