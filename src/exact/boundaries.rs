@@ -203,8 +203,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     }
 
     /// Appends to `out` the curves of `source` that may pass through the sub-pixel. Returns `false`
-    /// if some pair of its surfaces has no intersection in this precision, because the surfaces are
-    /// equal or too similar to distinguish.
+    /// if some pair of its surfaces has no intersection curve in this precision. These surfaces are
+    /// equal planes or concentric spheres, or cannot be distinguished from such.
     fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
             if curve.may_cross_pixel() {

@@ -23,8 +23,9 @@ const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 /// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Distance in y from the pixel beyond which a branch is ignored, divided by the branch's largest
-/// |y| or by 1, whichever is greater. Rounding errors of y are millions of times smaller.
+/// Distance in y from the pixel beyond which a branch, bulge included, is ignored, divided by the
+/// branch's largest |y| or by 1, whichever is greater. Rounding errors of y are millions of times
+/// smaller.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).

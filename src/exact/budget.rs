@@ -57,7 +57,7 @@ pub(super) struct PixelBudget<'a> {
 }
 
 impl<'a> PixelBudget<'a> {
-    /// Creates the budget of a pixel with the full work.
+    /// Creates the budget of a pixel on which no work is spent yet.
     pub fn new(tolerance: f64, cancel: &'a AtomicBool) -> Self {
         Self {
             left: Cell::new(PIXEL_WORK),

@@ -23,9 +23,10 @@ const NEAR_PARABOLA: f64 = 0.36;
 /// Measured: with 48, boards of small squares behind spheres take up to 50 % longer.
 const MAX_LINES: f64 = 12.0;
 /// Maximum total area of the segments of an arc's halves, as a fraction of the whole arc's segment.
-/// Above it, rounding has spoiled the arc: it is not halved, and its segment is added to the error
-/// bound. Exactly, the fraction is 1/4 for a parabola, at most 0.37 for an ellipse (half of one),
-/// and less for a hyperbola. The constant is twice the largest of these.
+/// Above it, numbers are too large or too small to represent the arc: it is not halved, and its
+/// segment is added to the error bound. Exactly, the fraction is 1/4 for a parabola, at most 0.37
+/// for an ellipse (half of one), and less for a hyperbola. The constant is twice the largest of
+/// these.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.

@@ -1,8 +1,8 @@
 //! A picture that is rendered in slices, so that its caller can do something else in between.
 //!
 //! A slice is a square of the picture, clipped at the picture's edges. All slices have about the
-//! same number of samples. A pixel's mean does not depend on its slice. Progress is measured in
-//! slices instead of time, because Rust has no clock in a web worker.
+//! same number of samples. A pixel's mean does not depend on its slice. Rendering in slices needs
+//! no clock, which Rust does not have in a web worker.
 
 use super::{Control, RenderError, render_as_asked};
 use crate::{

@@ -1,8 +1,8 @@
 //! The strata of each method: cuts of the pixel into n cells, each of which holds one sample.
 //!
 //! In: a method and the number n of a pixel's samples. Out: the cuts that hold for every seed and
-//! every pixel. They follow from the files of the methods: `bricks` has the cells of regular and
-//! jittered samples, `multi_jittered` its grid.
+//! every pixel. The cuts follow from the methods' own files: `bricks` has the cells of regular and
+//! jittered samples, and `multi_jittered` its grid.
 
 use super::{bricks::Bricks, multi_jittered::MultiJittered};
 use crate::scene::Method;

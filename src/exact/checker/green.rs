@@ -57,8 +57,7 @@ const TRUNCATION: f64 = 1e-3;
 /// because a colour's share is half of the integral of signs.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
 /// Maximum truncation error of the sum over an edge that ends on the horizon, as a fraction of the
-/// tolerance. It is larger than [`FINITE_TAIL`], because such an edge crosses infinitely many
-/// lines.
+/// tolerance. Together with [`FINITE_TAIL`], it adds up to 1.
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// Maximum truncation error of the sum over an edge, as a fraction of the tolerance, if no edge of
 /// the polygon reaches the horizon. Only two edges then recede and have long sums; the others

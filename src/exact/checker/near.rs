@@ -1,9 +1,10 @@
 //! The board's integral over near squares: each square is cut out of the picture.
 //!
 //! In: a convex polygon of the picture on which L > 0. Out: the sum of the signed areas of the
-//! squares in it, in square pixels, with an error bound. The lines of one family cut the polygon
-//! into rows, and the lines of the other family cut each row into squares (`clip`). The bound is
-//! the sum of each cut's position error times its length, plus the rounding errors of the areas.
+//! squares in it, in square pixels, with an error bound. The lines of one of the board's two
+//! families cut the polygon into rows, and the lines of the other family cut each row into squares
+//! (`clip`). The bound is the sum of each cut's position error times its length, plus the rounding
+//! errors of the areas.
 
 use glam::DVec2;
 

@@ -1,9 +1,9 @@
 //! The integral of the board's sign over eight pixels at once, in lanes that the compiler
 //! vectorises.
 //!
-//! In: eight pixels that show only a checkerboard and are crossed by the same numbers of lines of
-//! both families. Out: the integral over each pixel, with a bound on the rounding errors of areas
-//! and on the displacement of lines by rounding.
+//! In: eight pixels that show only a checkerboard. The board has two families of lines, and the same
+//! number of each family cross every pixel. Out: the integral over each pixel, with a bound on the
+//! rounding errors of areas and on the displacement of lines by rounding.
 //!
 //! The lines of the family with fewer lines cut the pixel into strips; σ_i is the sign of the
 //! squares in strip i. Let H_k be the side of line k of the other family on which squares have
@@ -51,7 +51,8 @@ type Lanes = [f64; PIXELS];
 /// for each line between strips.
 const SIDES: usize = 4 * (MAX_STRIP_LINES + 1) + MAX_STRIP_LINES;
 
-/// The linear forms of eight pixels' boards, with the family that has fewer lines first.
+/// The linear forms of eight pixels' boards. Of the board's two families of lines, the one with
+/// fewer lines in the pixel comes first.
 #[derive(Debug, Default)]
 pub(super) struct BoardLanes {
     few: FormRows,
@@ -217,7 +218,7 @@ impl BoardLanes {
         let mut failed = [0.0; PIXELS];
         let (parts, chords) = sides.split_at_mut(4 * (few + 1));
         // For each side of the pixel, the fraction of its length that the strips so far have
-        // covered, measured from the side's start or end.
+        // covered, measured from the end with the smaller square number.
         let mut reached = [[0.0; PIXELS]; 4];
         for (corner, reached) in reached.iter_mut().enumerate() {
             let [here, next] = [corner, (corner + 1) % 4].map(|corner| &self.squares[corner]);

@@ -1,6 +1,7 @@
-//! The cache of objects in a precision higher than `f64`. In: an object's index, and a function
-//! that prepares the object. Out: the object, either prepared now or cached from an earlier
-//! request.
+//! The cache of objects in a precision higher than `f64`.
+//!
+//! In: an object's index, and a function that prepares the object. Out: the object, either prepared
+//! now or cached from an earlier request.
 
 use std::{
     ops::Deref,
