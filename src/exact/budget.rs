@@ -10,9 +10,9 @@ use std::{
     sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
 };
 
-/// Maximum work on a pixel, in units of about 50 ns, which amounts to about 0.6 seconds. A unit is
-/// the time to cut one square of a checkerboard out of a polygon on the machine where it was
-/// measured.
+/// Maximum work on a pixel, in units of about 50 ns, which amounts to about 0.6 seconds. Beyond it,
+/// the rest of the pixel counts as an error. A unit is the time to cut one square of a checkerboard
+/// out of a polygon on the machine where it was measured.
 const PIXEL_WORK: f64 = 1.2e7;
 
 /// Work of all threads on the pixels of a picture, and its limit.

@@ -90,8 +90,9 @@ const MAX_QUARTERINGS: usize = 16;
 /// that a piece needs only while it is computed, and does not apply to a pixel that is a single
 /// piece.
 const MAX_MEMORY: usize = 64 << 20;
-/// Minimum side, in pixels, of a piece that is quartered because too many curves pass through it.
-/// The area of a smaller piece is less than a unit roundoff of the pixel's area.
+/// Minimum side, in pixels, of a piece that is quartered because too many curves pass through it. A
+/// smaller piece counts as an error instead; its area is less than a unit roundoff of the pixel's
+/// area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged per piece, in units of about 50 ns. Work constants need not be precise, because
 /// they only stop computations that take too long.

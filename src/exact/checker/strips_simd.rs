@@ -177,12 +177,13 @@ impl BoardLanes {
                 sums[i] += sign * beyond[i];
             }
         }
-        // For every line, the part of a side beyond it takes eight operations on the side's length
-        // and on a distance of at most √2. Each of the five sums per strip has one rounding, and
-        // the sum over lines has two. Each cutting line, and the lines on either side, may also
-        // have an error of four roundings of a point. A displaced line sweeps at most √2, the
-        // pixel's diagonal, times its displacement; the sign changes there, which doubles the
-        // error, and 2√2 < 3.
+        // Rounding errors: for every line, the part of a side beyond the line takes eight
+        // operations on the side's length and on a distance of at most √2. Each of the five sums
+        // per strip has one rounding, and the sum over lines has two. Each cutting line, and the
+        // lines on either side, may also have an error of four roundings of a point.
+        //
+        // A displaced line sweeps at most √2, the pixel's diagonal, times its displacement. The
+        // sign changes there, which doubles the error, and 2√2 < 3.
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
         LaneSums {
