@@ -71,10 +71,10 @@ use self::{
 /// below 1e-9, so that the result is within 1e-9 even after the rounding of sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// Maximum number of curves that pass through a whole pixel; with more, the pixel is quartered
-/// before anything is computed. n curves cross at about n² points, and at each of these points all
-/// curves have to be examined; a quarter has only about half of the curves. Measured: with 6
-/// instead of 12, a dozen objects take 10 % longer. A heap of 300 objects takes twice as long with
-/// 24 as with 6, and seven times as long with 96 as with 24.
+/// before anything is computed. n curves cross at about n² points, where all curves have to be
+/// examined; a quarter has only about half of the curves. Measured: with 6 instead of 12, a dozen
+/// objects take 10 % longer. A heap of 300 objects takes twice as long with 24 as with 6, and seven
+/// times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves grows with each quartering. Curves that pass
 /// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap:
@@ -86,9 +86,8 @@ const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
 /// Maximum memory of a pixel's queued pieces, in bytes; above it, the pixel is not divided any
-/// further, and its bound counts the area of the uncomputed pieces. The limit excludes the memory
-/// that a piece needs only while it is computed, and does not apply to a pixel that is a single
-/// piece.
+/// further, and uncomputed pieces count as errors. The limit excludes memory that a piece needs
+/// only while it is computed, and does not apply to a pixel that is a single piece.
 const MAX_MEMORY: usize = 64 << 20;
 /// Minimum side, in pixels, of a piece that is quartered because too many curves pass through it. A
 /// smaller piece counts as an error instead; its area is less than a unit roundoff of the pixel's
@@ -196,7 +195,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Limits the work on the picture, in units of about 50 ns. Above the limit,
     /// [`pixels`](Self::pixels) returns `None`, and [`shares`](Self::shares) uses the colour in the
-    /// middle of each remaining pixel for the whole pixel.
+    /// middle of each remaining pixel.
     pub fn with_work_limit(mut self, limit: u64) -> Self {
         self.work = PictureWork::new(limit);
         self
@@ -383,10 +382,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         shares
     }
 
-    /// Moves the mean of `pixel` to the middle of the range in which the true mean may lie, and
-    /// returns it with half the width of the range as the bound. The range is the mean plus or
-    /// minus its bound, limited to the least and the greatest value of the colours that may be seen
-    /// in the pixel.
+    /// Moves the mean of `pixel` to the middle of the range in which the true mean may lie, with
+    /// half the range's width as the bound. The range is the mean plus or minus its bound, limited
+    /// to the values of the colours that may be seen in the pixel.
     fn center_in_range(
         &self,
         pixel: &ExactPixel<N>,
@@ -492,9 +490,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 }
 
-/// Returns the maximum rounding error of a mean of `colors` colours. The sum of products has
-/// `colors` roundings, and so has the sum of shares; the products and the quotient add one each. A
-/// single colour has no rounding error.
+/// Returns the maximum rounding error of a mean of `colors` colours. The sums of products and of
+/// shares each have `colors` roundings; the products and the quotient add one each. A single colour
+/// has none.
 fn rounding(colors: usize) -> f64 {
     match colors {
         0..=1 => 0.0,

@@ -59,8 +59,8 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
 });
 
 /// Returns the sine and the cosine of an angle. For a multiple of 90°, they are exactly 0 and ±1.
-/// In double-double, series compute them for angles up to [`MAX_RADIANS`]. Otherwise, they are
-/// rounded from a [`Big`].
+/// In double-double, series compute them for angles up to 2^20 radians. Otherwise, they are rounded
+/// from a [`Big`].
 pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     if T::UNIT == Double::UNIT && angle.radians.abs() <= MAX_RADIANS {
         let (sin, cos) = by_series(angle);
