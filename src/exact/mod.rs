@@ -1,13 +1,11 @@
-//! Exact pixel means: the mean of a pixel is computed by exact integration over its area, not by
-//! sampling.
+//! Exact pixel means: a pixel's mean is computed by exact integration over its area, not by sampling.
 //!
 //! In: the prepared scene and the part of the picture to compute. Out: the mean of each pixel in
 //! linear light, with a bound on the mean's error. In ordinary views, the bound is at most 1e-9
 //! unless the caller asks for less accuracy. A view is ordinary if the vertical field of view is 1
 //! to 170 degrees, squares are 1e-4 to 1e6 times the eye's height, and all numbers are 0 or within
 //! 1e±9. In other views, the bound may be larger, up to 1 for a pixel whose colour remains unknown.
-//! The work on a pixel is limited to about a second on the machine where it was measured
-//! (`budget`).
+//! The work on a pixel is limited to about a second on the machine where it was measured (`budget`).
 //!
 //! Lines and conics divide a pixel into regions, each of which shows one colour or one
 //! checkerboard. The means are therefore computed in four steps:
@@ -98,9 +96,9 @@ const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 const PIECE_WORK: f64 = 100.0;
 /// Work charged per object of a piece, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
-/// Work charged per ordered pair of curves in a piece that a conic passes through, in units of
-/// about 50 ns. Without it, the work of the piece's regions accounts for only half of the time
-/// measured for a heap of 10⁴ spheres.
+/// Work charged per ordered pair of curves in a piece with a conic, in units of about 50 ns.
+/// Without it, the regions' work accounts for only half of the time measured for a heap of 10⁴
+/// spheres.
 const SLABS_WORK: f64 = 60.0;
 /// Work charged per pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
 const BOARD_PIXEL_WORK: u64 = 10;
@@ -264,8 +262,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
 
     /// Calls `show` with each area of one colour and with each other pixel, together with the share
     /// of each colour by palette slot. The world must be made by [`World::by_object`]. Above the
-    /// work limit, the colour in the middle of a pixel counts for the whole pixel. Returns whether
-    /// every share is known to within 1e-6.
+    /// work limit, a pixel's middle counts for the whole pixel. Returns whether all shares are
+    /// known to within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();

@@ -31,7 +31,7 @@ pub enum Side {
 }
 
 impl Interval {
-    /// All numbers.
+    /// The interval of all numbers.
     pub const ALL: Self = Self {
         low: f64::NEG_INFINITY,
         high: f64::INFINITY,

@@ -45,7 +45,7 @@ pub enum Object<T: Real> {
 }
 
 impl<T: Real> Object<T> {
-    /// Prepares an object.
+    /// Prepares an object of the scene in the precision `T`.
     pub fn new(camera: &Camera<T>, shape: &Shape) -> Self {
         match shape {
             Shape::Sphere(scene::Sphere { center, radius, .. }) => {

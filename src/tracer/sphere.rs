@@ -52,7 +52,7 @@ pub struct Sphere<T: Real> {
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
-    /// Prepares a sphere.
+    /// Prepares a sphere in the precision `T`.
     pub fn new(camera: &Camera<T>, center: DVec3, radius: f64) -> Self {
         let from_eye = camera.relative(center);
         let radius_ball = camera.length(radius);
