@@ -1,11 +1,11 @@
-//! Exact pixel means: a pixel's mean is computed by exact integration over its area, not by sampling.
+//! Exact pixel means: a pixel's mean is integrated exactly over its area, not sampled.
 //!
 //! In: the prepared scene and the part of the picture to compute. Out: the mean of each pixel in
 //! linear light, with a bound on the mean's error. In ordinary views, the bound is at most 1e-9
 //! unless the caller asks for less accuracy. A view is ordinary if the vertical field of view is 1
 //! to 170 degrees, squares are 1e-4 to 1e6 times the eye's height, and all numbers are 0 or within
-//! 1e±9. In other views, the bound may be larger, up to 1 for a pixel whose colour remains unknown.
-//! The work on a pixel is limited to about a second on the machine where it was measured (`budget`).
+//! 1e±9. In other views, the bound may be larger, up to 1 for a pixel of unknown colour. The work on
+//! a pixel is limited to about a second on the machine where it was measured (`budget`).
 //!
 //! Lines and conics divide a pixel into regions, each of which shows one colour or one
 //! checkerboard. The means are therefore computed in four steps:
