@@ -4,8 +4,8 @@
 //! linear light, with a bound on the mean's error. In ordinary views, the bound is at most 1e-9
 //! unless the caller asks for less accuracy. A view is ordinary if the vertical field of view is 1
 //! to 170 degrees, squares are 1e-4 to 1e6 times the eye's height, and all numbers are 0 or within
-//! 1e±9. In other views, the bound may be larger, up to 1 for a pixel of unknown colour. The work on
-//! a pixel is limited to about a second on the machine where it was measured (`budget`).
+//! 1e±9. In other views, the bound may be larger, up to 1 for a pixel of unknown colour. The work
+//! on a pixel is limited to about a second on the machine where it was measured (`budget`).
 //!
 //! Lines and conics divide a pixel into regions, each of which shows one colour or one
 //! checkerboard. The means are therefore computed in four steps:

@@ -14,10 +14,10 @@ use super::{
 };
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
-/// Maximum number of lines of one of the board's two families that cross a pixel; a pixel with more
-/// is returned without an integral. There is a batch for each pair of numbers of lines, and few
-/// pixels have more lines. Not critical: with 8 or 128, the measured running time changes by at
-/// most about 10 %.
+/// Maximum number of the board's lines between columns, or between rows, that cross a pixel; a
+/// pixel with more is returned without an integral. There is a batch for each pair of the two
+/// numbers, and few pixels have more lines. Not critical: with 8 or 128, the measured running time
+/// changes by at most about 10 %.
 const MAX_LINES: usize = 32;
 
 /// A pixel that shows only a checkerboard.
@@ -32,7 +32,7 @@ pub(in crate::exact) struct BoardPixel {
 }
 
 /// Queues of checkerboard pixels. In one queue, all pixels are crossed by the same numbers of lines
-/// of the board's two families.
+/// of the board's two families, those between columns and those between rows of squares.
 #[derive(Debug)]
 pub(in crate::exact) struct BoardBatches {
     batches: Vec<Batch>,

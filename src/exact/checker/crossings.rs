@@ -93,7 +93,8 @@ impl EdgeSeries {
     }
 }
 
-/// The crossings of one edge of a polygon with the lines of one family of the board.
+/// The crossings of one edge of a polygon with the board's lines of one family, that is with the
+/// lines between columns or those between rows of squares.
 pub(super) struct LineCrossings {
     /// Coordinate t at the first line, and the step of t from line to line, in double-double. The
     /// unit is a square of the board, half a turn of the square wave; whole turns are subtracted.
