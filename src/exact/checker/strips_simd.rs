@@ -1,9 +1,9 @@
 //! The integral of the board's sign over eight pixels at once, in lanes that the compiler
 //! vectorises.
 //!
-//! In: eight pixels that show only a checkerboard. The board has two families of lines, and the same
-//! number of each family cross every pixel. Out: the integral over each pixel, with a bound on the
-//! rounding errors of areas and on the displacement of lines by rounding.
+//! In: eight pixels that show only a checkerboard. The board has two families of lines, and the
+//! same number of each family cross every pixel. Out: the integral over each pixel, with a bound on
+//! the rounding errors of areas and on the displacement of lines by rounding.
 //!
 //! The lines of the family with fewer lines cut the pixel into strips; σ_i is the sign of the
 //! squares in strip i. Let H_k be the side of line k of the other family on which squares have
