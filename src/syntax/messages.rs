@@ -1,5 +1,5 @@
-//! Texts of the syntax problems, and whether their fixes are safe. The code that reports a problem
-//! fills in `{0}`, `{1}` and so on.
+//! Texts of the syntax problems, and whether their fixes are safe. `{0}`, `{1}` and so on are
+//! placeholders, which [`Message::at`](super::problem::Message::at) fills.
 
 use super::problem::Message;
 
@@ -26,7 +26,8 @@ pub const MISPLACED_LET: Message = Message::new(["misplaced_let", "a `let` stand
 pub const MISSING_KIND: Message = Message::new(["missing_kind", "a block lacks its kind", "what is this?", "write what it is before the `{`, such as `sphere {`"]);
 pub const BAD_HEAD: Message = Message::new(["bad_head", "only a kind and a name stand before a `{`", "this does not belong here", "write `{0} {`, and then its fields"]).safe();
 pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "{0}", "not written so", "{1}"]);
-/// Message for a head with indices that matches no known mistake.
+/// Message about the indices in an object's head, `for INDEX < COUNT`, if no more specific message
+/// applies.
 pub const REPEATED: &str = "an object is repeated by `for INDEX < COUNT`";
 pub const REPEATED_SO: &str = "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first";
 pub const MISPLACED_INDICES: Message = Message::new(["bad_repetition", "indices stand in the head of an object", "not in its block", "write them before the `{`, as in `sphere for i < 8 {`"]);
@@ -65,8 +66,8 @@ pub const BAD_COLOR_CODE: Message = Message::new(["bad_color_code", "`{0}` is no
 pub const BAD_NUMBER: Message = Message::new(["bad_number", "`{0}` is no number", "{1}", "write a number such as `2`, `0.5` or `1e-3`"]).safe();
 pub const SPACED_UNIT: Message = Message::new(["spaced_unit", "a unit stands right behind its number", "no space between the two", "{0}"]).safe();
 
-/// Statements of other languages, a row each: the words that start one, what the statements are
-/// called, and what to write instead.
+/// Statements of other languages. A row holds the words that start such a statement, the plural
+/// noun for messages, and the help.
 const STATEMENTS: &[[&str; 3]] = &[
     ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
     ["for while loop repeat foreach", "loops", "an object is repeated by its head, as in `sphere for i < 8 { center (i, 1, 0) }`"],
@@ -76,20 +77,25 @@ const STATEMENTS: &[[&str; 3]] = &[
     ["function fn def fun lambda return class struct", "functions of one's own", "give each result a name with `let NAME = VALUE`"],
 ];
 
-/// Returns what the statements that start with `word` are called, and what to write instead.
-/// Returns `None` if no statement of another language starts with `word`.
+/// Returns the plural noun and the help for the statements of other languages that start with
+/// `word`. Returns `None` if there are none.
 pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
 
-/// Addition to the help for scenes of programs with left-handed coordinates, whose z axis points
-/// away from the viewer.
+/// Addition to the help if the file comes from a program with left-handed coordinates, whose z axis
+/// points away from the viewer.
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
-/// Files of other programs. A row holds the name of the format, the possible first characters
-/// (white space left out), the marks to count in the file separated by `|`, their minimum number,
-/// characters that must not be in the file, and an addition to the help.
+/// Patterns that recognize files of other programs. The columns of a row:
+///
+/// - the name of the format;
+/// - the possible first characters, except white space;
+/// - the strings to count in the file, separated by `|`;
+/// - the minimum number of these strings;
+/// - characters that must not occur in the file;
+/// - an addition to the help.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str, &str)] = &[
     ("XML", "<?xml", "<", 1, "", ""),
     ("XML", "<", "</", 1, "", ""),
