@@ -15,7 +15,7 @@ use crate::{
 pub struct Sphere {
     /// The centre.
     pub center: DVec3,
-    /// The radius, > 0.
+    /// Radius in metres, > 0.
     pub radius: f64,
     /// The colour.
     pub color: Color,
