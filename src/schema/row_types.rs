@@ -43,7 +43,7 @@ pub struct BlockRow {
     pub is_object: bool,
     /// One line of help.
     pub help: &'static str,
-    /// The fields.
+    /// Rows of the block's fields.
     pub fields: &'static [FieldRow],
     /// Groups of fields that express the same thing in different ways and exclude each other.
     pub choices: &'static [Choice],
@@ -81,7 +81,7 @@ pub struct Choice {
 pub struct Several {
     /// The words, separated by spaces.
     pub words: &'static str,
-    /// The fields.
+    /// Names of the fields, in the order of the values.
     pub fields: &'static [&'static str],
 }
 
@@ -92,7 +92,7 @@ pub struct FieldRow {
     pub name: &'static str,
     /// The type of the field's values.
     pub takes: Type,
-    /// The value of a field that is not given.
+    /// Default of the field, if it has one.
     pub preset: Preset,
     /// Conditions that every value of the field must meet.
     pub must: &'static [Condition],
@@ -167,7 +167,7 @@ impl<T> FieldHandle<T> {
     }
 }
 
-/// The value of a field that is not given.
+/// Default of a field: what holds if a block does not have the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preset {
     /// No default: the field is required.
