@@ -1,4 +1,4 @@
-//! Converts completions and the text that they insert.
+//! Converts completions and their inserted texts to the types of the protocol.
 
 use serde_json::{Value, json};
 
@@ -39,8 +39,8 @@ impl Converter<'_> {
         };
         without_nulls(json!({
             "label": completion.label,
-            // If an item has an edit but not this field, Neovim assumes that the items are filtered
-            // already, and replaces the typed text by the first one.
+            // If an item has an edit but lacks `filterText`, Neovim assumes that the items are
+            // filtered already, and replaces the typed text by the first item.
             "filterText": completion.label,
             "kind": kind,
             "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
@@ -54,7 +54,7 @@ impl Converter<'_> {
     }
 }
 
-/// Returns the inserted text with the placeholders' values as plain text.
+/// Returns the inserted text without placeholders: their example values are plain text.
 fn plain(pieces: &[SnippetPart]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
         SnippetPart::Text(text) | SnippetPart::Placeholder(text) => text.as_str(),
@@ -62,7 +62,8 @@ fn plain(pieces: &[SnippetPart]) -> String {
     texts.collect()
 }
 
-/// Returns the inserted text as a snippet with numbered placeholders, which the user types over.
+/// Returns the inserted text as a snippet with numbered placeholders. Typing replaces a
+/// placeholder's example value.
 fn snippet(pieces: &[SnippetPart]) -> String {
     let mut text = String::new();
     let mut holes = 0;
