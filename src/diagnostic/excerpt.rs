@@ -70,7 +70,7 @@ pub fn excerpts<'s>(
 }
 
 impl<'s> Excerpt<'s> {
-    /// Makes the excerpt of a source. Longer lines are cut to about `columns` bytes.
+    /// Makes the excerpt of a source. Lines longer than about `columns` bytes are cut.
     fn new<'l>(
         source: &'s Source,
         labels: impl Iterator<Item = &'l Label>,
@@ -99,7 +99,7 @@ impl<'s> Excerpt<'s> {
             let end = excerpt.offset_of(span.end).max(start + 1);
             let inner = SourceSpan::from((start, end - start));
             let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
-            // miette draws the hook of a label at the label's middle.
+            // miette starts the line to a label's message at the middle of the label.
             let left = start.midpoint(end) - line + HOOK_COLUMNS;
             let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
             let message = textwrap::fill(&visible_line(message), room);
@@ -131,7 +131,7 @@ impl<'s> Excerpt<'s> {
             }
             for (at, character) in self.source.slice(piece.clone()).char_indices() {
                 shown.push((piece.start + at, self.text.len()));
-                // A control character is escaped, which takes more bytes.
+                // A control character is escaped, so its length differs from that in the source.
                 push_visible(&mut self.text, character);
             }
             shown.push((piece.end, self.text.len()));
@@ -139,7 +139,7 @@ impl<'s> Excerpt<'s> {
         if shown.last().is_some_and(|(end, _)| *end < range.end) {
             self.text.push('…');
         }
-        // A label at the end of the line needs a character to be drawn under.
+        // A label at the end of the line is drawn under this space.
         self.text.push(' ');
         self.lines.push(ExcerptLine {
             number,

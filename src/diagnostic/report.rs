@@ -233,7 +233,7 @@ impl<'s> Report<'s> {
     }
 }
 
-/// An excerpt and a help in the form that miette takes.
+/// An excerpt and a help text in the form that miette requires.
 #[derive(Debug)]
 struct Snippet<'s> {
     excerpt: Excerpt<'s>,

@@ -89,7 +89,7 @@ fn kept(method: Method, n: u64) -> String {
         return format!("every box of 1/{n}");
     }
     let words = tilings.iter().map(|tiling| match tiling {
-        // With `regular`, a sample is not anywhere in its cell, but exactly in the middle.
+        // With `regular`, each sample is exactly in the middle of its cell.
         _ if method == Method::Regular => "middles of cells",
         tiling if tiling.is_columns() && tiling.is_rows() => "anywhere",
         tiling if tiling.is_columns() => "columns",

@@ -98,7 +98,7 @@ impl Server {
                 outgoing
             }
             (Message::Notification(notification), _) => self.handle_notification(notification),
-            // The server sends no requests.
+            // The server sends no requests, so a response is ignored.
             (Message::Response(_), _) => Vec::new(),
         }
     }

@@ -86,7 +86,7 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
             Ok(Some(message)) => {
                 let is_exit =
                     matches!(&message, Ok(Message::Notification(n)) if n.method == "exit");
-                // Nothing is read after `exit`.
+                // Reading ends with `exit`.
                 if sender.send(message).is_err() || is_exit {
                     return;
                 }

@@ -40,8 +40,8 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         Value::Vector(point) => Some(point),
         _ => None,
     });
-    // By default a camera looks along −z, so the eye lies on the +z side of the point that it looks
-    // at, and `lookat` on the −z side of the eye.
+    // The first tried step is −z, the direction in which a camera usually looks. From `lookat` to
+    // `eye`, the steps are therefore reversed.
     let sign = if field.name == CAMERA.eye.name {
         -1.0
     } else {

@@ -106,7 +106,7 @@ impl Listener for Door {
 
     async fn accept(&mut self) -> (Connection, SocketAddr) {
         let (stream, address) = Listener::accept(&mut self.listener).await;
-        // If the option cannot be set, small messages are only slower.
+        // Without this option, small messages are sent later, but nothing fails.
         let _ = stream.set_nodelay(true);
         self.make_place();
         let visitor = Visitor::default();

@@ -116,7 +116,7 @@ impl Host {
             let _ = timeout(FAREWELL, self.shared.ending.closed()).await;
             Ok::<_, io::Error>(())
         })?;
-        // A connection that has not ended may still wait for the runtime, so the runtime is not
+        // A connection that has not ended may still use the runtime, so the runtime is never
         // dropped.
         std::mem::forget(runtime);
         Ok(())

@@ -10,13 +10,13 @@ pub const UTF16: Message = Message::new(["invalid_utf8", "this file is UTF-16, n
 /// Problem: the file belongs to another program, or is not text.
 pub const FOREIGN_FILE: Message = Message::new(["foreign_file", "this looks like {0}, not like a scene of Pinhole", "no scene starts like this", "the smallest scene is `camera { eye (0, 2, 8)  lookat (0, 1, 0) }` and `sphere { center (0, 1, 0) }`{1}"]);
 pub const NOT_IN_LANGUAGE: Message = Message::new(["not_in_language", "the language has no {0}", "not a part of the language", "{1}"]);
-// Text.
+// Messages about characters and comments.
 pub const CARRIAGE_RETURN: Message = Message::new(["odd_space", "a carriage return alone ends no line{0}", "no line feed follows", "write a line feed in its place"]).safe();
 pub const ODD_SPACE: Message = Message::new(["odd_space", "{0} is no white space here{1}", "it cannot be seen", "write a plain space in its place, or take it away"]).safe();
 pub const UNCLOSED_COMMENT: Message = Message::new(["unclosed_comment", "a comment is never closed", "the comment starts here and takes the rest of the text", "write `*/` where it ends, or begin it with `//` if it is one line"]);
 pub const NESTED_COMMENT: Message = Message::new(["nested_comment", "comments do not nest: the first `*/` ends this one", "this opens no other comment", ""]).safe();
 pub const COMMENT_SIGN: Message = Message::new(["comment_sign", "a comment begins with `//`, not with `{0}`{1}", "`//` should stand here", "write `//`; the comment takes the rest of the line"]).safe();
-// Items.
+// Messages about items.
 pub const MISSING_NAME: Message = Message::new(["missing_name", "a `let` lacks its name", "a name should stand here", "write a name of letters, digits and `_`, such as `let height = 2`"]);
 pub const BAD_NAME: Message = Message::new(["bad_name", "`{0}` cannot be a name", "a name should stand here", "a name is made of the letters a to z, digits and `_`, and does not start with a digit{1}"]);
 pub const MISSING_EQUALS: Message = Message::new(["missing_equals", "`let {0}` lacks its `=`", "`=` should stand here", ""]).safe();
@@ -39,13 +39,13 @@ pub const OUTSIDE_BLOCK: Message = Message::new(["outside_block", "`{0}` stands 
 pub const NEEDLESS_SEPARATOR: Message = Message::new(["needless_separator", "no `{0}` stands between {2}{1}", "not needed", ""]).safe();
 pub const STRAY_CLOSING: Message = Message::new(["stray_closing", "this `{0}` closes nothing", "nothing is open here", "write the parenthesis that opens it, or take it away"]).safe();
 pub const UNEXPECTED: Message = Message::new(["unexpected", "expected {0}, found `{1}`", "not here", "{2}"]);
-// Fields.
+// Messages about fields.
 pub const NEEDLESS_EQUALS: Message = Message::new(["needless_equals", "a field takes its value without `{0}`{1}", "not needed", ""]).safe();
 pub const TWO_WORDS: Message = Message::new(["bad_name", "`{0}` is one word", "the name of a field", ""]).safe();
 pub const MISSING_SPACE: Message = Message::new(["missing_space", "a space is missing between `{0}` and `{1}`", "a field and its value", ""]).safe();
 pub const COLOR_WITHOUT_NAME: Message = Message::new(["missing_field_name", "a value stands here without the name of its field", "which field is this for?", "write `color {0}`"]);
 pub const MISSING_FIELD_NAME: Message = Message::new(["missing_field_name", "a value stands here without the name of its field", "which field is this for?", "write the name of the field that `{0}` is for before it"]).safe();
-// Values.
+// Messages about values.
 pub const TOO_DEEP: Message = Message::new(["too_deep", "this value nests more than {0} levels deep", "one level more", "give a part of it a name with `let`, and use the name here"]);
 pub const MISSING_OPERAND: Message = Message::new(["missing_operand", "nothing stands {0} this `{1}`", "a value is missing {0} this", "write a value {0} it, or take the `{1}` away"]);
 pub const MISSING_OPERATOR: Message = Message::new(["missing_operator", "an operator is missing between `{0}` and `{1}`", "what is to be done with this?", "write an operator between them, or take one of them away"]).safe();

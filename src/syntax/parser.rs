@@ -184,9 +184,10 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Converts the items in `range` that pest reads into nodes. Returns the end of the last item,
-    /// and `true`. Where pest's reading is doubtful, recovery reads the item again; if it finds
-    /// another end of the item, returns that end and `false`.
+    /// Reads items of the text in `range` with pest, and adds their nodes to `recovery`. Returns
+    /// the end of the last item, and `true`. If pest's reading of an item is doubtful, recovery
+    /// reads the item again; if it finds another end of the item, stops there and returns that end
+    /// and `false`.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -199,8 +200,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            // In `let a = 2 pi`, followed by `sphere {`, pest reads `pi sphere {` as a block: its
-            // kind is the rest of the value, and its name is the real kind.
+            // If `let a = 2 pi` is followed by `sphere {`, pest reads `pi sphere {` as a block of
+            // the kind `pi` with the name `sphere`. The actual kind is `sphere`, so reading stops
+            // before `pi`, and recovery reports the mistake.
             if let Item::Block(block) = &item
                 && let (Some(kind), Some(name)) = (block.kind, block.name)
                 && self.words.is_kind(name.text)
@@ -209,7 +211,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 return (end, true);
             }
             end = item.span().end;
-            // In other languages, `--` starts a comment.
+            // The item is read again if it may contain a comment of another language, which starts
+            // with `--`.
             let written = self.written(item.span());
             if self.doubtful || (written.len() < CHUNK_BYTES && written.contains("--")) {
                 match recovery.item_as_meant(start) {
@@ -242,7 +245,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     fn block(&mut self, pair: Pair<'_, Rule>) -> Block<'s> {
         let mut block = Block::new(self.span(&pair), None, None);
         let parts = pair.into_inner();
-        // Usually, all parts except the kind and the two braces are fields.
+        // Usually, all parts except the kind and the two braces are fields, so memory for that many
+        // is reserved.
         block.fields.reserve_exact(parts.len().saturating_sub(3));
         for part in parts {
             match part.as_rule() {
@@ -345,7 +349,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
 
     fn elements(&mut self, pair: Pair<'_, Rule>) -> Vec<Element<'s>> {
         let parts = pair.into_inner();
-        // Values and commas alternate.
+        // Values and commas alternate, so about half of the parts are values.
         let mut elements: Vec<Element<'s>> = Vec::with_capacity(parts.len().div_ceil(2));
         for part in parts {
             if part.as_rule() != Rule::comma {

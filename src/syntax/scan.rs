@@ -140,11 +140,13 @@ impl Scan {
     /// Adds the comments and the problems of the scan to the result of parsing.
     pub fn report(self, text: &str, parsed: &mut Parsed<'_>) {
         self.report_odd_spaces(text, &mut parsed.problems);
-        // Text after a carriage return in a comment is hidden but not missing.
+        // In a comment, text after a carriage return may be meant as code. It is hidden, so nothing
+        // may be reported as missing.
         let hides = |place: &Span| text[place.start..].starts_with('\r');
         parsed.is_cut |= self.odd_spaces.iter().any(hides);
         if let Some(open) = self.open_comment(text) {
-            // Problems that only the unclosed comment causes are dropped.
+            // An unclosed comment hides the rest of the text. Problems that only this causes are
+            // dropped.
             parsed.problems.retain(|problem| {
                 let first = problem.labels.first().map_or(0, |label| label.span.end);
                 problem.code != "pinhole::unclosed_block" && first < open.start

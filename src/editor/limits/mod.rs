@@ -140,7 +140,8 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let is_count = trials.is_count(literal);
     if is_count {
         bounds.is_whole = true;
-        // Below zero, a formula may be valid although a count is not, as with a square.
+        // Negative counts are excluded here, since a formula such as a square may be valid for
+        // them, too.
         if literal.value >= 0.0 && bounds.least == f64::NEG_INFINITY {
             bounds.least = 0.0;
         }
@@ -216,7 +217,8 @@ impl Bounds {
                 Condition::AtLeast(bound) => bounds.least = bound,
                 Condition::MoreThan(bound) => (bounds.least, bounds.is_open) = (bound, true),
                 Condition::AtMostTwoTo(power) => bounds.most = two_to(power),
-                // Only fields for whole numbers have this condition.
+                // Only fields for whole numbers have this condition, so the greatest number is
+                // 2^power − 1.
                 Condition::LessThanTwoTo(power) => bounds.most = two_to(power) - 1.0,
                 Condition::EachMoreThanZero => (bounds.least, bounds.is_open) = (0.0, true),
                 Condition::LessThanHalfTurn => {

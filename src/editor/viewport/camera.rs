@@ -67,8 +67,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // In both modes, the picture follows the pointer. To look around, the camera therefore
-            // turns opposite to an orbit.
+            // In both modes, the picture follows the pointer. For that, the camera must turn in
+            // opposite directions when it orbits and when it stays in its place.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {
@@ -127,7 +127,7 @@ fn zoom(heights: f64) -> f64 {
 /// movement down turns away from the up vector.
 fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let (up, ahead) = (unit(camera.up).0, projection.ahead);
-    // Without roll, the top of the picture points along `level_top`.
+    // `level_top` is the direction of the picture's top without roll.
     let (sin, cos) = (trig::sin(camera.roll), trig::cos(camera.roll));
     let level_top = projection.top * cos - projection.right * sin;
     let pointer = DVec2::new(by.x * cos - by.y * sin, -by.x * sin - by.y * cos) * PI;

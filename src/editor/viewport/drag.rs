@@ -162,8 +162,8 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // The tolerance of a grid step would hide changes of other fields that share a number, so they
-    // are compared exactly.
+    // When the handle snaps to a grid, the tolerance is a whole step of the grid. That would hide
+    // changes of other fields that share a number, so these are compared exactly.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
@@ -187,7 +187,8 @@ pub fn drag(
             Ok((Some(found), after))
                 if view.agree(ideal, found, tolerance) && keeps_others(found) =>
             {
-                // Edits within the block change no other block, so the long text is not read again.
+                // Edits within the block change no other block, so the rest of the text, which may
+                // be long, is not read.
                 let is_own = |edit: &Edit| {
                     block.span.start <= edit.span.start && edit.span.end <= block.span.end
                 };

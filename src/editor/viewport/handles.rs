@@ -311,7 +311,7 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     let (axis, distance) = unit(sphere.center - projection.eye);
     let (ray, _) = unit(projection.ray(to));
     let radius = ray.cross(axis).length() * distance;
-    // An eye on the surface or inside of the sphere sees no silhouette.
+    // The silhouette must be in front of the eye, and the eye outside of the sphere.
     if ray.dot(axis) > 0.0 && radius < distance {
         Ok(radius)
     } else {

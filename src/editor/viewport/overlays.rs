@@ -151,7 +151,7 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = outline.lines.iter().flat_map(|line| line.windows(2));
         for (from, to) in segments.map(|ends| (ends[0], ends[1])) {
-            // Outside of the picture, no object hides a line.
+            // Outside of the picture, no object hides a line, so only the part inside is tested.
             let [first, last] = projection.clip([from, to], 0.0).unwrap_or([to, to]);
             let parts = (first.distance(last) / TEST_DISTANCE)
                 .ceil()
@@ -169,7 +169,7 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
                 let joined = lines.last_mut().filter(|line| line.last() == Some(&begin));
                 match joined {
                     Some(line) => {
-                        // A straight line keeps only its ends.
+                        // Of points on a straight line, only the first and the last one are kept.
                         if part > 0 {
                             line.pop();
                         }

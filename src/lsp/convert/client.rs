@@ -85,7 +85,7 @@ pub fn capabilities(client: &Client) -> Value {
             },
             "full": true,
         },
-        // Version of Pinhole's own requests, see docs/protocol.md.
+        // Version of Pinhole's own requests; see docs/protocol.md.
         "experimental": { "pinhole": 1 },
     })
 }

@@ -141,7 +141,7 @@ impl Converter<'_> {
         if !self.client.versioned_edits {
             return json!({ "changes": { self.uri.0.as_str(): edits } });
         }
-        // With the version, an editor with a newer text rejects the edits.
+        // An editor whose text has a newer version rejects the edits.
         let document = json!({ "uri": self.uri, "version": self.document.version });
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
@@ -176,7 +176,7 @@ impl Converter<'_> {
             // without asking.
             "isPreferred": of.map(|diagnostic| diagnostic.fixes.len() == 1 && fix.is_safe()),
             "edit": edit,
-            // See docs/protocol.md.
+            // This is Pinhole's extension of code actions; see docs/protocol.md.
             "data": of.map(|_| json!({
                 "applicability": fix.applicability.word(),
                 "values": values,
@@ -294,7 +294,7 @@ fn line_column(position: Position) -> LineColumn {
 /// Converts a colour that the client has picked, rounded to 8 bits per channel.
 pub fn color(color: protocol::Color) -> Color {
     let bytes = [color.red, color.green, color.blue];
-    // Conversions of floats to integers saturate.
+    // The conversion saturates, so channels outside of 0 to 1 are clamped.
     Color::from_bytes(bytes.map(|channel| (channel * 255.0).round() as u8))
 }
 

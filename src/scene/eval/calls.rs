@@ -342,7 +342,8 @@ impl<'s> Evaluator<'_, 's> {
             "asin" | "acos" => (
                 format!("`{name}` takes a number from -1 to 1"),
                 match known {
-                    // The number is out of range by more than a rounding error.
+                    // The number is out of range by more than a rounding error, so it has no
+                    // inverse sine or cosine.
                     [Value::Number(x)] if x.abs() > 1.0 + 1e-9 && !written.contains('/') => {
                         "no angle has that".to_owned()
                     }

@@ -27,8 +27,8 @@ impl<'s> Evaluator<'_, 's> {
             return value;
         }
         let defined = self.names.defined.get(name);
-        // A block that a `--set` argument changes is evaluated after all definitions, but its own
-        // text may only use earlier ones.
+        // With `--set` arguments, all definitions are evaluated before the blocks. Still, text of
+        // the file may use only names that are defined above it.
         let is_above =
             |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
         if let Some(defined) = defined.filter(is_above) {
@@ -219,7 +219,7 @@ impl<'s> Evaluator<'_, 's> {
             let pi = if name == "M_PI" { "pi" } else { "(2 * pi)" };
             return Some((pi.to_owned(), Applicability::Unsafe));
         }
-        // Of two colours, as in `olive green`, it is uncertain which one is meant.
+        // It is uncertain which of two colours is meant, as in `olive green`, so none is suggested.
         if name.contains(' ') && name.split(' ').all(|word| css::color(word).is_some()) {
             return None;
         }
@@ -240,7 +240,7 @@ impl<'s> Evaluator<'_, 's> {
             Some(_) => None,
         });
         let near = near?;
-        // The colour `lightred` does not exist, but it was not meant as `lightgrey`.
+        // `lightred` is not a CSS colour, but it is probably not a misspelt `lightgrey` either.
         let is_of_colors = css::color(near).is_some();
         if is_of_colors && near != name.replace('_', "") && is_of_tone(name) {
             return None;
@@ -305,7 +305,7 @@ fn no_other(name: &str, is_color: bool) -> String {
 
 /// Adds another use of an undefined name, at `span`, to the report of its first use.
 fn and_here(problem: &mut Diagnostic, span: Span) {
-    // A value may be evaluated more than once.
+    // A value may be evaluated more than once, but each use gets only one label.
     if problem.labels.iter().any(|label| label.span == span) {
         return;
     }

@@ -42,12 +42,14 @@ impl<'s> Evaluator<'_, 's> {
         rest: &[Step<'s>],
         wanted: Option<Type>,
     ) -> Option<Value> {
-        // Of several operators, only the last one's result must have the wanted type.
+        // Only the result of the last operator must have the wanted type, and the type of its left
+        // operand is unknown.
         let wanted = wanted.filter(|_| rest.len() == 1);
         let mut left = self.value(first, None);
         let mut span = first.span;
         for (index, step) in rest.iter().enumerate() {
-            // Both operands of a sum have the same type.
+            // Both operands of a sum have the same type, so the left one's type is wanted on the
+            // right.
             let alike = left.filter(|_| !step.operator.is_of_product());
             let right = self.value(&step.operand, alike.map(|left| left.kind()));
             left = match (left, right) {

@@ -63,7 +63,7 @@ impl UnitOrigin {
                     let by_turn = by_turn || is_half_turn(operand);
                     let product = match (left, step.operator, right, unit) {
                         (_, Operator::Divide, _, Some(unit)) => In(unit),
-                        // `x * 180 / pi`
+                        // The product `x * 180 / pi` converts radians to degrees.
                         (Plain | In(Unit::Radians), Operator::Divide, In(Unit::Radians), _)
                             if by_turn =>
                         {

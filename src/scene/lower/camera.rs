@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                         .at(eye_place, "the eye")
                         .help("move one of them, or give a `direction` instead of `lookat`"),
                 );
-                // Editors show the parts of a scene with errors. Without a view, they get no
-                // camera.
+                // Without a view, no camera is built, and an editor, which shows the correct parts
+                // of a scene, shows none.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -111,7 +111,7 @@ impl<'s> Lowering<'s> {
             0.5 * to - 0.5 * from
         };
         let sine = unit(up).cross(unit(along)).length();
-        // A comparison with NaN is false.
+        // The negation also returns here if `sine` is NaN.
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
@@ -304,7 +304,8 @@ impl Lowering<'_> {
                 continue;
             }
             reported = Some(place);
-            // Try sides that are visible to people: 1 m, or the eye's height above the board.
+            // Suggest 1 m or the eye's height above the board as the side, if samples can tell such
+            // squares apart.
             let height = (board.y - camera.eye.y).abs();
             let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));
             let larger = larger.map(numbers::short);

@@ -187,7 +187,7 @@ impl<'s> Lowering<'s> {
                 Some(unsure(format!("({text}, {text}, {text})")))
             }
             (Type::Color, Value::Vector(parts), _) => rgb(parts, tree, text),
-            // One colour for both kinds of squares.
+            // A single colour is used for both kinds of squares.
             (Type::Colors, Value::Color(_), _) => Some(unsure(format!("({text}, {text})"))),
             _ => None,
         }

@@ -47,7 +47,7 @@ impl<'s> Lowering<'s> {
             it.evaluate(&definition.value, None)
         });
         let Some(name) = name else { return };
-        // The parser has reported a definition without its `let`.
+        // A definition with an empty keyword lacks its `let`, which the parser has reported.
         let reported = definition.keyword.range().is_empty();
         match (predefined(name.text), first) {
             (Some(what), _) => {
@@ -64,7 +64,7 @@ impl<'s> Lowering<'s> {
             (None, None) => {
                 self.names.define(name, value, &definition.value);
             }
-            // The first definition stays valid.
+            // The parser has reported this definition, and the first one stays valid.
             (None, Some(_)) if reported => {}
             (None, Some(first)) => {
                 let message = format!("`{}` is defined twice", name.text);
@@ -198,9 +198,10 @@ impl<'s> Lowering<'s> {
             is_tried && !is_plane && !schema::is_word(kind.text)
                 || suggest::is_only_near(kind.text, near.name, schema::block_names())
         };
-        // A block of an unknown kind may be an object.
+        // A block of an unknown kind may be meant as an object, so missing objects are not
+        // reported.
         self.has_objects |= near.is_none();
-        // If only the start of a block is there, the parser has reported it.
+        // If the block has only its start, the parser has reported it already.
         if near.is_none() && block.close.is_none() && block.fields.is_empty() {
             return None;
         }
@@ -392,7 +393,8 @@ impl<'s> Lowering<'s> {
         let behind = Span::new(name.span.source, name.span.end, end);
         let edit = Edit::new(behind, format!(" {example}"));
         self.problems.push(Diagnostic {
-            // This is a syntax problem, but only lowering knows the names of fields.
+            // This is a syntax problem. The parser cannot report it, since only lowering knows the
+            // names of fields.
             is_of_syntax: true,
             ..error("missing_value", format!("`{field}` has no value"))
                 .at(name.span, "a value should follow this")

@@ -358,7 +358,8 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem with the first combination often occurs with all combinations.
+        // A problem with the first combination often occurs with all combinations. It gets a label
+        // with the indices only if its value depends on one.
         let is_first = values.iter().all(|&value| value == 0);
         // A fix must not replace a formula that depends on an index by the value for one
         // combination.
@@ -380,7 +381,8 @@ impl<'s> Lowering<'s> {
                 let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
                 problem.help = Some(help.to_owned());
             }
-            // Such triangles are typical of rows that meet in a point.
+            // Triangles with vertices on one line are typical of rows of triangles that meet in a
+            // point.
             if problem.is("on_one_line")
                 && let Some(help) = &mut problem.help
             {

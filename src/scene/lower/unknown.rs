@@ -67,7 +67,7 @@ impl<'s> Lowering<'s> {
     ) -> Vec<Span> {
         let (row, mut taken) = (block.row, Vec::new());
         let is_unknown = |it: &tree::Field<'_>| row.field(it.name.text).is_none();
-        // Most blocks have no unknown field.
+        // Most blocks have no unknown field, so this case is fast.
         if !fields.iter().any(is_unknown) {
             return taken;
         }
@@ -188,7 +188,8 @@ impl<'s> Lowering<'s> {
         let is_tried = |words| is_of_file && suggest::is_among(word, words);
         if let Some(field) = row.field_tried(word) {
             let meant = self.renamed(block, field, name, value, whole);
-            // A field that another kind of block has may have been meant for that block.
+            // If another kind of block has this field, the field may have been meant for such a
+            // block.
             let is_known = schema::is_word(word);
             return Some(if is_known { meant.unsure() } else { meant });
         }

@@ -137,7 +137,7 @@ impl Triangle {
                 let distances = vertices.map(|vertex| vertex.distance(centroid));
                 distances.into_iter().fold(0.0, f64::max)
             }
-            // The distance of a vertex from the centroid is at most the longest side.
+            // The distance from the centroid to a vertex is at most the length of the longest side.
             TriangleOutline::Centered(triangle) => triangle.sides.max_element(),
         };
         Some((centroid, radius))

@@ -64,7 +64,7 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, format!("rgb({parts})"));
                 self.report(&said, span, &[example(takes)], fix);
             }
-            // Digits are grouped by spaces, as in `6 371 000`.
+            // Spaces in a number, as in `6 371 000`, are meant to group its digits.
             (None | Some(Type::Number), _) if numbers && commas == 0 && are_thousands(whole) => {
                 let label = "no spaces stand in a number";
                 let fix = replace(span, whole.replace(' ', ""));
@@ -149,9 +149,9 @@ impl<'s> Recovery<'_, 's> {
     /// stands between `start` and the `)`. Returns whether it was reported.
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
         let end = self.here().start;
-        // Maximum length, in bytes, of the text that is searched for such a name. Nothing is
-        // reported in a longer text. A value is searched again for each of its surplus `)`, so the
-        // limit bounds the time.
+        // Maximum length, in bytes, of the text between `start` and the `)`. In a longer text,
+        // nothing is searched or reported. A value is searched again for each of its surplus `)`,
+        // so the limit bounds the time.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {
             return false;
@@ -283,8 +283,8 @@ pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
             })
         }
         ValueKind::Negation { .. } => is_plain_number(value),
-        // In `normalize(1, 0, 0))` the call has a wrong number of arguments, so the `)` may belong
-        // to a missing `(`.
+        // If the call has a wrong number of arguments, as in `normalize(1, 0, 0))`, the `)` may
+        // belong to a `(` that is missing in the call.
         ValueKind::Call(call)
             if schema::function(call.function.text)
                 .is_some_and(|row| !row.accepts(call.arguments.len())) =>

@@ -45,7 +45,7 @@ impl<'s> Recovery<'_, 's> {
         self.clear_uncertain_fixes(problems_before);
         definition.span = keyword.to(definition.value.span);
         let is_right = self.problems.len() == problems_before;
-        // The next item may start with a name; `;` and `,` may separate it.
+        // The definition may be followed by a name, which starts the next item, or by a separator.
         let is_next = self.is_name(0) || (is_right && matches!(self.word(0), ";" | ","));
         if !is_next && !self.is_boundary() {
             if is_right {
@@ -175,7 +175,7 @@ impl<'s> Recovery<'_, 's> {
             let right = shorten(written);
             let title = format!("write `let {text} = {right}`");
             let fix = (is_right && is_next).then(|| Fix::new(title, edits));
-            // The other language's word may mean more than `let`, so the fix is not safe.
+            // A word of another language may mean more than `let`, so replacing it is not safe.
             let is_foreign = !is_plain && suggest::nearest(word, ["let"]).is_none();
             let said = say::MISSING_LET.safe_if(!is_foreign);
             self.report(&said, start, &[&text, &right], fix);

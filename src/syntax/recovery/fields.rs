@@ -281,7 +281,8 @@ impl<'s> Recovery<'_, 's> {
         let after = Span::new(self.id, name.end, name.end);
         self.comments(CommentPosition::Value);
         let word = self.word(0);
-        // Whether the next line starts with another field, i.e. a name and its value.
+        // `is_next` says that the next line starts with another field, i.e. with a name and a
+        // value.
         let is_next = self.is_on_new_line(0)
             && self.starts_value(1)
             && !self.words.is_value(word)
@@ -335,7 +336,7 @@ impl<'s> Recovery<'_, 's> {
         // The span ends with the last value, before a comment.
         let span = start.to(end);
         block.bad.push(span);
-        // Mistakes within the values are part of this mistake.
+        // Mistakes within the values are not reported on their own.
         self.problems.truncate(problems_before);
         let is_vector =
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);
@@ -353,7 +354,8 @@ impl<'s> Recovery<'_, 's> {
         });
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
-        // The two vectors of a box may also be its centre and its size, so its fix is not safe.
+        // Two vectors in a box are read as its corners. They may also be its centre and its size,
+        // so that fix is not safe.
         let said = say::MISSING_FIELD_NAME.safe_if(kind == Some(BlockKind::Sphere));
         self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);

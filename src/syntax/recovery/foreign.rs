@@ -65,7 +65,8 @@ impl<'s> Recovery<'_, 's> {
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
-        // A `Bad` item prevents reports about unknown names that the statement may define.
+        // The statement may define names. Lowering does not report uses of names that occur in a
+        // `Bad` item.
         self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
@@ -149,7 +150,8 @@ impl<'s> Recovery<'_, 's> {
             self.bump();
         }
         let span = start.to(self.behind());
-        // In `i % 2 == 0 ? red : blue`, the remainder and the condition are one mistake.
+        // In `i % 2 == 0 ? red : blue`, the remainder and the condition are reported as one
+        // mistake.
         let of_remainder = |it: &Diagnostic| it.message == "there is no operator `%`";
         let last = self.problems.last().filter(|it| of_remainder(it));
         let of_color = matches!(self.context.takes, Some(Type::Color | Type::Colors));
@@ -208,7 +210,7 @@ impl<'s> Recovery<'_, 's> {
                 || (word == "%" && place == CommentPosition::Operator);
             return is_place && self.is_prose();
         }
-        // `1 -- big` is a value with a comment, but `1 --b` and `1 -- b` with a known `b` are
+        // In `1 -- big`, the `--` starts a comment. `1 --b`, and `1 -- b` if `b` is defined, are
         // differences.
         let name = self.word(2);
         let is_remark = self.is_name(2)

@@ -39,7 +39,7 @@ const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the va
 /// Correction that moves the object's name before the `for`.
 const NAME_FIRST: &str = "^";
 
-/// Patterns of an index with its count.
+/// Patterns of one index with its count, such as `i < 8`, without and with mistakes.
 #[rustfmt::skip]
 const INDICES: [HeadPattern; 27] = [
     ["I < N", "", "{I} < {N}", ""],
@@ -73,7 +73,7 @@ const INDICES: [HeadPattern; 27] = [
 
 const COMMA: &str = "a comma separates two indices";
 
-/// Patterns of what may follow an index and its count.
+/// Patterns of the text after an index and its count, without and with mistakes.
 #[rustfmt::skip]
 const BEHIND: [HeadPattern; 9] = [
     ["« , » $", "no comma stands behind the last index", "", ""],
@@ -283,7 +283,7 @@ fn value_length(text: &str) -> usize {
         };
         let operand = operand.trim_start();
         let operand = operand.strip_prefix('-').unwrap_or(operand);
-        // `0..8` is a range, so `0.` must not be read as a number there.
+        // In the range `0..8`, the number is `0` and not `0.`.
         let number = numeric_part(operand);
         let is_range = operand
             .get(number.len()..)

@@ -287,7 +287,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    // Closing brackets and braces that were never opened.
+    // The methods below report closing brackets and braces that were never opened.
 
     /// Reports a `)` or `]` that was never opened. The fix removes the bracket. There is a fix only
     /// if the caller knows that the bracket changes nothing (`is_needless`) and the line has no
@@ -295,7 +295,8 @@ impl<'s> Recovery<'_, 's> {
     pub(super) fn stray_parenthesis(&mut self, is_needless: bool) {
         let sign = self.word(0);
         let span = self.bump();
-        // The opening bracket may be part of another mistake in the line.
+        // There is no fix if the line has a surplus opening bracket, which may be part of another
+        // mistake.
         let line = self.line_before(span.start);
         let open = if sign == ")" { '(' } else { '[' };
         let is_opened = line.matches(open).count() > line.matches(sign).count();

@@ -83,7 +83,7 @@ impl<'s> Recovery<'_, 's> {
             return self.foreign_function(function, list);
         }
         // All `%` among the arguments of a function that makes colours, as in `rgb(100%, 0%, 0%)`,
-        // are one mistake.
+        // are reported as one mistake.
         let is_known = schema::function(function.text).is_some();
         if self.problems.len() > problems_before + 1 && self.written(parentheses).contains('%') {
             self.problems.truncate(problems_before);
@@ -205,7 +205,7 @@ impl<'s> Recovery<'_, 's> {
                 if !is_value_next {
                     list.gaps.push(list.elements.len());
                 }
-                // Skip the name of a part, as in `(x = 3, …)`.
+                // Skip the name of a part of the list, as in `(x = 3, …)`.
                 let is_path = self.is(1, ":") && self.is(2, ":");
                 if self.is_name(0) && matches!(self.word(1), "=" | ":") && !is_path {
                     let name = self.bump();
@@ -342,7 +342,8 @@ impl<'s> Recovery<'_, 's> {
             let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
             Fix::new(format!("write `{l}, {r}`"), edits)
         });
-        // In `min1.6`, one word was split into two values, so the fix is not safe.
+        // Two values without white space between them, as in `min1.6`, were probably one word, so
+        // the fix is not safe.
         let are_apart = left.span.end < right.span.start;
         self.report(
             &say::MISSING_COMMA.safe_if(are_apart),

@@ -206,7 +206,7 @@ impl<'w, 's> Recovery<'w, 's> {
         parsed
     }
 
-    // Tokens.
+    // The methods below look at the next tokens or take them.
 
     /// Returns the token `ahead` tokens after the next one, without taking it. At the end of the
     /// text, this is an end token.
@@ -346,7 +346,7 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    // Resynchronization.
+    // The methods below skip text after a mistake.
 
     /// Returns whether every unfinished construct ends before the next token: a brace, `let`, the
     /// name of a field, the start of a head, or the first token of a line (within a block, only a
@@ -387,7 +387,7 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    // Problems.
+    // The methods below report problems.
 
     fn report(&mut self, said: &Message, at: Span, words: &[&str], fix: impl Into<Option<Fix>>) {
         self.problems.push(said.at(at, words, fix));

@@ -39,13 +39,13 @@ impl<'s> Recovery<'_, 's> {
         if self.is(0, "(") {
             return self.call(name);
         }
-        // Other languages have an index in brackets, as in `sizes[i]` and `Ball[3]`.
+        // An index in brackets, as in `sizes[i]` and `Ball[3]`, is a construct of other languages.
         let (is_let, is_known) = (self.words.is_let(name.text), self.words.is_value(name.text));
         if self.is(0, "[") && self.is_adjacent(0) && (is_let || !is_known) {
             let problems_before = self.problems.len();
             self.group("]");
             self.problems.truncate(problems_before);
-            // Skip a field of an object, as in `Ball[3].center`.
+            // A field of an object, as in `Ball[3].center`, belongs to the same mistake.
             if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
                 self.bump();
                 self.bump();
@@ -120,8 +120,8 @@ impl<'s> Recovery<'_, 's> {
         let is_whole = row.accepts(arguments.len())
             && (!row.more || self.lists == 0)
             && !self.goes_on(&arguments);
-        // If an operator follows, it may belong to the last argument, so the end of the call is
-        // uncertain.
+        // If an operator follows the last argument, the call may end before or after the operator,
+        // so its end is uncertain.
         let whole = self.operations(bad(span)).span;
         let is_all = self.last_end == end;
         let mut fix = replace(span, format!("{}({list})", name.text));

@@ -152,8 +152,8 @@ impl<'s> Recovery<'_, 's> {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)
         };
-        // The fix for `4x4` writes the product 16. A fix that is shorter than the written text is
-        // not safe.
+        // For `4x4`, the fix writes only 16, the product. A fix that is shorter than the written
+        // text is not safe.
         let is_longer = |right: &String| right.len() >= written.len();
         let said = say::BAD_NUMBER.safe_if(right.as_ref().is_none_or(is_longer));
         let fix = right.map(|right| replace(span, right));

@@ -114,7 +114,7 @@ impl<'s> Recovery<'_, 's> {
 
     fn is_stray_closing(&mut self) -> bool {
         let word = self.word(0);
-        // If a bracket stands in place of the block's `}`, the block reports it.
+        // A bracket in place of the block's `}` is reported when the block ends.
         let is_end = |this: &mut Self| this.context.is_block && this.is_end_of_block();
         matches!(word, ")" | "]") && word != self.context.close && !is_end(self)
     }
@@ -126,7 +126,7 @@ impl<'s> Recovery<'_, 's> {
         match self.kind(0) {
             _ if is_new && !self.context.is_block => false,
             TokenKind::Name => {
-                // In `dark red`, two words are the name of one colour; likewise for methods.
+                // Two words may together be the name of one colour or method, as in `dark red`.
                 let is_words = matches!(self.context.takes, Some(Type::Color | Type::Method))
                     && are_names(values)
                     && (!self.starts_value(1) || self.is_field_name(next));
@@ -163,7 +163,7 @@ impl<'s> Recovery<'_, 's> {
         Value { kind, span }
     }
 
-    // Operators.
+    // The methods below read operators.
 
     /// Reads a value with its operators.
     pub(super) fn expression(&mut self) -> Value<'s> {
@@ -177,7 +177,8 @@ impl<'s> Recovery<'_, 's> {
             let first = this.signed();
             this.chain(first, PRODUCT, Self::signed)
         });
-        // A condition that starts with `if` is handled in `operand`.
+        // This operator starts a condition such as `a > b ? c : d`. A condition that starts with
+        // `if` is handled in `operand`.
         let compares = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?" | "=");
         if compares && !self.is_on_new_line(0) && self.condition() {
             return bad(left.span.to(self.behind()));
@@ -323,7 +324,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    // Operands.
+    // The methods below read operands.
 
     fn operand(&mut self) -> Value<'s> {
         let word = self.word(0);
