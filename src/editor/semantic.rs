@@ -1,4 +1,4 @@
-//! Classifies words for colouring.
+//! Classifies the words of a text, so that editors can colour them.
 
 use super::{
     analysis::Analysis,

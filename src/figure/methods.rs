@@ -103,8 +103,8 @@ fn kept(method: Method, n: u64) -> String {
 }
 
 /// Draws the strata of a method as thin lines in a square with the corner `corner` and the given
-/// side. The lines of the first tiling are a little stronger, unless it consists of rows or columns
-/// alone.
+/// side. The strata form one or more [`Tiling`]s of the square. The lines of the first tiling are a
+/// little stronger, unless it consists of rows or columns alone.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };

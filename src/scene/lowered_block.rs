@@ -30,7 +30,7 @@ pub struct LoweredBlock<'s> {
     pub unfinished: bool,
 }
 
-/// A field as it is written in a block.
+/// A field that a block has: where its name and value stand in the text, and its value.
 #[derive(Clone, Copy)]
 pub struct Given {
     /// Span of the field's name.

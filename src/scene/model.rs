@@ -71,7 +71,7 @@ pub struct Camera {
     pub far: Option<f64>,
 }
 
-/// The view direction of a camera, in either of the language's two ways.
+/// The view direction of a camera, in either of the language's two forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
     /// Towards a point other than the eye.

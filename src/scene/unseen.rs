@@ -104,7 +104,8 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// Returns `None` if the camera's axes are not known well enough.
+    /// Makes the visible space of a camera. Returns `None` if the camera's axes are too inaccurate;
+    /// see [`LEAST_SINE`].
     pub fn new(camera: &Camera, image: &Image) -> Option<Self> {
         Some(Self {
             frustum: Frustum::new(camera, image)?,
@@ -172,7 +173,8 @@ struct Frustum {
 }
 
 impl Frustum {
-    /// Returns `None` if the axes are not known well enough.
+    /// Makes the pyramid of a camera. Returns `None` if the camera's axes are too inaccurate; see
+    /// [`LEAST_SINE`].
     fn new(camera: &Camera, image: &Image) -> Option<Self> {
         let (from, to) = camera.view.ends(camera.eye);
         let forward = (to - from).normalize();
@@ -180,7 +182,7 @@ impl Frustum {
         // If two points are close to each other but far from the origin, their difference has few
         // correct digits.
         let is_precise = from.distance(to) > LEAST_SINE * (from.length() + to.length());
-        // A comparison with NaN is false.
+        // The negation also returns if a length is NaN.
         if !(is_precise && right.length() > LEAST_SINE) {
             return None;
         }
@@ -237,7 +239,7 @@ impl Frustum {
     /// by a margin. Here e is the eye and n the plane's normal, of length 1.
     fn is_beyond(&self, (center, radius): (DVec3, f64), n: DVec3, bound: f64) -> bool {
         let size = center.length() + radius + self.eye.length() + bound.abs();
-        // A comparison with NaN is false.
+        // The comparison is `false` if a number is NaN.
         n.dot(center - self.eye) + radius < bound - MARGIN * size
     }
 

@@ -237,7 +237,7 @@ impl SceneFile {
                 self.version += 1;
             }
         }
-        // Drafts with other texts are kept.
+        // Only drafts of the saved text are removed.
         drafts.retain(|it| it.text != new);
         let _ = self.drafts.keep(&drafts);
         if !is_other {

@@ -12,7 +12,7 @@ pub enum TokenKind {
     Name,
     /// A word that starts with a digit, or with a `.` and a digit: `2`, `1e-3`, `30deg`, `0x10`.
     Number,
-    /// `#` and the word that follows it without a space.
+    /// A colour code such as `#ff8000`: `#` and any word that follows it without a space.
     Color,
     /// A text in quotation marks, including the marks. Without a closing mark in its line, it is
     /// the opening mark and the word after it.

@@ -8,7 +8,8 @@ use crate::{
 /// Minimum decimal exponent of a slider's step, so that the step does not underflow to 0.
 const LEAST_EXPONENT: i32 = -300;
 
-/// Maximum number of significant digits of a changed number.
+/// Maximum number of significant digits of a changed number; the slider's step is not finer. An
+/// `f64` distinguishes all numbers with 15 digits.
 const DIGITS: i32 = 15;
 
 /// A number literal with the sign directly before it.

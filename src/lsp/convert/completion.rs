@@ -12,17 +12,17 @@ impl Converter<'_> {
     pub fn completion(&self, index: usize, completion: Completion) -> Value {
         let kind = match completion.kind {
             CompletionKind::Function => 3,
-            // 6 is `Variable`.
+            // The protocol calls 6 `Variable`.
             CompletionKind::Definition => 6,
-            // 10 is `Property`.
+            // The protocol calls 10 `Property`.
             CompletionKind::Field => 10,
             CompletionKind::Value => 12,
             CompletionKind::Keyword => 14,
             CompletionKind::Color(_) => 16,
-            // 20 is `EnumMember`.
+            // The protocol calls 20 `EnumMember`.
             CompletionKind::Method => 20,
             CompletionKind::Constant => 21,
-            // 22 is `Struct`.
+            // The protocol calls 22 `Struct`.
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
@@ -47,7 +47,7 @@ impl Converter<'_> {
             "documentation": documentation,
             // Editors sort by this text, so it keeps the order of the list.
             "sortText": format!("{index:04}"),
-            // 1 is `PlainText`, 2 is `Snippet`.
+            // The protocol calls 1 `PlainText` and 2 `Snippet`.
             "insertTextFormat": 1 + u8::from(is_snippet),
             "textEdit": { "range": self.range(completion.replaces), "newText": text },
         }))

@@ -89,7 +89,7 @@ impl Converter<'_> {
             "code": diagnostic.code.trim_start_matches("pinhole::"),
             "source": "pinhole",
             "message": message,
-            // 1 is `Unnecessary`: editors show the text in grey.
+            // The protocol calls 1 `Unnecessary`: editors show the text in grey.
             "tags": diagnostic.is_needless.then_some([1]),
             "relatedInformation": Some(related).filter(|related| !related.is_empty()),
         }))
@@ -123,7 +123,7 @@ impl Converter<'_> {
     }
 
     pub fn highlight(&self, occurrence: Occurrence) -> Value {
-        // 3 is `Write`, 2 is `Read`.
+        // The protocol calls 3 `Write` and 2 `Read`.
         let kind = if occurrence.is_definition { 3 } else { 2 };
         json!({ "range": self.range(occurrence.span), "kind": kind })
     }
@@ -210,11 +210,11 @@ impl Converter<'_> {
             "name": symbol.name,
             "detail": Some(symbol.detail).filter(|detail| !detail.is_empty()),
             "kind": match symbol.kind {
-                // 2 is `Module`.
+                // The protocol calls 2 `Module`.
                 SymbolKind::Setting => 2,
-                // 7 is `Property`.
+                // The protocol calls 7 `Property`.
                 SymbolKind::Field => 7,
-                // 13 is `Variable`.
+                // The protocol calls 13 `Variable`.
                 SymbolKind::Definition => 13,
                 SymbolKind::Object => 19,
             },
@@ -237,7 +237,7 @@ impl Converter<'_> {
     }
 
     pub fn hint(&self, hint: Hint) -> Value {
-        // 1 is `Type`.
+        // The protocol calls 1 `Type`.
         let kind = 1;
         json!({
             "position": self.position(hint.at), "label": hint.text, "kind": kind, "paddingLeft": true

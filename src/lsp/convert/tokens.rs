@@ -1,4 +1,4 @@
-//! Converts semantic tokens.
+//! Converts semantic tokens to the protocol's encoding.
 
 use serde_json::{Value, json};
 

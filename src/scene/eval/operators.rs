@@ -1,4 +1,4 @@
-//! Evaluates signs and operators.
+//! Evaluates negations and binary operators.
 
 use super::evaluator::{Evaluator, LARGEST};
 use crate::{

@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                         .at(eye_place, "the eye")
                         .help("move one of them, or give a `direction` instead of `lookat`"),
                 );
-                // Without a view, no camera is built, and an editor, which shows the correct parts
-                // of a scene, shows none.
+                // An editor shows the correct parts of a scene with errors. Without a view, it
+                // shows no camera.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -237,7 +237,8 @@ impl<'s> Lowering<'s> {
 }
 
 impl Lowering<'_> {
-    /// Warns of named objects, and of repeated blocks, none of whose parts is in the picture.
+    /// Warns of named objects, and of named repeated blocks, that lie wholly outside of the
+    /// picture.
     fn outside(&mut self, camera: &Camera, image: &Image, objects: &[Object]) {
         let Some(sight) = Sight::new(camera, image) else {
             return;

@@ -353,7 +353,7 @@ impl<'s> Lowering<'s> {
                 self.sampler(block, Some(LARGEST));
             }
             BlockKind::Image => {}
-            // All other kinds are objects.
+            // All other kinds of blocks are objects.
             _ => {
                 Shape::lower(block, &mut self.problems);
             }

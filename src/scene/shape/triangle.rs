@@ -1,4 +1,4 @@
-//! The triangle.
+//! The shape `triangle`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
 use serde_json::{Value as Json, json};

@@ -130,7 +130,8 @@ impl<'s> Recovery<'_, 's> {
             };
             return self.report(said, right.span, &[&r], None);
         }
-        // `2 pi` is a product if one value is a number literal and the other surely is a number.
+        // Two values are a product, as in `2 pi`, if one is a number literal and the other surely
+        // is a number.
         let sign = Span::new(self.id, left.span.end, right.span.start);
         let are_numbers = (is_plain_number(left) && self.is_factor(right))
             || (self.is_factor(left) && is_plain_number(right));

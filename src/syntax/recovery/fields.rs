@@ -143,7 +143,7 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(kind) {
             return self.block();
         }
-        // The head may have indices, and its `{` may be missing.
+        // Skip the head, which may have indices. Its `{` may be missing.
         self.skip_head();
         if self.is(0, "{") {
             self.bump();
