@@ -56,14 +56,14 @@ impl Problems {
         self.left_out.is_some()
     }
 
-    /// Removes the problems from the index `length` on. If there were any, problems can be added
-    /// again.
+    /// Removes the problems from the index `length` on. If there were any, new problems can be
+    /// added, even if some were omitted before.
     pub fn truncate(&mut self, length: usize) {
         self.split_off(length);
     }
 
-    /// Removes and returns the problems from the index `length` on. If there were any, problems can
-    /// be added again.
+    /// Removes and returns the problems from the index `length` on. If there were any, new problems
+    /// can be added, even if some were omitted before.
     pub fn split_off(&mut self, length: usize) -> Vec<Diagnostic> {
         if length < self.kept.len() {
             self.left_out = None;

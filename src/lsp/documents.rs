@@ -32,7 +32,7 @@ pub type LineColumn = (u32, u32);
 pub struct Document {
     /// The version of the text, as the client numbers them.
     pub version: i32,
-    /// The text.
+    /// The text, as the file of a scene without `--set` arguments.
     pub sources: Sources,
     encoding: Encoding,
 }

@@ -201,9 +201,10 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// Returns the defined name that is nearest to `name`, and whether it is a safe replacement.
-    /// Only colours are considered if a colour is wanted, and otherwise numbers, angles and
-    /// vectors; names whose values have another type than `wanted` are left out.
+    /// Returns the name that is nearest to `name`, and whether it is a safe replacement. Considers
+    /// definitions and colours if a colour is wanted, and otherwise definitions and constants;
+    /// colours also if no type is wanted. Leaves out names whose values have another type than
+    /// `wanted`.
     fn nearest(
         &self,
         name: &str,

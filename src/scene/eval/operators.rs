@@ -42,8 +42,7 @@ impl<'s> Evaluator<'_, 's> {
         rest: &[Step<'s>],
         wanted: Option<Type>,
     ) -> Option<Value> {
-        // Only the result of the last operator must have the wanted type, and the type of its left
-        // operand is unknown.
+        // With several operators, no type is wanted, since intermediate results may have any type.
         let wanted = wanted.filter(|_| rest.len() == 1);
         let mut left = self.value(first, None);
         let mut span = first.span;
