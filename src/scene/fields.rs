@@ -24,8 +24,8 @@ pub enum FieldOwner {
 }
 
 impl FieldOwner {
-    /// Returns the value of a field. Returns `None` if the field is not used, since its block gives
-    /// another one of fields that exclude each other. For a box, all of `min`, `max`, `center` and
+    /// Returns the value of a field. Returns `None` if the owner does not use the field, such as
+    /// `direction` of a camera that has a `lookat`. For a box, all of `min`, `max`, `center` and
     /// `size` are available.
     pub fn value(self, field: &str) -> Option<Value> {
         match self {
@@ -35,8 +35,8 @@ impl FieldOwner {
         }
     }
 
-    /// Returns a copy in which `field` has the value `value`. Returns `None` if the field is not
-    /// used or the value has another type. Does not check the language's conditions.
+    /// Returns a copy in which `field` has the value `value`. Returns `None` if the owner does not
+    /// use the field, or if the value has another type. Does not check the language's conditions.
     pub fn with(mut self, field: &str, value: Value) -> Option<Self> {
         match &mut self {
             Self::Image(image) => image_field(image, field)?.set(value)?,

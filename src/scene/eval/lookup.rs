@@ -202,9 +202,8 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Returns the name that is nearest to `name`, and whether it is a safe replacement. Considers
-    /// definitions and colours if a colour is wanted, and otherwise definitions and constants;
-    /// colours also if no type is wanted. Leaves out names whose values have another type than
-    /// `wanted`.
+    /// definitions and colours if a colour is wanted, and otherwise definitions, constants and, if
+    /// no type is wanted, colours. Leaves out names whose values have another type than `wanted`.
     fn nearest(
         &self,
         name: &str,

@@ -18,7 +18,7 @@ use crate::{
     syntax::shorten,
 };
 
-/// Span of problems about blocks that the file lacks: the empty span at its start.
+/// Span for problems about blocks that the file lacks: the empty span at the start of the file.
 const START: Span = Span {
     source: SourceId::File,
     start: 0,

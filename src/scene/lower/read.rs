@@ -45,7 +45,7 @@ const PART_BYTES: usize = 1 << 16;
 /// after the other, so that the tree of the whole file is never in memory.
 ///
 /// The result does not depend on the size of the parts: a file with mistakes is read again as a
-/// whole, because a report may refer to several places.
+/// whole, because one report may refer to places in several parts.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     read_as_far(sources, bytes, &cancel::NEVER)
 }

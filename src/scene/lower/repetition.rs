@@ -358,8 +358,8 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem with the first combination often occurs with all combinations. It gets a label
-        // with the indices only if its value depends on one.
+        // A problem with the first combination often occurs with all combinations. Such a problem
+        // gets a label with the indices only if its value depends on one.
         let is_first = values.iter().all(|&value| value == 0);
         // A fix must not replace a formula that depends on an index by the value for one
         // combination.

@@ -130,7 +130,8 @@ impl Shape {
     }
 
     /// Returns the value of a field by its name. Returns `None` if the shape was not written with
-    /// the field. For a box, all of `min`, `max`, `center` and `size` are available.
+    /// the field, such as `v0` of a triangle that is given by its centroid. For a box, all of
+    /// `min`, `max`, `center` and `size` are available.
     pub fn field(mut self, name: &str) -> Option<Value> {
         if let Self::Box(cuboid) = &self
             && let Some(value) = cuboid.center_or_size(name)

@@ -25,7 +25,8 @@ impl<'s> Recovery<'_, 's> {
         };
         let outside = std::mem::replace(&mut self.context, within);
         let problems_before = self.problems.len();
-        // After a report about braces within the block, it is uncertain which brace is missing.
+        // After a report about braces within the block, it is uncertain which brace is missing, so
+        // a missing `}` is not reported.
         let (mut braces, mut had_braces) = (0_usize, false);
         block.close = loop {
             self.comments(CommentPosition::Start);

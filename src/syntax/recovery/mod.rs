@@ -91,7 +91,7 @@ struct Context<'s> {
     /// Needless separators and the characters that start comments in other languages. Each is
     /// mapped to its places.
     signs: BTreeMap<&'s str, Vec<Span>>,
-    /// Whether one of `signs` may be needed after all. Their reports then get no fix.
+    /// Whether one of `signs` may be needed after all. The reports of `signs` then get no fix.
     is_doubtful: bool,
 }
 
