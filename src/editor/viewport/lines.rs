@@ -9,9 +9,9 @@ use crate::projection::Projection;
 /// infinitely far away.
 const NEAREST: f64 = 1e-6;
 
-/// Maximum distance of a line from the picture, in picture sizes; the part beyond it is cut off.
-/// Browsers draw in single precision, which is exact to a tenth of a pixel up to 2^20 pixels, and a
-/// page shows a picture with up to 8192 pixels in a row.
+/// Maximum distance of a line from the picture, in picture sizes; the part beyond it is cut off. A
+/// page shows a picture with up to 8192 pixels in a row, so the distance is at most 2^20 pixels. Up
+/// to there, browsers, which draw in single precision, are exact to a tenth of a pixel.
 const REACH: f64 = 128.0;
 
 /// A polygonal line through points of the picture, in pixels.

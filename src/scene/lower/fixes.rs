@@ -57,9 +57,10 @@ impl Lowering<'_> {
         Some(Fix::new(title, [edit]).placeholder())
     }
 
-    /// Returns the fixes for two fields of `choice` that exclude each other: keep all fields of one
-    /// way and remove those of the other ways. There is no fix if the kept way would lack a field,
-    /// or if another field stands between the removed ones.
+    /// Returns the fixes for two fields that exclude each other because they belong to different
+    /// ways of the [`Choice`] `choice`: keep all fields of one way and remove those of the other
+    /// ways. There is no fix if the kept way would lack a field, or if another field stands between
+    /// the removed ones.
     pub(super) fn one_of(
         &self,
         block: &LoweredBlock<'_>,

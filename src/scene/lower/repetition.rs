@@ -270,7 +270,8 @@ impl<'s> Lowering<'s> {
     fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
         let behind = Span::new(name.span.source, name.span.end, block.span.end);
         let text = self.sources.text(behind);
-        // A use of the index in other capitals is reported as an undefined name.
+        // A use of the index in other capitals is reported as an undefined name, so the index is
+        // not reported as unused.
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
         if block.open.is_none()
             || has_name(text, name.text)
