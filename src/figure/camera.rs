@@ -194,9 +194,9 @@ fn objects_within(
     around.filter(is_within).take(MOST_OBJECTS).collect()
 }
 
-/// Returns lines between the squares of the boards below the drawn `points`, and adds the corners
-/// of the drawn part of each board to `points`. If there would be too many lines, draws only every
-/// second or third one, and so on.
+/// Returns the lines between the squares of the boards below the drawn `points`. If there would be
+/// too many, returns only every second one, every third one, and so on. Adds the corners of the
+/// drawn part of each board to `points`.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);
