@@ -2,7 +2,7 @@
 //!
 //! The form of the spelling is kept: a name stays a name if the new colour has one, a code stays a
 //! code, and `rgb(…)` stays a call. A call whose arguments are expressions, or that contains
-//! comments, cannot be replaced, since they would be lost.
+//! comments, cannot be replaced, since another colour would remove the expressions or comments.
 
 use super::{analysis::Analysis, tokens::Role};
 use crate::{

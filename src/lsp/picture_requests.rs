@@ -164,8 +164,7 @@ fn label(object: &Object) -> Cow<'_, str> {
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
-    // The first board is always listed, wherever it is in the text, since objects stand on it and
-    // the page needs its height.
+    // The first board is always listed, wherever it is in the text, since objects stand on it.
     let floor = match shown {
         ShownObjects::First(_) => objects.iter().position(is_board),
         ShownObjects::Only(_) => None,
