@@ -80,9 +80,10 @@ pub fn half_byte(k: u8) -> f64 {
 /// Returns whether linear light is darker than the light of `k` + 1/2. `light` is positive and not
 /// subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // Double-double is tried first, since integers would take half the time of a small picture. In
-    // units of its rounding, the relative errors are at most 4 and 11 for the powers on the left, 1
-    // for their product, 11 for the right side, and 1 for the difference: less than 32.
+    // Double-doubles decide most cases; integers alone would take half the time of rendering a
+    // small picture. In units of the double-double rounding, the relative errors are at most 4 for
+    // light^5, 11 for scale^12, 1 for the product of these, 11 for x^12, and 1 for the difference,
+    // in sum less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -130,13 +131,13 @@ pub fn linear_to_srgb(light: f64) -> f64 {
     }
 }
 
-/// Converts a channel from 0 to 1 to a whole number from 0 to 255, as text.
+/// Converts a channel from 0 to 1 to a whole number from 0 to 255, and formats it.
 pub fn in_bytes(part: f64) -> String {
     (part * 255.0).round().to_string()
 }
 
-/// Converts the channels of a written colour to 0 to 255 if all are at most 1. Otherwise returns
-/// them as they are written.
+/// Converts the channels of `written`, a colour in a scene's text, from 0 to 1 to 0 to 255 if all
+/// are at most 1. Otherwise returns `written` unchanged.
 pub fn whole_parts(written: &str) -> String {
     if !are_shares(&[written]) {
         return written.to_owned();
@@ -149,8 +150,8 @@ pub fn whole_parts(written: &str) -> String {
     bytes
 }
 
-/// Returns whether all channels of a written colour are numbers up to 1. They may then be meant as
-/// 0 to 1, although the language would read them as 0 to 255.
+/// Returns whether all channels in `parts`, texts of a colour in a scene, are numbers up to 1.
+/// Channels of the language are from 0 to 255, but the author may have meant 0 to 1.
 pub fn are_shares(parts: &[&str]) -> bool {
     let separates = |c: char| c == ',' || c.is_whitespace();
     let parts = parts.iter().flat_map(|part| part.split(separates));

@@ -1,8 +1,9 @@
 //! What is seen of each object of a scene.
 //!
-//! In: a scene. Out: for each object its rectangle in the picture and the area that shows it; or
-//! why it is not seen. Areas are those of `exact` pictures. Where these would take too much work,
-//! the centres of pixels count instead, and the result says so.
+//! In: a scene. Out: for each object its rectangle in the picture and the area that shows it, or
+//! the reason why it is not seen. The areas are computed by exact integration. Where this would
+//! take too much work, each pixel counts as showing the object at its centre, and the result says
+//! so.
 
 use std::{cell::OnceCell, collections::BTreeMap};
 
@@ -48,7 +49,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
         let integrator = Integrator::for_values(&world, |_| []).with_work_limit(most_work);
         let is_exact = integrator.shares(*tile, |area, shares| {
             for &(object, share) in shares {
-                // A smaller share may be a rounding error, so it is ignored.
+                // A smaller part of the tile may be a rounding error, so it is ignored.
                 if share > 1e-9 && object != world.background() {
                     add(&mut areas, object, (area, area.pixels() as f64 * share));
                 }
@@ -57,7 +58,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
         (areas, is_exact)
     };
     let look = || tiles.par_iter().map(look).collect::<Vec<_>>();
-    // If no thread can be started, no areas are known.
+    // If no thread can be started, the result contains no areas.
     let found = threads::install(None, look).unwrap_or_default();
     let mut areas = SeenAreas::new();
     let is_exact = found.iter().all(|(_, is_exact)| *is_exact);

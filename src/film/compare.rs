@@ -1,9 +1,9 @@
 //! The difference of two pictures, and its position.
 //!
-//! In: two films. Out: the root mean square of their differences in linear light, in which means
-//! are taken. Also, in steps of 8-bit sRGB, in which differences are visible, the largest
-//! difference and the number of pixels beyond a tolerance. A step is 1/255 of the way from black to
-//! white.
+//! In: two films. Out: the root mean square of their differences in linear light, the largest
+//! difference, and the number of pixels that differ by more than a tolerance. The last two are in
+//! steps of 8-bit sRGB, since equal steps look about equally large. A step is 1/255 of the way from
+//! black to white.
 
 use thiserror::Error;
 
@@ -13,23 +13,26 @@ use crate::color::linear_to_srgb;
 /// Number of steps of 8-bit sRGB between black and white.
 const STEPS: f64 = 255.0;
 
-/// Error bound of decoding and encoding, in steps of 8-bit sRGB. It covers a few roundings of
-/// numbers up to 255, and the two pieces of the curve, which meet within 3e-8 of the whole range.
+/// Bound of the rounding errors of decoding and encoding a channel, in steps of 8-bit sRGB. A
+/// difference counts as larger than a tolerance only if it exceeds it by more than this bound. It
+/// covers a few roundings of numbers up to 255, and the gap of at most 3e-8 of the range between
+/// the two pieces of the sRGB curve.
 const SLACK: f64 = 1e-5;
 
-/// Steps of 8-bit sRGB per unit of linear light in the dark, where the curve is steepest.
+/// Maximum slope of the sRGB curve, which it has at black, in steps of 8-bit sRGB per unit of
+/// linear light. It converts a bound of linear light to a bound in steps.
 const STEEPEST: f64 = 12.92 * STEPS;
 
 /// Names of a pixel's channels.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// The largest difference that is ignored.
+/// Largest difference of a channel that still counts as equal.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<'a> {
     /// Tolerance of every channel, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// Error bound of each pixel of a picture, in linear light, if known. Converted to steps, it
-    /// is added to `steps`.
+    /// Error bound of each pixel's mean, in linear light, row by row. [`Self::slack`] converts the
+    /// bounds to steps, and they are added to `steps`. `None` if they are unknown.
     pub bounds: Option<&'a [f32]>,
 }
 
@@ -54,8 +57,8 @@ pub struct Comparison {
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
-    /// Number of pixels that may or may not differ by more than the tolerance, depending on their
-    /// error bounds.
+    /// Number of pixels whose error bounds leave open whether they differ by more than the
+    /// tolerance.
     pub undecided: u64,
 }
 
@@ -87,7 +90,7 @@ pub struct SizesDiffer(
 );
 
 impl Comparison {
-    /// Returns whether no pixel certainly differs by more than the tolerance.
+    /// Returns whether `beyond` is 0. Pixels that are only `undecided` do not count.
     pub fn is_equal(&self) -> bool {
         self.beyond == 0
     }

@@ -6,8 +6,8 @@ use thiserror::Error;
 use super::{memory::TooLarge, pixels::Film};
 use crate::area::Area;
 
-/// Maximum number of bytes that a picture is decoded to, unless the caller allows more. It suffices
-/// for 2^26 pixels of four bytes, whose film takes 1.5 GiB.
+/// Maximum number of bytes that a picture is decoded to, unless the caller allows more. A larger
+/// picture is rejected. The limit suffices for 2^26 pixels of four bytes, whose film takes 1.5 GiB.
 pub const DECODED_LIMIT: u64 = 1 << 28;
 
 /// A picture as a file contains it.
@@ -51,9 +51,9 @@ impl Rounding {
     /// Returns the maximum rounding error of a number between 0 and 1, in steps of 8-bit sRGB; a
     /// step is 1/255 of the way from black to white.
     ///
-    /// For floats, it is the relative rounding error of the light, 2^−11 or 2^−24, times the 255 ·
-    /// 1.055/2.4 steps per unit of light at white, rounded up. The error in steps is greatest at
-    /// white.
+    /// A float has a relative rounding error of 2^−11 or 2^−24. The error in steps is greatest at
+    /// white, where the sRGB curve has 255 · 1.055/2.4 steps per unit of light. The product is
+    /// rounded up.
     pub fn steps(self) -> f64 {
         match self {
             Self::Byte => 0.5,

@@ -13,7 +13,8 @@ pub trait Pixel: Copy + Default + Send + Sync {
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
     /// Returns whether all means that differ from `light` by at most `bound` in each channel are
-    /// converted to the same value. For `f64` means, the conversion to 32-bit floats counts.
+    /// converted to the same value. For means in `f64`, the value is the 32-bit float that an EXR
+    /// file stores.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
@@ -29,7 +30,7 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // The floats of 32 bits in an EXR file decide.
+        // An EXR file stores the mean as a 32-bit float, so this rounding must be certain.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -179,8 +180,8 @@ impl<P: Pixel> Film<P> {
     }
 }
 
-/// Counts the pixels of a film whose bytes are certainly those of the true mean. `bounds` is the
-/// error bound of each pixel's mean.
+/// Counts the pixels of `film` whose bytes of sRGB are certainly those of the exact mean. `bounds`
+/// contains the error bound of each pixel's mean, in linear light.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {

@@ -12,17 +12,18 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Maximum number of bytes of other output in front of a picture.
+/// Maximum number of bytes of other output in front of a picture. A picture that begins later is
+/// not found.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
-/// The beginning of a PNM file.
+/// How a PNM file begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// The letter P, after this number of bytes: 0, or the 3 of a byte order mark.
+    /// In bytes; the letter P follows after this number of them: 0, or the 3 of a byte order mark.
     Plain(usize),
-    /// UTF-16.
+    /// In UTF-16.
     Utf16 {
         /// Length of the byte order mark, in bytes.
         mark: usize,
@@ -169,7 +170,7 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     })
 }
 
-/// The expected contents of a raster.
+/// Size of a raster, and the greatest value of its numbers.
 struct Raster {
     width: usize,
     height: usize,
@@ -213,8 +214,8 @@ impl Raster {
         ))
     }
 
-    /// Reads numbers with white space between them. For bits, white space is optional, and 1 is
-    /// black.
+    /// Reads numbers with white space between them. Bits (`is_bits`) need no white space; a bit of
+    /// 1 is black.
     fn in_text(&self, reader: &mut PnmReader, is_bits: bool) -> Result<Vec<u16>, Unreadable> {
         let mut numbers = Vec::with_capacity(self.count());
         for index in 0..self.count() {

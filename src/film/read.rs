@@ -1,8 +1,8 @@
 //! Reads picture files of any program into films.
 //!
-//! In: the bytes of a picture in PNG, in OpenEXR, or in any other format that `image` reads here.
-//! Out: linear means, the kind of the file's rounding, and the other effects of its coding on
-//! colours.
+//! In: the bytes of a picture in PNG, OpenEXR, or any other format that `image` is built to read.
+//! Out: means in linear light, the rounding of the file's numbers, and other effects of the file's
+//! coding on colours.
 //!
 //! Whole numbers are read as sRGB, whatever a `gAMA` chunk or a colour profile says: pictures of a
 //! scene are meant as sRGB, and most programs write them so without a declaration. Floats are read
@@ -69,7 +69,8 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
         Some(ImageFormat::Png) => read_png(bytes, limit)?,
         Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
-        // A byte order mark, UTF-16 or lines of text may come first.
+        // A PNM is not recognised by its first bytes if a byte order mark or lines of text come
+        // first, or if it is in UTF-16.
         None => pnm::read(bytes, limit).map_err(|error| match (error, no_picture::of(bytes)) {
             (Unreadable::Format(None), Some(what)) => Unreadable::Other(what),
             (error, _) => error,

@@ -1,9 +1,10 @@
 //! Linear light as bytes of sRGB.
 //!
-//! Encoding and rounding are done by one comparison with thresholds: byte k stands for the light
-//! from that of k − 1/2 up to that of k + 1/2. The thresholds are exact, so every light gets the
-//! nearest byte. An unmixed colour of the scene is encoded as
-//! [`Color::to_bytes`](crate::color::Color::to_bytes) does, ties included.
+//! Encoding and rounding are a comparison with thresholds: byte k stands for the range of light
+//! from the threshold k − 1/2 to the threshold k + 1/2, both decoded to linear light. The
+//! thresholds are exact, so every light gets the nearest byte. An unmixed colour of the scene gets
+//! the same bytes as by [`Color::to_bytes`](crate::color::Color::to_bytes), also if a channel is
+//! halfway between two bytes.
 
 use std::array;
 
