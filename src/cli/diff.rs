@@ -25,7 +25,7 @@ use crate::{
     render::RenderError,
 };
 
-/// Compares the files that the two arguments name. Returns whether they agree as a status.
+/// Compares the files of the arguments A and B. The status is [`Status::Done`] if they agree.
 pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.a) && is_standard(&args.b) {
         let message = "standard input can be read once only, and `-` is given twice";
@@ -119,8 +119,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status(if is_strict { is_equal } else { is_right }))
 }
 
-/// Compares two pictures, read or rendered, and prints the result without a verdict. `steps` is the
-/// default tolerance.
+/// Compares two pictures, whether read or rendered, and prints the result without a verdict.
+/// `steps` is the default tolerance, in steps of 8-bit sRGB.
 fn compare(
     args: &DiffArgs,
     films: [&Film; 2],
@@ -395,7 +395,7 @@ pub fn json(
         .collect()
 }
 
-/// Writes the mistakes and guesses, then which objects are right.
+/// Writes each mistake and each guess, then which objects are right.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
     let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
@@ -491,8 +491,8 @@ fn round(steps: f64) -> String {
     }
 }
 
-/// Rounds a number of 8-bit steps to 10^−9, which removes the rounding errors of decoding and
-/// encoding a byte (numbers up to 255).
+/// Rounds `steps`, a difference in steps of 8-bit sRGB, to 10^−9. This removes the rounding errors
+/// of decoding and encoding a byte.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }

@@ -7,7 +7,8 @@ use std::ops::Range;
 /// Number of unchanged lines around a change.
 const AROUND: usize = 3;
 
-/// Maximum number of lines, in both texts together, that the search for the next equal lines skips.
+/// Maximum number of lines, in both texts together, that the search for the next equal lines
+/// passes. Beyond it, all remaining lines count as changed.
 const MOST_STEPS: usize = 1000;
 
 /// Lines of the old text, and the lines of the new text that replace them.
@@ -72,9 +73,9 @@ fn push_hunk(text: &mut String, hunk: &[ReplacedLines], old: &[&str], new: &[&st
     push(' ', &old[at..last.old.end + after]);
 }
 
-/// Returns the changes from `old` to `new`. Walks through both texts; after a difference, the walk
-/// continues at the nearest place where two lines, or the ends of the texts, agree. Changes are
-/// small, so the list is usually short; it is correct even if it is not the shortest one.
+/// Returns the changes from `old` to `new`. Walks through both texts. After a difference, the walk
+/// continues at the nearest place where two lines agree or both texts end. The list may be longer
+/// than the shortest one, but is always correct.
 fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());
     while a < old.len() || b < new.len() {

@@ -18,18 +18,20 @@ use crate::{files, lock::lock};
 /// Maximum length of a submitted file, inside or outside of a zip file, in bytes.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
-/// Maximum number of entries of a zip file.
+/// Maximum number of entries of a zip file. A file with more is rejected.
 const MOST_ENTRIES: usize = 10_000;
 
-/// Maximum number of bytes that are read to list the entries. An entry takes 46 bytes and its name,
-/// so this suffices for [`MOST_ENTRIES`] entries with names of a thousand letters.
+/// Maximum number of bytes that are read of a zip file to list its entries; a longer list is an
+/// error. An entry takes 46 bytes plus its name, so the limit suffices for [`MOST_ENTRIES`] entries
+/// with names of a thousand letters.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// Maximum number of bytes that all zip files of a class together may unpack to.
+/// Maximum number of bytes that all zip files of a class together may unpack to. The files beyond
+/// it are not compared.
 const WHOLE_LIMIT: u64 = 4 << 30;
 
-/// Number of bytes that may still be unpacked from the zip files of a class. The bytes themselves
-/// are counted, not the lengths in the headers.
+/// Number of bytes that may still be unpacked from the zip files of a class. Unpacking counts down
+/// the bytes themselves, since the lengths in the headers may be wrong.
 #[derive(Debug)]
 pub struct UnpackBudget(AtomicU64);
 
@@ -101,7 +103,8 @@ pub struct ArchiveEntry {
     pub length: u64,
     /// The CRC-32 of the unpacked bytes. It is verified when they are unpacked.
     pub sum: u32,
-    /// Why the entry is not read, such as that it is encrypted or a link; otherwise `None`.
+    /// Reason why the entry cannot be read, for example because it is encrypted or a link. `None`
+    /// if it can be read.
     pub refused: Option<&'static str>,
 }
 
@@ -122,7 +125,7 @@ impl Archive {
             0 => format!("it is no zip file, or lists more than {MOST_ENTRIES} entries, and at most that many are read"),
             _ => in_words(&error),
         })?;
-        // The list has been read; from here on, the budget counts the unpacked bytes instead.
+        // The entries are listed. From here on, [`UnpackBudget`] limits the bytes instead.
         left.store(u64::MAX, Ordering::Relaxed);
         if zip.len() > MOST_ENTRIES {
             let count = zip.len();
@@ -158,7 +161,7 @@ impl Archive {
     ///
     /// The entry is damaged or too large.
     pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
-        /// Number of bytes that are unpacked between two checks of the budget.
+        /// Maximum number of bytes that are unpacked before the budget is checked again.
         const PIECE: u64 = 1 << 16;
         let mut zip = lock(&self.0);
         let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;

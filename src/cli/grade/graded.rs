@@ -13,17 +13,18 @@ pub struct GradedStudent {
     pub name: String,
     /// The number of the submission in Moodle.
     pub number: Option<String>,
-    /// Path of the folder or file, for output.
+    /// Path of the student's folder or file, for output.
     pub place: String,
     /// The pictures that were compared, the best one first.
     pub compared: Vec<ComparedPicture>,
     /// The pattern of `--picture`.
     pub chosen: Option<String>,
-    /// The other files, each with the reason why it was not compared.
+    /// Files of the student that were not compared, some with the reason.
     pub not_compared: Vec<String>,
-    /// Names of other students whose best picture is equal in every pixel.
+    /// Names of other students whose best picture equals this student's in every pixel.
     pub equal_to: Vec<String>,
-    /// The points; `None` if there are no points, or the picture is wrong for unknown reasons.
+    /// The student's points; `None` if there is no scheme of points, or the picture is wrong for
+    /// unknown reasons.
     pub score: Option<f64>,
 }
 
@@ -54,7 +55,8 @@ pub struct Finding<'j> {
     pub message: &'j str,
     pub help: &'j str,
     pub set: Vec<&'j str>,
-    /// The share of the squared difference beyond noise that the mistake explains.
+    /// Share that the mistake explains of the squared difference from the exact picture, as far as
+    /// noise does not explain it.
     pub explains: f64,
 }
 
@@ -90,7 +92,7 @@ impl JudgedPicture {
         self.fields.get("samples_per_pixel")?.as_f64()
     }
 
-    /// Returns the share of the difference that the mistakes and guesses do not explain.
+    /// Returns the share of the difference that neither the mistakes nor the guesses explain.
     pub fn rest(&self) -> Option<f64> {
         self.fields.get("rest")?.as_f64()
     }
@@ -139,8 +141,8 @@ fn finding(one: &Value) -> Finding<'_> {
 }
 
 impl ComparedPicture {
-    /// Returns the key by which a student's pictures are sorted, smaller for better ones. The best
-    /// picture counts.
+    /// Returns the key by which a student's pictures are sorted; a better picture has a smaller
+    /// key. The first one after sorting is graded.
     pub fn rank(&self) -> (u8, f64) {
         let Ok(judged) = &self.result else {
             return (4, 0.0);
@@ -156,7 +158,7 @@ impl ComparedPicture {
 }
 
 impl GradedStudent {
-    /// Returns the result of the best picture, or the reason why there is none.
+    /// Returns the result of the best picture, or the reason why there is no result.
     pub fn best(&self) -> Result<&JudgedPicture, String> {
         match self.compared.first() {
             Some(best) => best.result.as_ref().map_err(Clone::clone),
@@ -204,7 +206,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the exit status for this student.
+    /// Returns the exit status for this student: [`Status::Done`] if the best picture is right.
     pub fn status(&self) -> Status {
         match self.best() {
             Ok(judged) if judged.is_right() => Status::Done,

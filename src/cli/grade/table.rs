@@ -18,7 +18,7 @@ pub fn figures(one: &GradedStudent) -> [String; 2] {
     }
 }
 
-/// Returns a table for people, with further details below a student's row.
+/// Returns a table for people: a row for each student, with details below the row.
 pub fn table(graded: &[GradedStudent]) -> String {
     let widest = graded
         .iter()

@@ -55,8 +55,8 @@ pub(super) struct BoardLanes {
     few: FormRows,
     many: FormRows,
     below: FormRows,
-    /// Sign for each pixel: 1 if the first square of the pixel, the one with the smallest number in
-    /// both families of lines, has the first colour, −1 if it has the second.
+    /// Sign for each pixel: 1 if the first square of the pixel, the one with the smallest number
+    /// in both families of lines, has the first colour, −1 if it has the second.
     sign: Lanes,
     /// Number of the square at each corner of the pixel in the family with fewer lines, relative
     /// to the smallest one.

@@ -1,4 +1,4 @@
-//! A hard case: how its inputs are generated, and at which points of the picture they are tested.
+//! A hard case: a generator of inputs, and the points of the picture that are tested.
 
 use super::{
     inputs::{CaseRng, SamplePoint},
@@ -9,7 +9,7 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A case of the catalogue.
+/// A case of the catalogue in [`cases`](super::cases).
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Name of the case.
@@ -64,14 +64,14 @@ pub(super) struct CaseScene {
     pub scene: Scene,
     /// Number of bits of the oracle's arithmetic.
     bits: usize,
-    /// Generates points of the picture; by default they lie anywhere.
+    /// Generator of points of the picture. By default, they are uniform over the picture.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Number of halves of the inputs that are tested at these points: 0, 1 or 2. The other inputs
-    /// lie close to boundaries.
+    /// Number of halves of the inputs, 0, 1 or 2, that are tested at points from `points`. The
+    /// other inputs lie close to boundaries between colours.
     halves: u64,
 }
 
-/// Returns a scene of which points close to the boundaries of what is seen are tested.
+/// Returns a scene that is tested close to the boundaries between its colours.
 pub(super) fn input(camera: Camera, shapes: &[Shape]) -> CaseScene {
     CaseScene {
         scene: scene(camera, shapes),
@@ -87,12 +87,12 @@ impl CaseScene {
         Self { bits, ..self }
     }
 
-    /// Makes the case test points anywhere.
+    /// Makes all inputs of the case lie at points that are uniform over the picture.
     pub fn anywhere(self) -> Self {
         Self { halves: 2, ..self }
     }
 
-    /// Makes the case test points that `point` generates.
+    /// Makes all inputs of the case lie at points that `point` generates.
     pub fn at(self, point: impl Fn(&mut CaseRng) -> SamplePoint + 'static) -> Self {
         Self {
             points: Box::new(point),
@@ -100,8 +100,8 @@ impl CaseScene {
         }
     }
 
-    /// Makes the case test half of the inputs at points anywhere (or at those of `at`) and half
-    /// close to boundaries.
+    /// Makes half of the case's inputs lie at points anywhere in the picture, or at those of
+    /// [`at`](Self::at), and half close to boundaries.
     pub fn mixed(self) -> Self {
         Self { halves: 1, ..self }
     }

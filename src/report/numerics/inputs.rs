@@ -19,7 +19,7 @@ pub type SamplePoint = [(u32, f64); 2];
 /// it.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
-/// Pseudorandom numbers that depend only on a case and a block of its inputs.
+/// Pseudorandom numbers that depend only on a case and on the index of a block of its inputs.
 #[derive(Clone, Debug)]
 pub struct CaseRng(CounterRng);
 
@@ -56,7 +56,7 @@ impl CaseRng {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// Returns 10 to a uniform power between `low` and `high`.
+    /// Returns 10^p for a uniform p between `low` and `high`.
     pub fn power(&mut self, low: f64, high: f64) -> f64 {
         libm::pow(10.0, self.within(low, high))
     }

@@ -49,8 +49,8 @@ fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
 
-/// Measures the greatest error of a camera's axes, in units of 2^−53, and adds it to `tally` as one
-/// input.
+/// Measures the greatest error of a camera's axes, in units of 2^−53, for the textbook's formulas
+/// and for Pinhole. Records both errors in `tally` as one input.
 pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     let scene = scene(*camera, &[]);
     let oracle = Oracle::new(&scene, ALL_SIZES);
@@ -81,11 +81,12 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of inputs per measurement of a distance and a point, which takes longer than a decision.
+/// One of this many inputs is also measured: the errors of the distance and of the point that are
+/// seen. A measurement takes longer than a decision.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Number of searches for a boundary per search that the oracle does; Pinhole does the others. A
-/// search by the oracle takes about six times as long as testing beside the boundary.
+/// One of this many searches for a boundary uses the oracle's decisions; the others use Pinhole's.
+/// A search by the oracle takes about six times as long as testing beside the boundary.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
@@ -135,8 +136,8 @@ impl Trial {
     }
 
     /// Measures the errors of the distance and of the point that are seen at `pixels`, and records
-    /// the greater one in `tally`. The unit is that in the last place of the distance, or of the
-    /// point's greatest coordinate.
+    /// the greater of the two in `tally`. The error of the distance is in units in its last place,
+    /// that of the point in units in the last place of its greatest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -165,7 +166,8 @@ impl Trial {
         of_point.into_iter().fold(of_t, f64::max)
     }
 
-    /// Returns the error of `x` in units in the last place of `of`.
+    /// Returns the error of `x` in units in the last place of `of`. If `x` is not finite, the error
+    /// is infinite.
     fn ulps(&self, x: f64, truth: &N, of: f64) -> f64 {
         if !x.is_finite() {
             return f64::INFINITY;
@@ -181,7 +183,8 @@ impl Trial {
     /// oracle's find some, in case Pinhole does not see a boundary at all.
     pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
-        // If too few boundaries are found, the remaining inputs lie anywhere.
+        // If too few boundaries are found in `4 · count` searches, the remaining inputs lie
+        // anywhere.
         let mut patience = 4 * count;
         while tally.inputs < end && patience > 0 {
             patience -= 1;
@@ -200,8 +203,8 @@ impl Trial {
     }
 
     /// Searches a random row (`axis` 0) or column (`axis` 1) for a point where the colour `seen`
-    /// changes. Returns the pixel and the last offset before the change, or `None` if the two ends
-    /// of the search have the same colour.
+    /// changes. Returns the pixel and the last offset before the change. Returns `None` if both
+    /// ends of the search have the same colour.
     fn boundary(
         &self,
         random: &mut CaseRng,
@@ -227,10 +230,10 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // Here the change is at the pixel's edge.
+            // The colour changes at the pixel's edge.
             low = high;
         }
-        // This bisects down to neighbouring numbers. Near 0, 130 steps end at a distance smaller
+        // Bisect down to neighbouring `f64`s. Near 0, 130 steps end at a distance that is smaller
         // than anything that matters.
         for _ in 0..130 {
             let middle = low + (high - low) / 2.0;
@@ -247,7 +250,7 @@ impl Trial {
         Some(point)
     }
 
-    /// Tests at most 12 inputs, and no more than `count`, on and beside a boundary.
+    /// Tests inputs on and beside `boundary`, at most 12 and at most `count`.
     fn beside(
         &self,
         random: &mut CaseRng,
