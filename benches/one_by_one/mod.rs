@@ -1,5 +1,5 @@
-//! Renders a picture sample by sample, without culling. Tests and benchmarks compare culling with
-//! it.
+//! Renders a picture sample by sample, without culling. Tests and benchmarks compare this picture
+//! and its time with those of culling.
 
 use pinhole::{
     area::Area,

@@ -23,9 +23,9 @@ pub enum Before {
     Nothing,
     /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long. A line is broken first at the words
-    /// with the lowest number. The number grows with the depth of parentheses around the word and
-    /// with the precedence of the operator.
+    /// A blank, or a line end if the line would be too long. The line is broken first at the words
+    /// with the lowest number. The number is greater in more parentheses, and at operators of
+    /// higher precedence.
     Fold(usize),
     /// A line end within the entry.
     Line,
@@ -40,7 +40,7 @@ pub struct Comment<'s> {
     pub breaks: usize,
 }
 
-/// Returns whether a line must end after `text`, since it is a `//` comment.
+/// Returns whether `text` is a `//` comment, after which the line must end.
 pub fn ends_line(text: &str) -> bool {
     text.starts_with("//")
 }
@@ -50,7 +50,7 @@ pub fn is_comment(text: &str) -> bool {
     text.starts_with("//") || text.starts_with("/*")
 }
 
-/// Comments and line ends between two tokens.
+/// The comments and line ends between two tokens.
 #[derive(Debug)]
 pub struct Gap<'s> {
     /// The comments.
@@ -117,8 +117,8 @@ impl<'a, 's> TokenReader<'a, 's> {
         self.text.get(span.range()).unwrap_or_default()
     }
 
-    /// Adds the comments before the token at the offset `to`. A comment that started a line still
-    /// does. Returns the white space that must precede the token.
+    /// Adds the comments before the token at the offset `to` to `words`. A comment that started a
+    /// line also starts a line in the layout. Returns the white space that must precede the token.
     pub fn comments(&mut self, to: usize, before: Before, words: &mut Vec<Word<'s>>) -> Before {
         let gap = self.gap(to);
         for comment in &gap.comments {
@@ -154,7 +154,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         self.skip(span);
     }
 
-    /// Adds the words of a value that stands in `depth` parentheses.
+    /// Adds the words of a value that is inside of `depth` parentheses.
     pub fn value(
         &mut self,
         value: &Value<'_>,
@@ -183,7 +183,7 @@ impl<'a, 's> TokenReader<'a, 's> {
             ValueKind::Chain { first, rest } => {
                 self.value(first, before, depth, words);
                 for step in rest {
-                    // Operators of products get a higher number, so lines are broken at sums first.
+                    // Products get a higher number than sums, so lines are broken at sums first.
                     let tightness = 2 * depth + usize::from(step.operator.is_of_product());
                     self.token(step.sign, Before::Fold(tightness), words);
                     self.value(&step.operand, Before::Space, depth, words);
@@ -215,8 +215,9 @@ impl<'a, 's> TokenReader<'a, 's> {
     }
 }
 
-/// Maximum width of a line, in characters, if there are places to break it. The width is measured
-/// before alignment and without the comments at the end of a line.
+/// Maximum width of a line, in characters. Longer lines are broken if there are words before which
+/// they can be broken. The width is measured before alignment and without the comments at the
+/// line's end.
 pub const WIDTH: usize = 100;
 
 /// Returns the width of words on one line, in characters. If a comment has several lines, only its
