@@ -129,16 +129,16 @@ sampled_and_exhaustive!(culling_is_exact_for_scenes_full_of_ties);
 fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 77);
     for (_, scene) in effort.first(60, scenes.take(300)) {
-        // The samples lie at odd eighths of a pixel, or a single one at its centre. So they hit
-        // edges exactly, and rays lie in planes.
+        // The samples lie at odd eighths of a pixel, or at its centre if there is only one. Many
+        // hit edges exactly, and many rays lie in planes of surfaces.
         for n in [1, 4, 16] {
             compare(&scene, Method::Regular, Count::PerPixel(n));
         }
     }
 }
 
-/// Renders overlapping triangles in a tilted plane and in the board's plane. They are more than the
-/// cache of higher precisions holds.
+/// Renders overlapping triangles in a tilted plane and in the board's plane. There are more
+/// triangles than the cache of higher precisions holds.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);
@@ -148,8 +148,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut many = String::new();
     for index in 0..4000 {
         let (a, b) = (place(), place());
-        // Different normals describe the same plane. Triangles of even index lie in the plane
-        // y = −z/3, the others in the board's plane.
+        // Triangles of even index lie in the plane y = −z/3, the others in the board's plane. The
+        // normals of one plane differ in their lengths.
         let (centroid, normal) = match index % 2 {
             0 => ((a, b / 2.0, -1.5 * b), (0, 3, 1)),
             _ => ((a, 0.0, b), (0, 1, 0)),
@@ -165,7 +165,7 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
         }
     }
     few += "checkerboard {}\n";
-    // Each triangle occurs again with another normal and colour. The first one in the file is
+    // Each triangle occurs twice, with different normals and colours. The first one in the file is
     // visible.
     many.insert_str(0, &few);
     let [few, many] = [&few, &many].map(|text| read(text));
@@ -218,7 +218,7 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
     let mut random = Random::new(12);
     let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     let mut methods = Method::SAMPLED.into_iter().cycle();
-    // In the larger picture, a pixel has only few candidate objects, so that several samples are
+    // In the larger picture, only few objects may be seen in a pixel, so several samples are
     // compared in one batch.
     for (roll, clips, size, counts) in [
         (0, "", "width 31 height 23", &[2, 4, 8, 9, 100][..]),
@@ -254,10 +254,10 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
         let objects = Arc::make_mut(&mut all.objects);
         let (_, others) = scenes.next().unwrap();
         objects.extend_from_slice(&others.objects);
-        // The first objects hide these duplicates of some of them.
+        // These duplicates are hidden by the equal objects before them.
         objects.extend_from_within(3500..4500);
-        // Where objects are dense, the samples are traced one by one if each pixel has a single
-        // sample, and together if it has many.
+        // Where objects are dense, a single sample per pixel is traced by itself, but many samples
+        // are traced together.
         let world = World::new(&all);
         let parts = Quartering::for_samples(&world, 1.0);
         let flow = parts.parts(

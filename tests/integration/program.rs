@@ -38,7 +38,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Splits a line into words as a shell does: at white space, except in single quotes.
+/// Splits a line into words as a shell does: at white space, except within single quotes.
 pub fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
@@ -87,7 +87,7 @@ impl From<Output> for Outcome {
     }
 }
 
-/// Temporary folder in which commands, given as lines, run the program.
+/// A temporary folder in which the program is run. Commands are given as lines of arguments.
 pub struct Folder(TempDir);
 
 impl Folder {

@@ -26,7 +26,7 @@ struct Text<'r> {
     random: &'r mut Random,
     /// Vertices, centres, and points of surfaces of the objects so far.
     points: Vec<DVec3>,
-    /// One in `wild` numbers has any magnitude; 0 means none.
+    /// Frequency of numbers of any magnitude: one in `wild` numbers, or none if it is 0.
     wild: u64,
 }
 
@@ -60,7 +60,7 @@ impl Text<'_> {
         }
     }
 
-    /// Returns a point that other objects use, a point near such a point, or a new point.
+    /// Returns a point that other objects use, a point near one, or a new point.
     fn point(&mut self) -> DVec3 {
         let new = dvec3(self.number(3.0), self.number(3.0), self.number(3.0));
         if self.points.is_empty() || self.one_in(3) {
@@ -95,7 +95,7 @@ impl Text<'_> {
             2 | 3 => {
                 let (v1, mut v2) = (self.point(), self.point());
                 if self.one_in(3) {
-                    // Make the triangle a sliver.
+                    // The triangle becomes a sliver.
                     let thickness = *self.random.one_of(&[1e-15, 1e-9, 1e-3]);
                     v2 = p + self.random.within(-1.0, 2.0) * (v1 - p) + thickness * v2;
                 }
@@ -183,7 +183,8 @@ fn vector(DVec3 { x, y, z }: DVec3) -> String {
 fn random_scene(random: &mut Random) -> (String, Scene) {
     loop {
         let most = [3, 3, 10, 60][random.bits() as usize % 4];
-        // A pixel of many objects takes long to compute, so the picture is smaller then.
+        // A pixel with many objects takes long to compute, so a scene with many objects has a
+        // smaller picture.
         let [columns, rows] = if most > 3 { [4, 3] } else { [12, 8] };
         let (width, height) = (1 + random.bits() % columns, 1 + random.bits() % rows);
         let (count, wild) = (random.bits() % (most + 1), [0, 0, 30, 5]);
@@ -212,7 +213,8 @@ fn three_threads() -> Control<'static> {
 }
 
 /// Divides the picture at a random column and row into four parts. Asserts that the picture,
-/// rendered by one thread, has the same bits as its parts, rendered by three threads. Returns it.
+/// rendered by one thread, has the same bits as the parts, rendered by three threads. Returns the
+/// picture.
 fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendered {
     let area = whole(scene);
     let picture: Rendered = rendered(scene, area, &one_thread());
@@ -235,8 +237,8 @@ fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendere
     picture
 }
 
-/// Asserts that the area `part` of a picture has the same bits as the picture `crop` of that area:
-/// both their pixels and the error bounds.
+/// Asserts that the area `part` of the picture `one` has the same bits as the picture `crop`, in
+/// its pixels and in its error bounds.
 #[track_caller]
 fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     let numbers = |picture: &Rendered, x, y| {
@@ -267,14 +269,14 @@ fn is_comparable(scene: &Scene) -> bool {
 
 /// Compares each pixel of an exact picture, and the mean of all pixels, with independent samples.
 ///
-/// Light is from 0 to 1. If its mean μ is within b of m, its variance is at most
+/// Light is from 0 to 1. If the mean μ of the light is within b of m, the variance is at most
 ///     m·(1 − m) + b,
 /// because μ·(1 − μ) has a slope of at most 1. Let V be the sum of the variances of N samples. By
 /// Bernstein's inequality, the mean of the samples is farther off than
 ///     √(2·L·V)/N + 2·L/(3·N)
-/// with a probability of at most 2·e^−L. A picture has at most 97 · 3 comparisons. If 2·e^−L is
-/// 3e-18, then √(2·L) = 9.1 and 2·L/3 = 27.4, and one of 10⁶ pictures fails with a probability of
-/// at most 1e-9.
+/// with a probability of at most 2·e^−L. A picture has at most 97 · 3 comparisons. For 2·e^−L =
+/// 3e-18, √(2·L) = 9.1 and 2·L/3 = 27.4, and one of 10⁶ pictures fails with a probability of at
+/// most 1e-9.
 fn assert_agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
     let area = whole(scene);
     let each = (1 << 15) / area.pixels();

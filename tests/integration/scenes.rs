@@ -1,4 +1,4 @@
-//! Helpers for scenes: those of the repository, those read from a text, and their pictures.
+//! Helpers for scenes: the scenes of the repository, scenes from texts, and their pictures.
 
 use std::{
     fs,
@@ -72,7 +72,7 @@ pub fn whole(scene: &Scene) -> Area {
     Area::whole(scene.image.width, scene.image.height)
 }
 
-/// Returns a control with which only the calling thread renders.
+/// Returns a control that renders on the calling thread only.
 pub fn one_thread() -> Control<'static> {
     Control {
         threads: NonZero::new(1),

@@ -20,10 +20,11 @@ pub fn assert_file(path: &Path, content: &str) {
     assert_eq!(content, expected, "{}", path.display());
 }
 
-/// Asserts the answers in the text files of a folder. Each line is a query, and the lines below it
-/// that begin with `<` are its answer.
+/// Asserts the answers in the text files of a folder. In such a file, each line is a query, and the
+/// lines below it that begin with `<` are the expected answer.
 ///
-/// The first word of a line is the kind of query; the rest is the text that it is about. A second
+/// The first word of a query is its kind; the rest is the text that the query is about. A second
+/// argument may follow after an arrow. `--` begins a comment.
 /// argument follows an arrow. `--` begins a comment.
 #[track_caller]
 pub fn assert_answers(folder: &str, answer: impl Fn(&str, &str, &str) -> String) {

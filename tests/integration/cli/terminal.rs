@@ -42,7 +42,7 @@ fn messages_escape_control_characters_of_texts_names_and_pictures() {
         assert_ne!(said.status, 0, "{line:?}");
         assert_escaped(&said.errors, line);
     }
-    // The same holds for the recipe that is stored in a picture.
+    // The recipe that is stored in a picture is printed in the same way.
     let recipe = Recipe {
         scene: SCENE.to_owned(),
         overrides: vec![format!("Ball.radius={CONTROLS}")],

@@ -99,8 +99,9 @@ pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
 }
 
-/// Applies a drag to `start` followed by `text`, and returns what then follows `start`. `words`
-/// are the handle, the coordinates of one or two points, and the axis or plane of the movement.
+/// Applies a drag to `start` followed by `text`, and returns the part of the result after `start`.
+/// `words` are the handle, the coordinates of one or two points, and the axis or plane of the
+/// movement.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());

@@ -61,10 +61,10 @@ fn camera_of(scene: &Scene) -> CameraFacts {
     inspect(scene, &sources("").file).camera
 }
 
-/// Returns the position in the world of a handle of the first object. If the position of a handle
-/// depends on the picture, returns that of the handle's object. For a board, returns the point at
-/// the board's height that is above or below the intersection of the view axis with the board of
-/// `held`.
+/// Returns the position in the world of a handle of the first object. If the handle's position
+/// depends on the picture, returns that of the object itself. For a board, the handle is at the
+/// point above or below the intersection of the view axis with the board of `held`, the scene
+/// before the drag; returns this point at the board's new height.
 fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -95,12 +95,12 @@ fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     let camera = camera_of(scene);
     let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
     let (at, by) = (turned(point - camera.eye), turned(DVec3::AXES[axis]));
-    // This is the derivative of (x/z, y/z), multiplied by z².
+    // This is z² times the derivative of the projection (x/z, y/z).
     (by.truncate() * at.z - at.truncate() * by.z).normalize()
 }
 
-/// Returns the axis along which a handle moves, or `None` if it moves in a plane or has its own
-/// rule.
+/// Returns the axis along which a handle moves. Returns `None` if it moves in a plane or by a rule
+/// of its own.
 fn axis_of(handle: &str, word: &str) -> Option<usize> {
     let axis = match handle {
         "y" => "y",
@@ -186,9 +186,9 @@ proptest! {
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // Three quarters of a pixel inside the silhouette, a ray hits the sphere; at the
-                // same distance outside, it does not. If the centre is behind the eye, "inside" is
-                // the side away from the centre's projection.
+                // A ray three quarters of a pixel inside of the silhouette hits the sphere, and one
+                // as far outside does not. If the centre is behind the eye, "inside" is the side
+                // away from the centre's projection.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);
@@ -268,7 +268,7 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
             along: None,
             step,
         };
-        // If the drag is refused, the text stays: a face cannot pass the opposite face.
+        // A drag is refused if a face would pass the opposite face. Then the text stays as it is.
         text = dragged(&text, &moved).unwrap_or(text);
         shapes.push(read(&text).objects[0].shape);
     }
@@ -292,7 +292,7 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
             .iter()
             .flat_map(move |face| steps.map(|step| (text, face, step)))
     }) {
-        // In this case, the centre and the size share a name, so a drag along y changes both.
+        // Here, the centre and the size share a name, so a drag along y changes both.
         if text.starts_with("let") && handle.ends_with('y') {
             continue;
         }

@@ -72,7 +72,7 @@ fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span,
     }
 }
 
-/// Semantic tokens, which are derived from the positions of words, agree with the syntax tree
+/// The editor derives semantic tokens from the positions of words. They agree with the syntax tree
 /// wherever the tree is certain.
 #[test]
 fn semantic_tokens_agree_with_the_syntax_tree() {

@@ -40,7 +40,7 @@ fn quarters_add_up_for_tilted_triangles_side_by_side() {
     }
 }
 
-/// Boxes and triangles intersect along segments, each of which ends where one of the two objects
+/// Boxes and triangles intersect along segments. Each segment ends where one of the two objects
 /// ends.
 #[test]
 fn quarters_add_up_for_partly_piercing_objects() {
@@ -99,7 +99,7 @@ fn quarters_add_up_for_extreme_cameras(effort: Effort) {
 }
 
 /// A sphere passes through a face of the box, and the eye is hardly above the plane of the face.
-/// The circle in which they intersect is seen as an ellipse that is nearly a line.
+/// The circle in which the two intersect is therefore seen as an ellipse that is nearly a line.
 #[test]
 fn quarters_add_up_where_a_circle_is_seen_edge_on() {
     let face = "box { min (-100, -50, -100) max (100, 0, 100) color black }";

@@ -44,7 +44,7 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // A field without a value is found only when the tree is lowered to a scene.
+                // A missing value of a field is found only when the tree is lowered to a scene.
                 trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });

@@ -1,5 +1,5 @@
-//! A suggested name is valid where it is suggested. Tested with every name of the language and of
-//! the text, with every kind of misspelling, in every place.
+//! A suggested name is valid in the place where it is suggested. The tests misspell every name of
+//! the language and of the text in every way, in every place.
 
 use pinhole::schema::{BLOCKS, CONSTANTS, FUNCTIONS, css, method_names};
 
@@ -174,7 +174,7 @@ fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
         "k2",
         "negativ",
     ] {
-        // This test is not about values that contradict one another in a block.
+        // The test leaves out values that contradict other values of a block.
         let values = values
             .into_iter()
             .filter(|value| !value.starts_with('(') || *value == "(1, 1, 9)");

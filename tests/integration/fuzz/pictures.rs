@@ -8,8 +8,8 @@ use pinhole::film::read_picture_up_to;
 use super::{each, flip};
 use crate::program::Folder;
 
-/// Maximum number of decoded bytes: enough for the small pictures here, so that a header with a
-/// wrong size exceeds it.
+/// Maximum number of decoded bytes. It is enough for the small pictures here. A header with a wrong
+/// size exceeds it, so the picture is refused.
 const LIMIT: u64 = 1 << 20;
 
 /// Returns a small picture in each format and several colour types.

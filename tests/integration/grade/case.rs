@@ -1,5 +1,6 @@
-//! A picture for testing the grading, described by its title: the scene, the size, samples per
-//! pixel, the sampling, and the mistakes. 256 samples stand for the exact mean.
+//! A picture for testing the grading. Its title says everything about it: the scene, the size,
+//! samples per pixel, the sampling, and the mistakes. A picture with 256 samples per pixel counts
+//! as exact.
 
 use image::RgbImage;
 use serde_json::Value;
@@ -12,7 +13,7 @@ use super::{
 /// A picture with known mistakes.
 pub struct Case {
     pub title: String,
-    /// The correct program, and its scene's text.
+    /// The correct program. `text` is its scene.
     right: Program,
     pub text: String,
     pub mistakes: Vec<&'static Mistake>,

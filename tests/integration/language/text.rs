@@ -50,7 +50,7 @@ fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
 
 #[test]
 fn nesting_beyond_256_levels_is_an_error() {
-    // Write the value in a definition, and in a field, where a minus sign follows a name.
+    // The value is written in a definition, and in a field, where a minus sign may follow a name.
     let of = |open: &str, inner: &str, close: &str, depth: usize| {
         let value = format!("{}{inner}{}", open.repeat(depth), close.repeat(depth));
         let [of_let, of_field] =

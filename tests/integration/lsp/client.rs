@@ -1,4 +1,4 @@
-//! Simple client, which writes messages and reads all messages that come back.
+//! A simple client of the language server: writes messages and reads what comes back.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -62,8 +62,8 @@ impl<C: Transport> Client<C> {
         id
     }
 
-    /// Removes and returns the first unread message for which `is_meant` is true. Waits for one if
-    /// there is none.
+    /// Removes and returns the first unread message for which `is_meant` is true. If there is none,
+    /// waits for one.
     fn next(&mut self, is_meant: impl Fn(&Value) -> bool) -> Value {
         while !self.unread.iter().any(&is_meant) {
             let message = self.read();

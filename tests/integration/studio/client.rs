@@ -86,8 +86,8 @@ impl Studio {
         client(request, self.stream()).unwrap().0
     }
 
-    /// Opens a page with a token. Returns the page and the token of its session, or the close code
-    /// with which the host refuses the page.
+    /// Opens a page with a token. Returns the page and its session's token, or the close code with
+    /// which the host refuses the page.
     pub fn admitted(&self, token: &str) -> Result<(Client<Page>, String), CloseCode> {
         let mut socket = self.socket();
         socket.send(Message::text(token)).unwrap();
