@@ -1,5 +1,5 @@
-// A drag of an object's handle or of the camera. Its result depends on the text at the press, which
-// the server has under its own URI, and on the first and the latest point, not on the path.
+// A drag of an object's handle or of the camera. Its result depends on the first and the latest
+// point, not on the path, and on the text at the press, which the server gets under an extra URI.
 
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -15,7 +15,7 @@ export interface Held { object: number | null; handle: string; at: Point }
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const WAITING = "Waiting for Studio…";
-const SLOW = 400; // delay of an answer until a note says so, in milliseconds
+const SLOW = 400; // delay after which a note says that the answer is late, in ms
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
 // The note of a drag is shown beside the pointer while the drag lasts.

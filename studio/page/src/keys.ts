@@ -19,7 +19,7 @@ const ARROWS: Record<string, Point> =
 
 /** Elements that use all keys (`TEXT`), or the arrow keys, Space and Escape (`CONTROL`). */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
-const SAVE = ["Control+s", "Control+Shift+s"]; // work there, too
+const SAVE = ["Control+s", "Control+Shift+s"]; // work in `TEXT`, too
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
 /** Returns the name of a pressed key in the notation of `data-key`. */

@@ -45,7 +45,7 @@ export class Turn {
 
   constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
 
-  /** Sets the number, rounded and clamped to its limits; `value` gets the step of the number. */
+  /** Sets the number, rounded and clamped to its limits, to what `value` returns for its step. */
   async set(value: (step: number) => number): Promise<void> {
     const { from, to } = this.literal;
     const limits = await this.limits;

@@ -6,7 +6,7 @@ import { FIGURE, finished, hand, handle, host, launch, open, rested, tab, text, 
 
 const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.e-]+)`).exec(text)[1]);
 
-/** Returns the figure with a definition before it, and one field replaced. */
+/** Returns the figure's text with a definition before it and one field replaced. */
 const scene = (definition, field, other) => `${definition}\n${FIGURE.replace(field, other)}`;
 
 /** Returns the position of a slider's thumb on the page. */
@@ -113,7 +113,7 @@ test("a slider stays under the pointer while its value is an error, below the pr
     await page.mouse.move(0, y, { steps: 5 });
     await page.mouse.up();
     await page.waitForSelector("#problem-list:not([hidden])");
-    // The slider is fully visible, and the problem above it.
+    // The slider is wholly visible, and the problem is above it.
     await page.waitForTimeout(400);
     const [row, problem, footer] = await Promise.all([".slider-row", "#problem-list", "footer"].map(it => page.locator(it).boundingBox()));
     assert.ok(problem.y + problem.height <= row.y + 1 && row.y + row.height <= footer.y + 1, `${width} × ${height}`);

@@ -61,8 +61,8 @@ fn squares_too_small_is_never_false_and_found_for_most_plain_boards() {
                 );
                 let film = sampled(&read(&text));
                 let pixels = (0..16).flat_map(|y| film.row(y)).copied();
-                // The background is red without green, so pixels with red show no board. In the
-                // others, the green channel is the share of the board's second colour.
+                // Pixels that show a part of the red background have more red than green, and are
+                // left out. In the others, green is the share of the board's second colour, white.
                 let seen = pixels.filter(|[red, green, _]| red - green < 0.01);
                 let greens: Vec<f64> = seen.map(|[_, green, _]| green).collect();
                 let first = greens.iter().filter(|&&green| green < 0.5).count();
