@@ -329,7 +329,7 @@ test("a selected board is not outlined across objects in front of it", async t =
   await page.mouse.move(...(await onPage(page, [100, -30])));
   await page.waitForTimeout(300);
   assert.equal(await page.locator(".line.selected").count(), 0);
-  // Next to the box of completions, the whole cell is visible.
+  // The ball is made a comment; without it, the outline of the square is visible.
   await page.locator(".cm-line").last().click();
   await page.keyboard.type("// ", { delay: 30 });
   await page.keyboard.press("ArrowUp");

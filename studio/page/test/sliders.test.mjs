@@ -131,7 +131,7 @@ test("sliders never reach values that are errors, and counts have whole steps", 
   await rested(page);
   assert.equal(number(await text(page), "let r ="), 0.1);
   assert.equal(await page.textContent("#problems"), "No problems");
-  // The same for a drag in the text.
+  // A drag of the number in the text ends at the limit, too.
   await page.click("#undo");
   const box = await page.locator(".cm-line").first().getByText("1", { exact: true }).boundingBox();
   await page.keyboard.down("Alt");
@@ -149,7 +149,7 @@ test("sliders never reach values that are errors, and counts have whole steps", 
     await rested(page);
     assert.equal(number(await text(page), "let n ="), 5);
     assert.doesNotMatch(await page.textContent("#problems"), /^\d+ problem/);
-    // The same for the slider in the text, and its keys.
+    // The slider in the text, and its keys, have the same limits.
     await page.locator(".cm-line").first().getByText("5", { exact: true }).click();
     await page.waitForSelector(".slider");
     assert.equal(await page.getAttribute(".slider input", "step"), "1");

@@ -159,8 +159,8 @@ fn a_damaged_png_never_yields_a_changed_recipe() {
     for length in 0..idat {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
-    // No wrong bit causes a panic. In the header, the checksum reveals a wrong bit. After the scene,
-    // nothing is read, so a wrong bit there has no effect.
+    // No wrong bit causes a panic. In the header, the checksum reveals a wrong bit. After the
+    // scene, nothing is read, so a wrong bit there has no effect.
     for bit in 0..8 * png.len() {
         let mut flipped = png.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
