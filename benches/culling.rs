@@ -121,7 +121,8 @@ fn place(index: u32, step: f64, size: f64) -> f64 {
     ((f64::from(index) * step).fract() - 0.5) * size
 }
 
-/// Returns the centre of an object. The centres of all indices are spread over the whole picture.
+/// Returns the centre of the object with the index `index`. The centres are spread over the whole
+/// picture.
 fn center(index: u32) -> [f64; 3] {
     [
         place(index, 0.618_033_988_749_895, 12.0),

@@ -29,7 +29,7 @@ pub struct Inspection {
     pub per_pixel: Option<u64>,
     /// Number of samples of the whole picture.
     pub total: u64,
-    /// The seed.
+    /// Seed of the samples.
     pub seed: u64,
     /// Vanishing point of the lines parallel to each of the world's axes, in pixels from the
     /// picture's top left corner; `None` if the axis is parallel to the view plane.
@@ -61,7 +61,7 @@ pub struct CameraFacts {
     pub hfov_deg: f64,
     /// Depth of the near plane, in metres.
     pub near: f64,
-    /// Depth of the far plane, in metres.
+    /// Depth of the far plane, in metres; `None` if there is no far plane.
     pub far: Option<f64>,
     /// "up", "down" or "level", by the exact sign of the view direction's y coordinate.
     pub looks: &'static str,
@@ -83,8 +83,8 @@ pub struct ObjectFacts {
 }
 
 impl ObjectFacts {
-    /// Returns the object's name. Without a name, returns its indices, which distinguish the
-    /// members of a block, or `-`.
+    /// Returns the object's name. If it has none, returns its indices, which distinguish the
+    /// objects of a repeated block, or `-`.
     fn shown_name(&self) -> Cow<'_, str> {
         match (&self.name, &*self.indices) {
             (Some(name), _) => Cow::Borrowed(name),
@@ -248,7 +248,7 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// The part of the text that describes what is seen of the objects.
+/// Formatting of the lines about the objects.
 impl Inspection {
     /// Sums what is seen of the objects that the text does not list. Returns `None` if it lists all
     /// objects.

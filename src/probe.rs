@@ -30,7 +30,7 @@ pub struct Probe {
     pub color: Color,
 }
 
-/// Follows the ray through a point of the picture plane, given in pixels from the picture's top
+/// Follows the ray through the point `pixel` of the picture plane, in pixels from the picture's top
 /// left corner.
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;

@@ -17,11 +17,12 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Maximum work on a whole picture, in units of about 50 ns, shared equally by its tiles. After a
-/// tile's share is used up, what is seen at a pixel's centre counts for the whole pixel.
+/// Maximum work on a whole picture, in units of about 50 ns. Each tile has an equal share. After a
+/// tile's share is used up, a pixel counts as showing only what is seen at its centre.
 const MAX_WORK: u64 = 100_000_000;
 
-/// Minimum area that counts as seen, in pixels. It is also the precision of printed areas.
+/// Minimum area that counts as seen, in pixels; with less, the object counts as not seen. It is
+/// also the precision of printed areas.
 pub const MIN_AREA: f64 = 1e-6;
 
 /// What is seen of an object.
@@ -62,7 +63,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
     let found = threads::install(None, look).unwrap_or_default();
     let mut areas = SeenAreas::new();
     let is_exact = found.iter().all(|(_, is_exact)| *is_exact);
-    // The areas are added in a fixed order, so that sums always have the same rounding.
+    // The areas are added in a fixed order, so that the rounding of the sums is always the same.
     for (object, area) in found.into_iter().flat_map(|(areas, _)| areas) {
         add(&mut areas, object, area);
     }
@@ -74,7 +75,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
                 Some(place) => Visibility::Outside(place),
-                // The object in front is found only for the objects that are listed.
+                // Only for listed objects, the object in front is searched for.
                 None if index >= LISTED => Visibility::Nothing,
                 None => hidden_by(scene, &asked, index)
                     .map_or(Visibility::Nothing, Visibility::HiddenBy),

@@ -26,8 +26,9 @@ pub fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "scn")
 }
 
-/// Renders the exact pictures of both scenes. The outer error is about the arguments, the inner one
-/// about rendering. Returns `None` if a scene has errors, which are reported.
+/// Renders the exact pictures of both scenes that the arguments name. The outer error is about the
+/// arguments, the inner one about rendering. Returns `None` if a scene has errors, which are
+/// reported.
 pub fn of_scenes(
     args: &DiffArgs,
     cancel: &AtomicBool,

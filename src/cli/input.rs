@@ -188,17 +188,17 @@ pub fn name_copies(path: &Path) {
     }
 }
 
-/// Makes the error that a path cannot be read.
+/// Makes the error message that a path cannot be read.
 pub fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot read {}: {error}", shown(path)))
 }
 
-/// Makes the error that a path cannot be written to.
+/// Makes the error message that a path cannot be written to.
 pub fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot write to {}: {error}", shown(path)))
 }
 
-/// Makes the error that files cannot be written into an output folder.
+/// Makes the error message that files cannot be written into an output folder.
 pub fn not_written(why: NotWritten) -> Trouble {
     unwritable(&why.path, &why.error)
 }

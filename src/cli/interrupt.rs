@@ -20,7 +20,7 @@ pub struct Interrupt(Arc<Flags>);
 
 #[derive(Default)]
 struct Flags {
-    /// Whether a command watches `pressed`.
+    /// Whether a command watches the flag `pressed` and ends itself.
     watched: AtomicBool,
     pressed: AtomicBool,
     first: OnceLock<Instant>,
@@ -32,7 +32,7 @@ struct Flags {
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
-    /// Installs the handler.
+    /// Installs the handler of Ctrl-C, which sets the flag.
     pub fn listen() -> Result<Self, Trouble> {
         let flags = Arc::new(Flags::default());
         let interrupt = Self(Arc::clone(&flags));

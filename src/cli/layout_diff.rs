@@ -66,7 +66,7 @@ struct LineCursor<'t> {
     next: usize,
     /// Byte at which the next line starts.
     at: usize,
-    /// Number of characters before the next line that are not white space.
+    /// Number of characters before the next line, except white space.
     solid_before: usize,
 }
 

@@ -38,7 +38,7 @@ pub fn stream_to_programs(
         .map_err(stdout_error)
 }
 
-/// Writes a page that is laid out for the terminal to standard output.
+/// Writes a page, whose text is safe and laid out for the terminal, to standard output.
 pub fn page(text: &str) -> Result<(), Trouble> {
     write(text.as_bytes())
 }
@@ -165,9 +165,9 @@ pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// Returns the style of reports on standard error. It has colours on a terminal that has colours,
-/// unless `NO_COLOR` is set. It is ASCII if the locale is not UTF-8. It consists of sentences, for
-/// screen readers, if `NO_GRAPHICS` is set.
+/// Returns the style of reports on standard error. Reports have colours if standard error is a
+/// terminal with colours and `NO_COLOR` is not set. They are drawn in ASCII if the locale is not
+/// UTF-8. If `NO_GRAPHICS` is set, they consist of sentences, for screen readers.
 pub fn style() -> Style {
     let plain = Style::default();
     let columns = terminal_size_of(io::stderr()).map(|(Width(columns), _)| usize::from(columns));

@@ -24,9 +24,9 @@ use crate::{
 
 /// A rendered picture, with pixels in the precision that is needed.
 pub enum RenderedPicture {
-    /// Means in 64 bits.
+    /// Means in 64-bit floats.
     Light(Rendered),
-    /// Means rounded to 32 bits.
+    /// Means rounded to 32-bit floats.
     Floats(Rendered<[f32; 3]>),
     /// Bytes of sRGB.
     Bytes(Rendered<[u8; 3]>),
@@ -80,9 +80,9 @@ impl RenderedPicture {
 /// picture in the terminal.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeptPixels {
-    /// The means in 64 bits.
+    /// Means in 64-bit floats.
     Light,
-    /// Means rounded to 32 bits.
+    /// Means rounded to 32-bit floats.
     Floats,
     /// Bytes of sRGB.
     Bytes,
@@ -157,7 +157,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         && count > 0
     {
         let width = exact.film.width() as usize;
-        // Columns and rows are counted in the whole picture.
+        // The certificate gives the column and row in the whole picture, not in the part.
         let (x, y) = (
             part.x as usize + least % width,
             part.y as usize + least / width,
@@ -176,7 +176,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
 
 /// Destination and format of a picture.
 pub enum PictureOutput {
-    /// A file.
+    /// A file, with its format, and how its path was chosen.
     File(PathBuf, FileFormat, PathChoice),
     /// Standard output, as PNG.
     Standard,
@@ -270,7 +270,7 @@ impl PictureOutput {
                 write_png(picture, recipe, out)
             }),
             Self::File(path, format, path_choice) => {
-                // The path may have become a link to the scene.
+                // Since the last check, the path may have become a link to the scene.
                 check_is_not(path, scene)?;
                 files::write(path, path_choice.purpose(path), cancel, |out| {
                     let linear: LinearFilm = match (format, picture) {

@@ -18,7 +18,7 @@ use crate::render::Control;
 /// Time before the progress bar appears. Shorter work shows no bar.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Interval between updates of the bar.
+/// Interval between updates of the progress bar.
 const INTERVAL: Duration = Duration::from_millis(100);
 
 /// Runs `work`, which counts up to `total`. If standard error is a terminal, shows the progress and

@@ -33,15 +33,15 @@ type SheetCell = (Scene, String);
 
 /// Gap between two cells, and around all cells, in pixels.
 const GAP: u32 = 12;
-/// Colour of the frame around a picture, in sRGB bytes.
+/// Colour of the frame around each picture, in sRGB bytes.
 const FRAME: [u8; 3] = [192; 3];
-/// Height of the letters of captions.
+/// Height of the letters of captions, in pixels.
 const LETTERS: RasterHeight = RasterHeight::Size16;
 /// Height of a line of captions, in pixels, including the space around the letters.
 const LINE: u32 = 22;
 const REGULAR: FontWeight = FontWeight::Regular;
 
-/// Renders the scenes and writes the sheet.
+/// Renders the scenes and writes the contact sheet.
 pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     check_output(args)?;
@@ -142,8 +142,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
     Ok(Some(scenes))
 }
 
-/// Returns the caption of a scene's file: its name without folders and extension, if no other file
-/// has that name.
+/// Returns the caption of a scene's file: its name without folders and extension, or its path if
+/// another file has the same name.
 fn name(path: &Path, args: &SheetArgs) -> String {
     if is_standard(path) {
         return "standard input".to_owned();

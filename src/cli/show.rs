@@ -19,7 +19,7 @@ use crate::{area::Area, color::linear_to_srgb, film::Film};
 pub struct Screen {
     /// The picture above the messages; `None` if no pictures are shown.
     shown: Option<ShownPicture>,
-    /// Messages since the last change.
+    /// Messages since the last change of the scene. They are printed again below a new picture.
     messages: String,
 }
 
@@ -128,9 +128,9 @@ impl ShownPicture {
 /// Colours that a terminal can show.
 #[derive(Clone, Copy)]
 enum Palette {
-    /// All 24-bit colours.
+    /// All 24-bit colours, which are used as they are.
     Full,
-    /// 256 colours, of which the nearest one is used.
+    /// Only 256 colours, of which the nearest one is used.
     Of256,
 }
 
@@ -164,8 +164,8 @@ fn size() -> (usize, usize) {
     (columns.max(1), rows_of_picture(rows))
 }
 
-/// Returns the number of rows for the picture. A report on one mistake takes about eleven rows, and
-/// must be readable below the picture.
+/// Returns the number of rows that the picture may take, of `rows` rows of the terminal. A report
+/// on one mistake takes about eleven rows, and must be readable below the picture.
 fn rows_of_picture(rows: usize) -> usize {
     const MESSAGES: usize = 12;
     let rest = rows.saturating_sub(MESSAGES);

@@ -155,7 +155,7 @@ fn check_methods(request: &Request) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Rejects more than 2^53 samples in a picture, the limit of the language.
+/// Rejects a request for more than 2^53 samples in a picture, which is the limit of the language.
 fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
     let most = request.samples.iter().copied().max().unwrap_or(0);
@@ -244,7 +244,7 @@ fn name(scene: &Path, taken: &[String]) -> String {
         "" => "scene",
         stem => stem,
     };
-    // Some file systems do not distinguish upper and lower case.
+    // File systems may not distinguish upper and lower case, so names are compared in lower case.
     let is_taken = |name: &String| {
         let is_same = |other: &str| other.to_lowercase() == name.to_lowercase();
         is_same(INDEX) || taken.iter().any(|other| is_same(other))

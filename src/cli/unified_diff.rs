@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-/// Number of unchanged lines around a change.
+/// Number of unchanged lines that are shown around a change.
 const AROUND: usize = 3;
 
 /// Maximum number of lines, in both texts together, that the search for the next equal lines
@@ -25,7 +25,7 @@ pub fn unified_diff(name: &str, old: &str, new: &str) -> String {
     let mut text = String::new();
     let mut rest = changes.as_slice();
     while !rest.is_empty() {
-        // Changes whose context touches share a hunk.
+        // Changes belong to one hunk if the unchanged lines around them touch.
         let near = |pair: &[ReplacedLines]| pair[1].old.start - pair[0].old.end <= 2 * AROUND;
         let together = 1 + rest.windows(2).take_while(|pair| near(pair)).count();
         let (hunk, behind) = rest.split_at(together);
@@ -116,7 +116,8 @@ mod tests {
 
     use super::*;
 
-    /// Texts of up to 14 lines from a few different ones, with and without a line feed at the end.
+    /// Generates texts of up to 14 lines out of a few different ones, with and without a line feed
+    /// at the end.
     fn text() -> impl Strategy<Value = String> {
         ("((a|b|c|)\n){0,14}", "(a|b)?").prop_map(|(lines, last)| lines + &last)
     }

@@ -94,8 +94,8 @@ fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
     }
 }
 
-/// Checks at the start that the scene can be read and is not a picture. Later, the file may be
-/// missing for a time.
+/// Checks that the scene can be read and is not a picture. This is checked only at the start, since
+/// later the file may be missing for a time.
 pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
     let bytes = input::bytes(scene).map_err(|error| input::unreadable(scene, &error))?;
     check_text(scene, &bytes)

@@ -32,7 +32,7 @@ pub fn id(_: &Metadata) -> FileId {
 pub struct Original(Option<(FileId, Vec<u8>)>);
 
 impl Original {
-    /// Reads the file at `path` with the function `read`.
+    /// Reads the file at `path` with the function `read`, and remembers its identity.
     pub fn read(path: &Path, read: impl FnOnce(&Path) -> io::Result<Vec<u8>>) -> io::Result<Self> {
         // Another file may replace this one between the two calls. The identity that is stored here
         // then differs from that of the new file, which counts as changed.

@@ -42,12 +42,12 @@ pub struct OutputFolder {
     hashes: BTreeMap<String, Vec<String>>,
 }
 
-/// Error: a file or folder prevents the files from being written.
+/// Error that a file or a folder prevents the files from being written.
 #[derive(Debug)]
 pub struct NotWritten {
-    /// The file or folder.
+    /// Path of the file or folder.
     pub path: PathBuf,
-    /// The cause, in words.
+    /// The cause of the error, in words.
     pub error: io::Error,
 }
 
@@ -249,7 +249,7 @@ fn read_list_file(path: &Path) -> io::Result<Original> {
     Original::read(path, |path| read(path, LIST_LIMIT))
 }
 
-/// Parses a list into the names of the files and their hashes.
+/// Parses the list of Pinhole's files. Returns the hashes of each file by its name.
 fn parse_list(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
     let Some(bytes) = list.bytes() else {
         return Ok(BTreeMap::new());

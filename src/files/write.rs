@@ -29,8 +29,8 @@ pub enum Purpose<'a> {
     /// The user named the file. An existing file is replaced, and a link is followed. A pipe or a
     /// device gets the content once the content is complete.
     Named,
-    /// Pinhole chose the name, in or below this folder. An existing file is replaced, also at the
-    /// end of a link, but never outside of the folder.
+    /// Pinhole chose the name, in or below a folder. An existing file is replaced, also at the end
+    /// of a link, but never outside of the folder.
     Within(&'a Path),
     /// Pinhole chose the name, in or below a folder. The file is replaced only if it is still what
     /// was read, or created if there was none.
@@ -149,7 +149,7 @@ fn writing_error(path: &Path, error: io::Error) -> io::Error {
     }
 }
 
-/// Where the content is written.
+/// Destination of the content.
 enum WriteTarget {
     File(FileTarget),
     /// A pipe or a device, to which the content is written.
@@ -238,14 +238,14 @@ fn replace(
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
     let temporary = temporary(target, purpose)?;
-    // The sink is the `File` rather than the `NamedTempFile`, whose errors would name the temporary
+    // The sink is the [`File`], since errors of the [`NamedTempFile`] would name the temporary
     // path.
     let sink = temporary.as_file();
     let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
     write(&mut out)?;
     out.flush()?;
     drop(out);
-    // Only syncing reveals whether there was room for all of the content.
+    // Only syncing shows whether the disk had room for all of the content.
     temporary.as_file().sync_all()?;
     check(cancel)?;
     check_folder(target, purpose)?;
@@ -322,7 +322,8 @@ fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempF
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     if found.is_none() && !is_private {
-        // These are the usual permissions of a new file; the system removes those in the umask.
+        // These are the usual permissions of a new file, from which the system removes those in the
+        // umask.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = locked(|| builder.tempfile_in(folder(path)))?;
@@ -371,7 +372,7 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     file.set_permissions(found.permissions())
 }
 
-/// A sink that fails once `cancel` is set.
+/// A sink whose writes fail once `cancel` is set.
 struct Checked<'a, S> {
     sink: S,
     cancel: &'a AtomicBool,

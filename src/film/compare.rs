@@ -37,7 +37,8 @@ pub struct Tolerance<'a> {
 }
 
 impl Tolerance<'_> {
-    /// Extra tolerance of the pixel with index `at`, in steps of 8-bit sRGB, from its error bound.
+    /// Returns the extra tolerance of the pixel with index `at`, in steps of 8-bit sRGB, from its
+    /// error bound.
     fn slack(&self, at: usize) -> f64 {
         let bound = self.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
         bound * STEEPEST
@@ -53,7 +54,7 @@ pub struct Comparison {
     pub height: u32,
     /// Root mean square of the differences of all channels of all pixels, in linear light, 0 to 1.
     pub rmse: f64,
-    /// The largest difference. Of equal differences, it is the first one, row by row.
+    /// The largest difference. If several are equally large, it is the first of them, row by row.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
@@ -145,7 +146,7 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
 }
 
 /// Returns the channel in which two pixels differ most, and the difference in steps of 8-bit sRGB.
-/// Of equal differences, the first channel is returned.
+/// If several channels differ equally, the first of them is returned.
 fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
     let differences = [0, 1, 2].map(|channel| (steps(p[channel]) - steps(q[channel])).abs());
     let most = differences.into_iter().fold(0.0, f64::max);
@@ -188,7 +189,7 @@ fn heat(steps: f64) -> [f64; 3] {
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
 }
 
-/// Converts linear light to steps of 8-bit sRGB. Light from 0 to 1 gives 0 to 255.
+/// Converts linear light to steps of 8-bit sRGB: from 0 to 1 to the range from 0 to 255.
 fn steps(light: f64) -> f64 {
     STEPS * linear_to_srgb(light)
 }

@@ -36,7 +36,7 @@ use super::{
 };
 use crate::{area::Area, files::Sink};
 
-/// A film of linear light.
+/// A film of linear light, in either precision.
 #[derive(Clone, Copy, Debug)]
 pub enum LinearFilm<'a> {
     /// Means in `f64`.

@@ -29,7 +29,7 @@ pub struct Jpeg {
 /// coefficient is rounded to a multiple of its step. The first step belongs to the block's mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
-    /// Square of the first step.
+    /// Square of the first step, which is that of the block's mean.
     pub first: f64,
     /// Mean of the squares of the steps.
     pub mean: f64,
@@ -41,7 +41,7 @@ impl JpegTable {
     /// Builds a table from its steps in zigzag order, as files contain them.
     fn new(zigzag: [u16; 64]) -> Self {
         let mut order: Vec<usize> = (0..64).collect();
-        // The zigzag runs diagonal by diagonal, in alternating directions.
+        // The zigzag runs along the diagonals of the block, in alternating directions.
         order.sort_by_key(|at| {
             let (x, y) = (at % 8, at / 8);
             (x + y, if (x + y) % 2 == 0 { x } else { y })
@@ -143,7 +143,7 @@ pub fn is_whole(bytes: &[u8]) -> bool {
     /// The marker in front of entropy-coded data.
     const SCAN: u8 = 0xda;
     const END: u8 = 0xd9;
-    // The position after the start marker.
+    // This is the position after the start marker of the file.
     let mut at = 2;
     loop {
         // In entropy-coded data, a byte of 255 is followed by a 0. The markers 0xd0 to 0xd7, which

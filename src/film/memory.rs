@@ -66,12 +66,12 @@ fn available() -> Option<u64> {
 
 fn machine() -> Option<u64> {
     let table = read_system_text("/proc/meminfo")?;
-    // The table is in KiB.
+    // The table gives numbers of KiB.
     Some(entry(&table, "MemAvailable:")? * 1024)
 }
 
-/// Returns the least number of bytes that one of the control groups around this process may still
-/// allocate. Returns `None` if there is no limit.
+/// Returns how many bytes the control groups around this process still allow it to allocate: the
+/// least number of all groups. Returns `None` if no group has a limit.
 fn control_group() -> Option<u64> {
     const ROOT: &str = "/sys/fs/cgroup";
     let groups = read_system_text("/proc/self/cgroup")?;

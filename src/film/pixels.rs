@@ -9,7 +9,7 @@ use crate::area::Area;
 /// The value that a film stores for a pixel: its mean in linear light, the mean rounded to 32-bit
 /// floats, or the bytes of sRGB, which take an eighth of the memory.
 pub trait Pixel: Copy + Default + Send + Sync {
-    /// Converts a mean in linear light.
+    /// Converts the mean `light`, in linear light, to this kind of pixel.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
     /// Returns whether all means that differ from `light` by at most `bound` in each channel are
@@ -20,7 +20,8 @@ pub trait Pixel: Copy + Default + Send + Sync {
 
 /// A pixel that can be converted to bytes of sRGB.
 pub trait AsBytes: Pixel {
-    /// Returns the bytes of sRGB of a row. If they must be computed, `buffer` stores them.
+    /// Returns the bytes of sRGB of a row of pixels. If they have to be computed, they are stored
+    /// in `buffer`.
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, buffer: &'a mut Vec<u8>) -> &'a [u8];
 }
 

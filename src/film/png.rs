@@ -46,7 +46,7 @@ pub struct Recipe {
 /// Why a picture's recipe cannot be read.
 #[derive(Debug, Error)]
 pub enum NotOurs {
-    /// The file does not follow the format.
+    /// The file does not follow the PNG format.
     #[error("it begins as a PNG does, but is damaged or no picture")]
     Damaged,
     /// The picture contains no scene.

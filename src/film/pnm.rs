@@ -32,7 +32,8 @@ pub enum Start {
     },
 }
 
-/// Returns how a file begins, if it is a PNM without text in front. Returns `None` for other files.
+/// Returns how a PNM file begins. Returns `None` for other files, and for a PNM after lines of
+/// text.
 pub fn start(bytes: &[u8]) -> Option<Start> {
     let mark = if bytes.starts_with(BOM) { 3 } else { 0 };
     if is_head(&bytes[mark..]) {
@@ -251,8 +252,8 @@ impl Raster {
         (0..self.count()).map(bit).collect()
     }
 
-    /// Reads numbers of one byte, or of two bytes with the high one first. Also returns which
-    /// damage was repaired.
+    /// Reads numbers of `length` bytes, one or two, with the high byte first. Also returns the kind
+    /// of damage that was repaired.
     fn in_bytes(
         &self,
         reader: &PnmReader,
@@ -283,8 +284,8 @@ impl Raster {
     }
 }
 
-/// Repairs a raster that was written as text. Returns the bytes and the kind of damage, or `None`
-/// if no repair gives the wanted length.
+/// Repairs a raster that was written as text instead of bytes. Returns the bytes and the kind of
+/// damage, or `None` if no repair gives `wanted` bytes.
 fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     let of_lines = |raster: &[u8]| without_returns(raster, wanted);
     if let Some(raster) = of_lines(raster) {
@@ -328,7 +329,7 @@ struct PnmReader<'b> {
 }
 
 impl<'b> PnmReader<'b> {
-    /// Starts behind the two letters of the format.
+    /// Makes a reader that starts after the two letters of the format.
     fn new(bytes: &'b [u8]) -> Self {
         Self { bytes, at: 2 }
     }
@@ -337,7 +338,7 @@ impl<'b> PnmReader<'b> {
         self.at >= self.bytes.len()
     }
 
-    /// Returns the current line number, from 1.
+    /// Returns the number of the current line, from 1.
     fn line(&self) -> usize {
         let before = &self.bytes[..self.at];
         1 + before.iter().filter(|&&byte| byte == b'\n').count()
@@ -387,7 +388,7 @@ impl<'b> PnmReader<'b> {
         }))
     }
 
-    /// Reads a digit, 0 or 1.
+    /// Reads one digit, which must be 0 or 1.
     fn bit(&mut self) -> Result<u64, Unreadable> {
         let byte = self.bytes[self.at];
         self.at += 1;

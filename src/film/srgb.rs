@@ -10,18 +10,19 @@ use std::array;
 
 use crate::color::half_byte;
 
-/// Number of equal intervals of linear light in the table [`Encoder::start`].
+/// Number of equal intervals of linear light in the table [`Encoder::start`], in which encoding
+/// begins its search.
 const PARTS: usize = 4096;
 
 /// An encoder of linear light as bytes.
 pub struct Encoder {
-    /// The linear light of k + 1/2, for each byte k below 255.
+    /// For each byte k below 255, the linear light of k + 1/2.
     thresholds: [f64; 255],
-    /// The byte of the light at the dark end of each interval.
+    /// For each interval of linear light, the byte of the light at its dark end.
     start: [u8; PARTS + 1],
 }
 
-/// Computes the thresholds and the table.
+/// Computes the thresholds and the table of intervals.
 impl Default for Encoder {
     fn default() -> Self {
         let thresholds = array::from_fn(|k| half_byte(k as u8));
@@ -39,7 +40,7 @@ impl Encoder {
         light.map(|channel| self.encode(channel))
     }
 
-    /// Encodes one channel. Light below 0 counts as 0, and above 1 as 1.
+    /// Encodes one channel. Light below 0 is encoded as 0, and light above 1 as 255.
     pub fn encode(&self, light: f64) -> u8 {
         // The scaling is exact, and the conversion saturates on both sides.
         let part = ((light * PARTS as f64) as usize).min(PARTS);

@@ -20,10 +20,11 @@ use crate::schema;
 /// differ by more, a new column begins.
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
-/// Minimum number of consecutive blocks of one kind that form a table.
+/// Minimum number of consecutive blocks of one kind that form a table, whose rows may be slightly
+/// too wide.
 const MIN_TABLE_ROWS: usize = 3;
 
-/// Sets the columns of a file's entries, and of the entries in its blocks.
+/// Sets the columns to which the parts of a file's entries are aligned, also within blocks.
 pub fn align(entries: &mut [Entry<'_>]) {
     keep_rows(entries);
     settings(entries);
@@ -79,9 +80,9 @@ enum Alignment {
     Definition,
     Object,
     Field,
-    /// The entry is not aligned, but the entries around it may be aligned with each other.
+    /// The entry is not aligned, but does not end a group.
     Unaligned,
-    /// The entry ends a group.
+    /// The entry ends a group: entries before and after it are not aligned with each other.
     End,
 }
 
@@ -120,13 +121,13 @@ fn is_setting(block: &BlockEntry<'_>) -> bool {
     schema::block(block.kind).is_some_and(|block| !block.is_object)
 }
 
-/// Returns whether only the kind and the name stand before a block's `{`, and no comments.
+/// Returns whether a block's head consists of its kind and name only, without comments.
 fn is_plain(entry: &Entry<'_>, block: &BlockEntry<'_>) -> bool {
     let words = 1 + usize::from(block.name.is_some());
     entry.leading.is_empty() && block.head.len() == words
 }
 
-/// Returns the groups of entries of one class, as indices of the entries.
+/// Returns the groups of entries of one class. A group is a list of indices of entries.
 fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
     // Class of the last group as long as the group can be extended; then `End`.

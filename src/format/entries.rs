@@ -10,7 +10,7 @@ use crate::{
     syntax::tree::{self, Item},
 };
 
-/// An entry of a file or a block: one or more lines.
+/// An entry of a file or of a block, which takes one or more lines.
 #[derive(Debug)]
 pub struct Entry<'s> {
     /// Whether a blank line precedes the entry.
@@ -34,15 +34,15 @@ pub struct Entry<'s> {
 pub enum EntryKind<'s> {
     /// A line of comments.
     Comments,
-    /// The words of `let NAME`, and those of `= VALUE`.
+    /// A definition: the words of `let NAME`, and those of `= VALUE`.
     Definition(Vec<Word<'s>>, Vec<Word<'s>>),
-    /// A field's name, and its value.
+    /// A field: its name, and the words of its value.
     Field(&'s str, Vec<Word<'s>>),
     /// A block.
     Block(BlockEntry<'s>),
 }
 
-/// A block.
+/// A block of a scene, with its layout.
 #[derive(Debug)]
 pub struct BlockEntry<'s> {
     /// Words before the `{`.

@@ -19,7 +19,7 @@ pub struct Word<'s> {
 /// White space before a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Before {
-    /// Nothing.
+    /// No white space.
     Nothing,
     /// One blank.
     Space,
@@ -27,7 +27,7 @@ pub enum Before {
     /// with the lowest number. The number is greater in more parentheses, and at operators of
     /// higher precedence.
     Fold(usize),
-    /// A line end within the entry.
+    /// A line end.
     Line,
 }
 
@@ -67,7 +67,7 @@ pub struct TokenReader<'a, 's> {
 }
 
 impl<'a, 's> TokenReader<'a, 's> {
-    /// Makes a reader at the beginning of a text, after its byte order mark.
+    /// Makes a reader that starts at the beginning of a text, after its byte order mark.
     pub fn new(source: &'s Source, comments: &'a [Span]) -> Self {
         Self {
             text: source.text(),
@@ -76,7 +76,8 @@ impl<'a, 's> TokenReader<'a, 's> {
         }
     }
 
-    /// Moves to the offset `to`, and returns the comments and line ends before it.
+    /// Moves to the offset `to`. Returns the comments and line ends between the old offset and
+    /// `to`.
     pub fn gap(&mut self, to: usize) -> Gap<'s> {
         let mut comments = Vec::new();
         while let Some(comment) = self.comments.as_slice().first()
@@ -94,7 +95,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         Gap { comments, breaks }
     }
 
-    /// Moves to the end of a token.
+    /// Moves to the end of `token`.
     pub fn skip(&mut self, token: Span) {
         self.at = token.end;
     }
@@ -140,7 +141,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         }
     }
 
-    /// Adds the comments before a token, and the token.
+    /// Adds the comments before the token `span`, and the token itself, to `words`.
     pub fn token(&mut self, span: Span, before: Before, words: &mut Vec<Word<'s>>) {
         let text = self.under(span);
         let mut behind = self.comments(span.start, before, words);

@@ -101,7 +101,7 @@ impl LayoutWriter {
         push_flat(line, last);
     }
 
-    /// Writes all lines of the words except the last one, and returns the words of the last line.
+    /// Writes all lines that `words` take except the last one. Returns the words of the last line.
     fn lines<'w, 's>(
         &mut self,
         line: &mut String,
@@ -160,7 +160,7 @@ impl LayoutWriter {
         }
     }
 
-    /// Writes the waiting lines, with their comments aligned in columns.
+    /// Writes the lines of the current group, with the comments at their ends aligned in columns.
     fn flush(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);
         let lines: Vec<usize> = (0..waiting.len()).collect();
@@ -217,7 +217,7 @@ fn push_fields(line: &mut String, entries: &[Entry<'_>]) {
     line.push_str(" }");
 }
 
-/// Appends words to a line without breaking it.
+/// Appends words to a line, without line ends between them.
 fn push_flat(line: &mut String, words: &[Word<'_>]) {
     let is_start = line.trim_start().is_empty();
     for (index, word) in words.iter().enumerate() {

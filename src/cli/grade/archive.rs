@@ -15,7 +15,8 @@ use zip::{DateTime, ZipArchive, result::ZipError};
 
 use crate::{files, lock::lock};
 
-/// Maximum length of a submitted file, inside or outside of a zip file, in bytes.
+/// Maximum length of a submitted file, inside or outside of a zip file, in bytes. A longer file is
+/// listed as not compared.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
 /// Maximum number of entries of a zip file. A file with more is rejected.
@@ -94,12 +95,12 @@ pub struct Archive(Mutex<ZipArchive<Bounded>>);
 #[derive(Debug)]
 pub struct ArchiveEntry {
     pub index: usize,
-    /// The name, with `/` between folders.
+    /// Name of the entry, with `/` between folders.
     pub name: String,
     pub is_folder: bool,
-    /// Modification time in seconds since 1970. Zip files store only even seconds.
+    /// Modification time, in seconds since 1970; an even number, as zip files store it.
     pub time: Option<i64>,
-    /// The unpacked length in bytes, according to the header.
+    /// Unpacked length, in bytes, according to the header, which may be wrong.
     pub length: u64,
     /// The CRC-32 of the unpacked bytes. It is verified when they are unpacked.
     pub sum: u32,
@@ -192,8 +193,8 @@ fn name(raw: &[u8], decoded: Option<&str>) -> String {
 
 /// Converts a time in a zip file, which has no time zone, to seconds since 1970.
 fn seconds(time: DateTime) -> i64 {
-    // Years begin in March in this calculation, so that a leap day is the last day of its year:
-    // Hinnant, "chrono-compatible low-level date algorithms", days_from_civil.
+    // In this calculation, years begin in March, so that a leap day is the last day of its year.
+    // Source: Hinnant, "chrono-compatible low-level date algorithms", days_from_civil.
     let month = (i64::from(time.month()) + 9) % 12;
     let year = i64::from(time.year()) - i64::from(month >= 10);
     let leaps = year / 4 - year / 100 + year / 400;

@@ -38,7 +38,7 @@ pub struct Class {
     pub students: Vec<Student>,
     /// Whether a picture on the command line is missing or not a file.
     pub is_one_missing: bool,
-    /// The number of bytes that may still be unpacked from zip files.
+    /// Number of bytes that may still be unpacked from the class's zip files.
     pub budget: UnpackBudget,
 }
 
@@ -139,7 +139,8 @@ impl Class {
                 .extend(file.map(|file| SubmittedFile { path, ..file }));
         }
         for (folder, name) in submitters.all() {
-            // A student whose folder is missing is listed without files.
+            // The metadata may name a student whose folder is missing. Such a student is listed
+            // without files.
             works
                 .entry((folder.to_owned(), String::new()))
                 .or_insert_with(|| Student {
@@ -347,7 +348,7 @@ fn tell_apart(students: &mut [Student]) {
     }
 }
 
-/// Makes the error that there are no students.
+/// Makes the error that the arguments contain no pictures of students.
 pub fn no_students(paths: &[PathBuf]) -> Trouble {
     let names: Vec<_> = paths.iter().map(|path| shown(path)).collect();
     Trouble(format!(

@@ -13,22 +13,22 @@ use crate::{
 /// Criterion that a mistake belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
-    /// The camera and the window.
+    /// Mistakes in the camera or the window.
     Camera,
-    /// An object, by its index.
+    /// Mistakes in an object, given by its index.
     Object(usize),
-    /// The checkerboards.
+    /// Mistakes in the checkerboards.
     Board,
-    /// Colours and their encoding.
+    /// Mistakes in colours or their encoding.
     Colours,
-    /// The positions of samples, and their average.
+    /// Mistakes in the positions of samples or in their average.
     Sampling,
-    /// Which hit of a ray is visible, and everything that belongs to no other criterion.
+    /// Mistakes in which hit of a ray is visible, and mistakes of no other criterion.
     Hits,
 }
 
-/// Criteria of mistakes by prefixes of their ids. A mistake whose id has none of these prefixes is
-/// about a field of the camera or about hits.
+/// Criteria of mistakes, by prefixes of the mistakes' ids. If an id has none of these prefixes, the
+/// mistake is about a field of the camera or about hits.
 const BEGINNINGS: &[(&str, Criterion)] = &[
     ("board_", Criterion::Board),
     ("half_pixel", Criterion::Sampling),

@@ -11,13 +11,13 @@ use crate::cli::Status;
 /// A student, with the results of the submitted pictures.
 pub struct GradedStudent {
     pub name: String,
-    /// The number of the submission in Moodle.
+    /// Number of the submission in Moodle.
     pub number: Option<String>,
     /// Path of the student's folder or file, for output.
     pub place: String,
     /// The pictures that were compared, the best one first.
     pub compared: Vec<ComparedPicture>,
-    /// The pattern of `--picture`.
+    /// The pattern of file names in `--picture`.
     pub chosen: Option<String>,
     /// Files of the student that were not compared, some with the reason.
     pub not_compared: Vec<String>,
@@ -30,26 +30,26 @@ pub struct GradedStudent {
 
 /// A picture that was compared.
 pub struct ComparedPicture {
-    /// Path within the student's submission.
+    /// Path of the picture within the student's submission.
     pub path: String,
-    /// Path that starts with the argument on the command line.
+    /// Path of the picture, starting with the argument on the command line, for output.
     pub shown: String,
     pub result: Result<JudgedPicture, String>,
 }
 
 /// The result of judging a picture.
 pub struct JudgedPicture {
-    /// The fields of the JSON output.
+    /// Fields of the verdict in the JSON output.
     pub fields: Map<String, Value>,
     /// A warning if the file's format changes colours.
     pub warning: Option<&'static str>,
     /// SHA-256 of the picture's width and pixels.
     pub hash: [u8; 32],
-    /// The pictures for the HTML page; `None` if no page is written.
+    /// Pictures that the HTML page shows; `None` if no page is written.
     pub pictures: Option<Pictures>,
 }
 
-/// A mistake, or a guess.
+/// A mistake that explains differences, or a guess at one.
 pub struct Finding<'j> {
     pub id: &'j str,
     pub message: &'j str,
@@ -68,7 +68,7 @@ impl JudgedPicture {
             .unwrap_or_default()
     }
 
-    /// Returns the verdict as a word.
+    /// Returns the verdict as a word: `right`, `noise`, `wrong` or `unknown`.
     pub fn word(&self) -> &str {
         self.text("verdict")
     }
@@ -169,7 +169,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the path of the best picture, or that of the submission if there is no picture.
+    /// Returns the path of the best picture, or that of the submission if no picture was compared.
     pub fn file(&self) -> &str {
         self.compared
             .first()
@@ -214,7 +214,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the student's JSON object.
+    /// Returns the JSON object of the student.
     pub fn json(&self) -> Value {
         let mut fields = Map::new();
         let mut put = |key: &str, value: Value| {
@@ -254,7 +254,7 @@ impl GradedStudent {
         Value::Object(fields)
     }
 
-    /// Returns the comment that the student gets to read.
+    /// Returns the comment on the picture that the student gets to read.
     pub fn comment(&self) -> String {
         let judged = match self.best() {
             Ok(judged) => judged,

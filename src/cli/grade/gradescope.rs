@@ -73,7 +73,7 @@ fn whole(one: &GradedStudent, score: Option<f64>, tests: Vec<Value>) -> Value {
     results
 }
 
-/// Returns the criteria that are tests, with the tests' names.
+/// Returns the criteria that become tests in Gradescope, with the names of the tests.
 fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     let objects = scene.objects.iter().enumerate();
     let is_board = |shape: &Shape| shape.checkerboard().is_some();
@@ -131,7 +131,7 @@ pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
         };
         let name: String = one.name.chars().map(plain).take(60).collect();
         let name = name.trim_matches('.');
-        // Windows reserves names such as `con`, even with a dot and more text after them.
+        // Windows reserves names such as `con`, even if a dot and more text follow.
         let base = match name {
             "" => "student".to_owned(),
             name if is_reserved(name) => format!("_{name}"),

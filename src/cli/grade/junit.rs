@@ -33,7 +33,7 @@ pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
         };
         let message = attribute(&one.line());
         let word = match kind {
-            // `skipped` has no attribute `type`.
+            // In JUnit XML, `skipped` has no attribute `type`.
             "skipped" => String::new(),
             _ => format!(" type=\"{}\"", one.word()),
         };

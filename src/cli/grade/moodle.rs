@@ -22,7 +22,7 @@ use crate::{
     suggest::choice,
 };
 
-/// Maximum length of a worksheet, in bytes.
+/// Maximum length of a worksheet, in bytes. A longer file is an error.
 const LIMIT: u64 = 64 << 20;
 
 /// English headings of the worksheet's columns, which `--columns` may replace. The last two columns

@@ -20,7 +20,7 @@ pub fn names(index: usize) -> [String; 3] {
     ["", "-difference", "-exact"].map(|what| format!("pictures/{}{what}.png", index + 1))
 }
 
-/// Returns the page as HTML.
+/// Returns the page of a class as HTML. `total` is the number of points for a right picture.
 pub fn page(scene: &str, graded: &[GradedStudent], total: Option<f64>) -> String {
     let scene = escaped(scene);
     let mut html = format!(

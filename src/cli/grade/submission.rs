@@ -25,7 +25,7 @@ const MOST_PICTURES: usize = 12;
 pub struct Student {
     /// Name of the student in the submission system, or else the name of the folder or file.
     pub name: String,
-    /// The number of the submission in Moodle.
+    /// Number of the submission in Moodle.
     pub number: Option<String>,
     /// Path of the student's folder or file, for output.
     pub place: String,
@@ -38,9 +38,9 @@ pub struct Student {
 /// A submitted file.
 #[derive(Debug)]
 pub struct SubmittedFile {
-    /// Path within the student's submission, with `/` between folders.
+    /// Path of the file within the student's submission, with `/` between folders.
     pub path: String,
-    /// Path that starts with the argument on the command line, for output.
+    /// Path of the file, starting with the argument on the command line, for output.
     pub shown: String,
     /// Modification time in seconds since 1970, if known.
     pub time: Option<i64>,
@@ -98,7 +98,7 @@ impl SubmittedFile {
     }
 }
 
-/// The files of a student that are compared, and those that are not.
+/// The files of a student: those that are compared as pictures, and the others.
 #[derive(Debug, Default)]
 pub struct PictureChoice<'s> {
     pub pictures: Vec<&'s SubmittedFile>,

@@ -5,7 +5,8 @@ use std::iter;
 use super::graded::{Finding, GradedStudent, JudgedPicture, percent};
 use crate::{cli::judge::quoted, diagnostic::visible_line, numbers::short};
 
-/// Returns the cells of the RMSE and of the samples per pixel; empty if no picture was judged.
+/// Returns the RMSE and the samples per pixel as cells of a table. Both are empty if no picture was
+/// judged.
 pub fn figures(one: &GradedStudent) -> [String; 2] {
     match one.best() {
         Err(_) => [String::new(), String::new()],

@@ -190,14 +190,15 @@ impl FileTree {
         }
     }
 
-    /// Records that a folder is a repository.
+    /// Records that a folder is a repository. A folder deeper than [`NAMED`] is recorded as the
+    /// folder around it at that depth.
     fn add_clone(&mut self, names: &[String]) {
         if !names.is_empty() {
             self.clones.insert(names[..names.len().min(NAMED)].to_vec());
         }
     }
 
-    /// Adds the entries of a zip file.
+    /// Adds the entries of a zip file that lies in the folders `before`.
     fn unpack(&mut self, path: &Path, before: &[String]) -> Result<(), String> {
         let (archive, entries) = Archive::open(path)?;
         let archive = Arc::new(archive);

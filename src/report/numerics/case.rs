@@ -14,10 +14,10 @@ use crate::{
 pub struct Case {
     /// Name of the case.
     pub id: &'static str,
-    /// Description of what makes the case hard.
+    /// Description of what is difficult in the case.
     pub title: &'static str,
-    /// Maximum error that Pinhole claims, in the case's [`unit`](Self::unit). No decision may be
-    /// wrong.
+    /// Maximum error that Pinhole guarantees, in the case's [`unit`](Self::unit). In addition, no
+    /// decision may be wrong.
     pub bound: f64,
     pub(super) subject: Question,
 }
@@ -34,7 +34,7 @@ pub(super) enum Question {
 }
 
 impl Case {
-    /// Returns whether the case tests decisions about what is seen, not only numbers.
+    /// Returns whether the case tests decisions about what is seen, besides numbers.
     pub fn decides(&self) -> bool {
         matches!(self.subject, Question::Seen(_))
     }

@@ -17,7 +17,7 @@ use crate::{
     tracer::{Basis, World, ray},
 };
 
-/// Counts and measurements. In each pair, the textbook comes first and Pinhole second.
+/// Counts and measurements of a case. In each pair, the textbook comes first and Pinhole second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CaseTally {
     /// Number of inputs tested.
@@ -72,7 +72,7 @@ pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     tally.errors(errors.map(Some));
 }
 
-/// A scene prepared for the oracle, the textbook and Pinhole.
+/// A scene prepared for the oracle, for the textbook's formulas, and for Pinhole.
 #[derive(Debug)]
 pub(super) struct Trial {
     scene: Scene,
@@ -90,7 +90,7 @@ const INPUTS_PER_MEASUREMENT: u64 = 16;
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
-    /// Prepares a scene. The oracle computes with `bits` bits.
+    /// Prepares a scene. The oracle computes with numbers of `bits` bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
         Self {
             world: World::new(&scene),
@@ -100,8 +100,8 @@ impl Trial {
         }
     }
 
-    /// Compares what all three see at a sample point, and counts wrong decisions in `tally`. One of
-    /// every [`INPUTS_PER_MEASUREMENT`] inputs is also measured.
+    /// Compares what the oracle, the textbook and Pinhole see at a sample point, and counts wrong
+    /// decisions in `tally`. One of every [`INPUTS_PER_MEASUREMENT`] inputs is also measured.
     pub fn decide(&self, point: SamplePoint, tally: &mut CaseTally) {
         let truth = self.truth(point);
         let pixels = point.map(|(pixel, offset)| f64::from(pixel) + 0.5 + offset);
@@ -157,7 +157,8 @@ impl Trial {
         tally.errors([theirs, Some(ours)]);
     }
 
-    /// Returns the greater of the errors of a distance and of a point, in units in the last place.
+    /// Returns the greater of two errors, in units in the last place: that of the distance `t` and
+    /// that of `point`.
     fn distance(&self, t: f64, point: DVec3, true_t: &N, true_point: &V) -> f64 {
         let coordinates = true_point.iter().map(|x| x.to_f64().value().abs());
         let greatest = coordinates.fold(0.0, f64::max);
@@ -177,10 +178,10 @@ impl Trial {
         error.to_f64().value()
     }
 
-    /// Tests `count` inputs close to boundaries of what is seen along random rows and columns. They
-    /// lie at the neighbouring `f64`s on both sides of each boundary, and at distances from it that
-    /// are uniform on a logarithmic scale. Pinhole's own decisions find most boundaries; the
-    /// oracle's find some, in case Pinhole does not see a boundary at all.
+    /// Tests `count` inputs close to boundaries between colours, along random rows and columns. The
+    /// inputs lie at the neighbouring `f64`s on both sides of each boundary, and at distances from
+    /// it that are uniform on a logarithmic scale. Most boundaries are found by Pinhole's own
+    /// decisions. Some are found by the oracle's, in case Pinhole does not see a boundary at all.
     pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
         // If too few boundaries are found in `4 · count` searches, the remaining inputs lie

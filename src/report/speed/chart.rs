@@ -34,10 +34,11 @@ const SIZE: (u32, u32) = (560, 440);
 /// Width of the labels to the right of the chart, in pixels; the longest label is `multi_jittered`.
 const LABELS: i32 = 162;
 
-/// Minimum vertical distance between labels, in pixels.
+/// Minimum vertical distance between labels, in pixels. Labels that would be closer are moved
+/// apart.
 const LABEL_HEIGHT: i32 = 21;
 
-/// A quantity for the horizontal axis, with its names and its format.
+/// The quantity on the horizontal axis: its names, and how it is computed and formatted.
 struct HorizontalAxis {
     title: &'static str,
     name: &'static str,
@@ -48,7 +49,7 @@ struct HorizontalAxis {
     exact: Option<f64>,
 }
 
-/// Draws the chart of error against CPU time as SVG. The exact method is a vertical line.
+/// Draws the chart of error against CPU time as SVG. The exact method is drawn as a vertical line.
 pub fn against_time(measured: &Measurement) -> String {
     let time = HorizontalAxis {
         title: "Error against CPU time",
@@ -243,7 +244,7 @@ fn spread_out(ends: &[CanvasPoint], rows: &Range<i32>) -> Vec<i32> {
         heights[at] = ends[at].1.max(free);
         free = heights[at] + LABEL_HEIGHT;
     }
-    // Labels that then exceed the chart are moved up, from the bottom upwards.
+    // Labels below the chart's end are then moved up, from the bottom upwards.
     let mut free = rows.end;
     for &at in order.iter().rev() {
         heights[at] = heights[at].min(free);

@@ -18,19 +18,19 @@ pub struct Estimate {
     pub cpu_runs: [f64; 2],
     /// Elapsed time in seconds.
     pub wall: f64,
-    /// Whether the estimate lies beyond the measured range.
+    /// Whether the error lies beyond the measured range, so that the estimate is extrapolated.
     pub is_extrapolated: bool,
 }
 
 impl Estimate {
-    /// Returns whether the runs leave open which of the two methods is faster: the time of one is
-    /// within the spread of the other's runs.
+    /// Returns whether the runs leave open which of two methods is faster: the time of one method
+    /// is within the range of the other's runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
 }
 
-/// The methods that reach an error, by CPU time.
+/// The methods that reach an error, sorted by CPU time.
 pub struct Ranking {
     /// The method with the least CPU time, and the methods that are about as fast.
     pub fastest: Vec<(Method, Estimate)>,
@@ -94,14 +94,14 @@ type Measured = (f64, Run);
 
 impl MethodSeries {
     /// Estimates the samples and the time that the method needs for an error. If the smallest
-    /// measured number of samples suffices, it is the estimate. Returns `None` if more samples do
-    /// not help.
+    /// measured number of samples suffices, returns it. Returns `None` if more samples do not
+    /// reduce the error.
     ///
     /// Errors are assumed to fall as a power of the number of samples. Between two measured
-    /// numbers, the power is that of the line through both in logarithms. Beyond the last, it is
-    /// the slope of the line through the last three. (With few samples, errors may fall at another
-    /// rate, because `scatter` then leaves pixels empty.) Times are assumed to grow linearly with
-    /// the samples.
+    /// numbers, the power is the slope of the line through both points, in logarithms. Beyond the
+    /// last, it is the slope of the line through the last three points. (With few samples, errors
+    /// may fall at another rate, because `scatter` then leaves pixels empty.) Times are assumed to
+    /// grow linearly with the number of samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));
@@ -123,7 +123,7 @@ impl MethodSeries {
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
-            // Even fewer samples might suffice, but none were measured.
+            // Fewer samples might suffice, but none were measured.
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{area::Area, film::Film, render::Exact, scene::Method};
 
-/// The measured scene.
+/// The measured scene, as the user named it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredScene {
     /// Name of the scene as the user gave it.
@@ -51,7 +51,7 @@ pub struct Measurement {
     pub reference: Exact,
     /// Renders by the exact method, if it was requested.
     pub exact: Option<Vec<Run>>,
-    /// Results of the sampled methods, in the order of the language's table.
+    /// Results of the sampled methods, in the order of the methods in the language's reference.
     pub series: Vec<MethodSeries>,
     /// Whether the user interrupted the measurement.
     pub interrupted: bool,
