@@ -1,4 +1,4 @@
-//! The camera: its axes, singular views, roll and lenses.
+//! The camera: its axes, views along the up vector, rolls and lenses.
 
 use glam::{DVec3, dvec3};
 use pinhole::{

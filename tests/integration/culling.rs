@@ -118,8 +118,8 @@ fn culling_is_exact_for_generated_scenes() {
         let colors =
             scenes.map(|((_, scene), method)| compare(&scene, method, Count::PerPixel(24)));
         let colors: usize = colors.sum();
-        // A picture of ordinary numbers has at least ten colours on average, because pixels at
-        // edges mix colours.
+        // Scenes of ordinary numbers have at least ten colours per picture on average, because
+        // pixels at edges mix colours.
         assert!(colors > 100 * 10 || wild > 5, "{wild}: {colors}");
     }
 }
@@ -193,7 +193,8 @@ fn culling_is_exact_for_parallel_layers() {
     for (count, apart) in [(9, 0.1), (33, 0.1), (33, 1e-13), (33, 1e-30), (120, 0.05)] {
         let mut text = "image { width 24 height 18 } camera { eye (0.3, 0.2, 4) lookat (0, 0, 0) roll 10deg }\n".to_owned();
         for index in 0..count {
-            // The layers are shuffled, and every third one has a hidden duplicate.
+            // The layers are not in the order of their heights, and every third layer is hidden by
+            // an equal one.
             let place = f64::from(index * 37 % count);
             let height = 1.0 + apart * (place - place % 3.0 % 2.0);
             let sign = if index % 2 == 0 { "-" } else { "" };
@@ -243,8 +244,8 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
                  triangle {{ centroid -{at} normal {normal} sides (0.1, 0.1, 0.05) color {color} }}"
             );
         }
-        // Add two equal spheres, of which the first is visible, a sphere that touches them, and
-        // very large ones.
+        // This adds two equal spheres, of which the first is visible, a sphere that touches them,
+        // and very large spheres.
         text += "sphere { center (0, 0, 0) radius 0.7 color red }
             sphere { center (0, 0, 0) radius 0.7 color lime }
             sphere { center (1.4, 0, 0) radius 0.7 color blue }

@@ -239,7 +239,8 @@ fn long_source_lines_are_cut_in_reports() {
 #[test]
 fn a_text_in_utf_16_is_one_mistake() {
     let marked = "\u{feff}sphere { center (0, 1, 0) }\n";
-    // Some programs write UTF-16 without a byte order mark. The comment here is not ASCII.
+    // Some programs write UTF-16 without a byte order mark. This text also has a comment that is
+    // not ASCII.
     let bare = "// Кубы\nsphere { center (0, 1, 0)  radius 2 }\n";
     let texts = [marked, bare, &marked[3..]].into_iter();
     let encoded = texts.flat_map(|text| {

@@ -3,7 +3,7 @@
 //! `cargo test -- --ignored` runs all cases, as the continuous integration does. It also needs
 //! Neovim, QEMU and Chromium.
 
-/// Which cases of its table a test tries.
+/// How many cases of its table a test tries.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Effort {
     /// The first case of each table, or a given number of first cases.

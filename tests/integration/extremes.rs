@@ -35,7 +35,7 @@ const SAMPLES: u64 = 64;
 /// is an error.
 const FAR: f64 = 0.49;
 
-/// Percentages of a scene's numbers that may have any magnitude.
+/// Percentages of a scene's numbers that may have any magnitude, one per kind of scenes.
 const WILD: [u64; 4] = [0, 5, 30, 100];
 
 fn assert_light(film: &Film, text: &str) {
@@ -151,7 +151,8 @@ fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     }
 }
 
-/// The silhouette is a hyperbola, whose two branches coincide even in the highest precision.
+/// The sphere's silhouette is a hyperbola whose two branches coincide even in the highest
+/// precision.
 #[test]
 fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     for radius in ["1e3", "1e10", "1e100", "1e200", "1.7976931348623157e308"] {

@@ -34,14 +34,15 @@ pub fn generated(
         shared: [1.0; 3],
     };
     let texts = iter::repeat_with(move || generator.scene(size));
-    // Skip texts with mistakes, such as a triangle with impossible sides or a zero direction.
+    // Texts with mistakes are skipped; for example, triangles with impossible sides or directions
+    // of length 0.
     texts.filter_map(|text| Some((text.clone(), scene::read(&sources(&text)).scene?)))
 }
 
 struct Generator {
     random: Random,
     numbers: Numbers,
-    /// Numbers that several parts of a scene use.
+    /// Numbers that occur in several parts of a scene, so that parts coincide.
     shared: [f64; 3],
 }
 

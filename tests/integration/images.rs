@@ -86,7 +86,7 @@ fn the_gallery_shows_every_example_with_its_picture_and_no_other() {
     assert_eq!(shown, example_names());
 }
 
-/// The course's scenes are short, valid and formatted, and its sheet shows them.
+/// The course's scenes are short, valid and formatted, and the course's sheet shows all of them.
 #[test]
 fn the_course_is_short_valid_formatted_and_matches_its_sheet() {
     let course = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/course");

@@ -34,7 +34,7 @@ fn worlds(seed: u64, method: Method) -> impl Iterator<Item = Scene> {
         }
         scene
     });
-    // Keep only scenes that have a board and more than two colours in the picture.
+    // Only scenes are used that have a board and more than two colours in the picture.
     let is_full = |scene: &Scene| {
         let mut objects = scene.objects.iter();
         let has_board = objects.any(|object| matches!(object.shape, Shape::Checkerboard(_)));
@@ -140,7 +140,7 @@ fn swap_colors(scene: &mut Scene) {
 }
 
 /// Asserts that the pictures of two scenes are equal if each pixel is moved as `goes` says. Sampled
-/// pictures must have the same bits, and exact pictures must agree within their error bounds.
+/// pictures must have the same bits. Exact pictures must agree within their error bounds.
 #[track_caller]
 fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32; 2]) -> [u32; 2]) {
     let [one, other] = [before, after].map(sampled);
@@ -217,7 +217,7 @@ fn scaling_by_a_power_of_two_changes_nothing() {
 
 #[test]
 fn a_mirror_in_x_mirrors_the_picture() {
-    // Test pictures with an even and an odd number of columns.
+    // The pictures have an even or an odd number of columns, in turn.
     for (world, width) in worlds(4, Method::Regular).zip([24, 23].into_iter().cycle()) {
         let world = resized(world, width, 24);
         let mirror = |v: DVec3| dvec3(-v.x, v.y, v.z);

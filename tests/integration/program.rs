@@ -1,4 +1,4 @@
-//! Running the program from outside.
+//! Runs the program under test as a user would.
 
 use std::{
     ffi::OsStr,
@@ -150,7 +150,7 @@ impl Folder {
         let mut command = self.command(line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        // A command that does not read its input may have ended already.
+        // Writing fails if the command has ended without reading its input, so errors are ignored.
         let _ = child.stdin.take().unwrap().write_all(input.as_ref());
         child.wait_with_output().unwrap().into()
     }

@@ -21,10 +21,10 @@ use crate::{
     scenes::{one_thread, rendered, sources, whole, with_samples},
 };
 
-/// Generator of the texts of random objects, with the points that the objects share.
+/// Generator of the texts of random objects. Objects often share points.
 struct Text<'r> {
     random: &'r mut Random,
-    /// Vertices, centres, and points of surfaces of the objects so far.
+    /// Points of the objects so far: vertices, centres, and points of surfaces.
     points: Vec<DVec3>,
     /// Frequency of numbers of any magnitude: one in `wild` numbers, or none if it is 0.
     wild: u64,
@@ -161,7 +161,8 @@ impl Text<'_> {
         };
         for clip in ["near", "far"] {
             if self.one_in(4) {
-                // The depth of the near or far plane is often the depth of a shared point.
+                // The depth of the near or far plane is often the depth of a point that objects
+                // share.
                 let point = self.point();
                 let depth = (point - eye).dot(toward.normalize_or(DVec3::X)).abs();
                 let depth =
@@ -255,8 +256,8 @@ fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     }
 }
 
-/// Returns whether samples can be compared with the exact picture. If squares are smaller than
-/// 10⁻⁹⁸ of the eye's distance, samples have a single colour, as the language specifies.
+/// Returns whether samples can be compared with the exact picture. The language specifies that
+/// samples have a single colour if squares are smaller than 10⁻⁹⁸ of the eye's distance.
 fn is_comparable(scene: &Scene) -> bool {
     scene.objects.iter().all(|object| match &object.shape {
         Shape::Checkerboard(board) => {
@@ -323,8 +324,8 @@ fn random_scenes_render_alike_in_parts_and_agree_with_samples() {
         let Rendered::Exact(exact) = assert_parts_agree(&computed, random, &text) else {
             panic!("not computed");
         };
-        // In an optimized build on an idle machine, the picture and its parts each take at most a
-        // second per pixel.
+        // In an optimized build on an idle machine, the picture takes at most a second per pixel,
+        // and so do its parts.
         let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
         assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
         if is_comparable(&scene) {

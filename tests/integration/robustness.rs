@@ -332,7 +332,7 @@ fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
             bytes.splice(at..end, slips[up_to(slips.len())].iter().copied());
         }
         if let Ok(text) = str::from_utf8(&bytes) {
-            // `formatted` asserts that a refused text has an error.
+            // If the text cannot be formatted, `formatted` asserts that it has an error.
             let _ = formatted(text);
             parts::assert_same_in_parts(text, 1 + up_to(99), &[]);
         }

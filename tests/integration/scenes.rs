@@ -98,7 +98,7 @@ pub fn read_with<'s>(text: &str, sets: impl IntoIterator<Item = &'s str>) -> Sce
         .unwrap_or_else(|| panic!("{text}\n{found:#?}"))
 }
 
-/// Returns the picture of a scene, sampled as the scene says.
+/// Returns the picture of a scene by the sampling method that the scene selects.
 pub fn sampled(scene: &Scene) -> Film {
     rendered(scene, whole(scene), &Control::default()).into_film()
 }
@@ -118,7 +118,8 @@ pub fn exact(scene: &Scene) -> Exact {
     render_exact(&World::new(scene), whole(scene), &Control::default()).unwrap()
 }
 
-/// Returns the contents of those fenced blocks of a document whose info string is `kind`.
+/// Returns the contents of the fenced blocks of a document that begin with three backticks and
+/// `kind`.
 pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
     let start = format!("```{kind}\n");
     let parts = text.split(&start).skip(1);

@@ -7,7 +7,7 @@ use crate::{
     table::{escaped, unescaped},
 };
 
-/// Asserts that a file has this content. With `PINHOLE_BLESS`, writes the file instead.
+/// Asserts that a file has the content `content`. With `PINHOLE_BLESS`, writes the file instead.
 #[track_caller]
 pub fn assert_file(path: &Path, content: &str) {
     if std::env::var_os("PINHOLE_BLESS").is_some() {

@@ -38,7 +38,7 @@ fn red() -> Folder {
     Folder::with([("a.scn", scene("red").as_str())])
 }
 
-/// Running `pinhole watch` with its own folder.
+/// A running `pinhole watch`, in a folder of its own.
 struct Watch {
     folder: Folder,
     child: RefCell<Child>,
@@ -72,7 +72,7 @@ impl Watch {
         self.folder.write("a.scn", text);
     }
 
-    /// Replaces the scene by renaming a new file to it.
+    /// Replaces the scene's file by renaming a new file to its name.
     fn replace(&self, text: &str) {
         self.folder.write("new", text);
         fs::rename(self.path("new"), self.path("a.scn")).unwrap();

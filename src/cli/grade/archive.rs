@@ -16,7 +16,7 @@ use zip::{DateTime, ZipArchive, result::ZipError};
 use crate::{files, lock::lock};
 
 /// Maximum length of a submitted file, inside or outside of a zip file, in bytes. A longer file is
-/// listed as not compared.
+/// not read.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
 /// Maximum number of entries of a zip file. A file with more is rejected.

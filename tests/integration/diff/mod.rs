@@ -123,7 +123,7 @@ fn pictures_are_compared_by_content_across_formats() {
 #[test]
 fn a_transfer_curve_other_than_srgb_gives_a_warning() {
     let folder = Folder::with([]);
-    // This is an ICC profile with a single tag.
+    // This returns an ICC profile with a single tag, the curve of red.
     let profile = |curve: &[u8]| {
         let place = [144, curve.len() as u32].map(u32::to_be_bytes).concat();
         [&[0; 128], &1u32.to_be_bytes()[..], b"rTRC", &place, curve].concat()
@@ -171,7 +171,7 @@ fn standard_input_is_a_picture_or_a_scene() {
 fn different_sizes_are_reported_with_a_remedy() {
     let folder = folder();
     save(&folder, "b.png", image::RgbImage::new(48, 32));
-    // This picture is a crop of a render that is larger than the scene's.
+    // This picture is a crop of a render that is larger than the scene's picture.
     render(&folder, "-o c.png --set image.width=200 --crop 150,5,40,30");
     compare(
         &folder,

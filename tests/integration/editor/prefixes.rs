@@ -17,7 +17,7 @@ use pinhole::{
     source::{SourceId, Span},
 };
 
-/// Returns whether both ends of a span lie in the text and between characters.
+/// Returns whether both ends of a span lie within the text and not inside of a character.
 fn is_place(text: &str, span: Span) -> bool {
     text.get(span.range()).is_some()
 }

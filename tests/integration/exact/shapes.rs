@@ -1,4 +1,4 @@
-//! Exact pixels compared with closed forms.
+//! Compares exact pixels with values from closed formulas.
 
 use std::f64::consts::PI;
 

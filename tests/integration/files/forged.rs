@@ -100,7 +100,7 @@ fn file_names_cannot_forge_lines_or_table_cells() {
             assert_eq!(said.errors.lines().count(), 1, "{:?}", said.errors);
             assert!(!said.errors.contains(forged), "{:?}", said.errors);
         }
-        // If a name could forge a line, the message would have one line more than usual.
+        // If a name could forge a line, the message would have an additional line.
         for arguments in [
             &["rendr", name][..],
             &["render", "a.scn", name],

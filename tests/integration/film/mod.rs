@@ -141,7 +141,7 @@ fn picture_errors_are_at_most_300_characters_long() {
         "\u{89}PNG\r\n\u{1a}\nLONG",
     ];
     for head in heads {
-        // Encode the head in Latin-1: each character becomes one byte.
+        // The head is encoded in Latin-1, where each character is one byte.
         let bytes: Vec<u8> = head
             .replace("LONG", &long)
             .chars()

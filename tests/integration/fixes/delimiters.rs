@@ -38,7 +38,7 @@ cube for i < 3 and j < 3 { center (i, j, 0) }
 ",
 ];
 
-/// Codes that may be reported first if a delimiter is missing, without `pinhole::`.
+/// Codes, without `pinhole::`, of which one must be reported first if a delimiter is missing.
 const OF_DELIMITERS: [&str; 7] = [
     "unclosed_block",
     "unopened_block",

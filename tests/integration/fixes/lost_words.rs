@@ -58,7 +58,7 @@ impl Words {
                         .find(|c: char| !(is_letter(c) || c.is_ascii_digit()))
                         .unwrap_or(rest.len()),
                 };
-                // Skip an `x` that multiplies, as in `0.5x1.5x2`.
+                // The `x` in `0.5x1.5x2` multiplies and is skipped.
                 let is_times = rest.starts_with(['x', 'X'])
                     && starts_number(&rest[1..])
                     && text[..text.len() - rest.len()].ends_with(|c: char| c.is_ascii_digit());
@@ -155,7 +155,8 @@ fn is_near(new: &str, old: &str) -> bool {
     suggest::nearest(old, [new]).is_some() || suggest::is_among(old, new)
 }
 
-/// Returns whether `new` is the language's word for `old`, a word of another notation.
+/// Returns whether `new` is the language's word for `old`, which is a word of another language or
+/// notation.
 fn is_known_for(new: &str, old: &str) -> bool {
     let is_tried = |block: &schema::BlockRow| {
         let field = block.field_tried(old);
@@ -275,7 +276,7 @@ fn unmatched_names(
             at.map(|at| new.remove(at)).is_none()
         });
     }
-    // The fix of `let Ball = sphere {` removes `let`, because the text becomes a block.
+    // The fix of `let Ball = sphere {` makes it a block, so it removes the word `let`.
     names.retain(|name| name != "let");
     new.retain(|name| !keywords().any(|word| word == name));
     (names, new)

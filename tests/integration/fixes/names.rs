@@ -75,7 +75,7 @@ fn suggested_names_are_valid_where_they_are_suggested() {
     names.extend(CONSTANTS.iter().flat_map(|(name, ..)| mistyped(name)));
     names.extend(method_names().step_by(3).flat_map(mistyped));
     names.extend(["line", "in", "ff0000", "po", "sin"].map(str::to_owned));
-    // Add calls with arguments of each type, and of each number of arguments.
+    // These are calls with arguments of each type, and with each number of arguments.
     for function in FUNCTIONS {
         let arguments = [
             "",

@@ -61,7 +61,7 @@ fn random_picture_bytes_are_read_or_refused_within_the_limit() {
     each(300, |random| {
         let mut bytes = random.one_of(pictures()).clone();
         match random.below(16) {
-            // Join the start of one file and the rest of another.
+            // The start of one file is joined with the rest of another.
             0 => {
                 let other = random.one_of(pictures());
                 let at = random.below(bytes.len());
@@ -72,7 +72,8 @@ fn random_picture_bytes_are_read_or_refused_within_the_limit() {
         }
         if let Ok(picture) = read_picture_up_to(&bytes, LIMIT) {
             let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
-            // A pixel is decoded to at least four bytes.
+            // A pixel takes at least four bytes, so a decoded picture has at most a quarter of the
+            // limit in pixels.
             assert!((1..=LIMIT / 4).contains(&pixels), "{pixels}");
         }
     });

@@ -10,7 +10,7 @@ use super::{
     textbook::{Program, SAMPLINGS},
 };
 
-/// A picture with known mistakes.
+/// A picture of a program with known mistakes.
 pub struct Case {
     pub title: String,
     /// The correct program. `text` is its scene.
@@ -48,14 +48,15 @@ impl Case {
         }
     }
 
-    /// Renders the picture.
+    /// Renders the picture of the program with the mistakes.
     pub fn picture(&self) -> RgbImage {
         let mut program = self.right.clone();
         self.mistakes.iter().for_each(|one| one.make(&mut program));
         program.render()
     }
 
-    /// Returns whether an answer of `diff --format json` names all mistakes and no others.
+    /// Returns whether `answer`, the output of `diff --format json`, names all mistakes and no
+    /// others.
     pub fn is_judged_correctly(&self, answer: &Value) -> bool {
         let named = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
         if self.mistakes.is_empty() {
@@ -67,7 +68,8 @@ impl Case {
     }
 }
 
-/// Returns whether a mistake is among the named ones.
+/// Returns whether one of the accepted answers for `mistake` is in `named`, a list from the output
+/// of `diff`.
 fn is_named(mistake: &Mistake, named: &[Value]) -> bool {
     mistake.name.split('|').any(|name| {
         let (id, words) = name.split_once(' ').unwrap_or((name, ""));

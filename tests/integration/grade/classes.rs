@@ -25,7 +25,7 @@ const PICTURES: &str = "
     noise.png -> --set sampler.method=random --set sampler.per_pixel=4
 ";
 
-/// Creates a folder with the scene and the pictures.
+/// Creates a folder with the scene in `a.scn` and the pictures in [`PICTURES`].
 pub fn folder() -> Folder {
     let folder = Folder::with([("a.scn", SCENE)]);
     for [name, arguments] in rows(PICTURES) {
@@ -219,7 +219,7 @@ fn clones_of_github_classroom_are_a_class() {
             ),
         ],
     );
-    // Two students have the same wrong picture.
+    // The students ben and cy handed in the same wrong picture.
     let equal: Vec<_> = chosen.iter().map(|line| &line["equal_to"]).collect();
     assert_eq!(equal, [&Value::Null, &json!(["cy"]), &json!(["ben"])]);
 }
@@ -284,7 +284,7 @@ fn an_export_of_moodle_is_a_class() {
     );
     let numbers: Vec<_> = found.iter().map(|line| &line["number"]).collect();
     assert_eq!(numbers, ["14", "11", "12", "13", "15"]);
-    // A name cannot inject control characters into a terminal or formulas into a table.
+    // Control characters in a name are escaped in a terminal, and formulas in a table.
     let table = folder.told("grade a.scn 'handed in' -o out", 1);
     assert!(table.contains("=1+1\\u{202e}  "), "{table}");
     assert!(folder.text("out/grade.csv").contains("\"'=1+1\\u{202e}\""));

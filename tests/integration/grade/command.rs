@@ -24,7 +24,7 @@ const PICTURES: &str = "
     sky.png -> --set sampler.method=exact --set image.background=red -> wrong -> background
 ";
 
-/// Creates a folder with the scene, and the pictures in a folder `class`.
+/// Creates a folder with the scene in `a.scn`, and the pictures in a folder `class`.
 fn class() -> Folder {
     let folder = Folder::with([("a.scn", SCENE)]);
     fs::create_dir(folder.path("class")).unwrap();

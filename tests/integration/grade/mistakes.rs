@@ -66,7 +66,7 @@ pub const GROUPS: [&[Mistake]; 5] = [
     OTHERS,
 ];
 
-/// Mistakes of the whole picture.
+/// Mistakes that affect the whole picture.
 const OF_THE_PICTURE: &[Mistake] = &[
     picture("mirrored", imageops::flip_horizontal),
     picture("upside_down", imageops::flip_vertical),
@@ -116,7 +116,7 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("camera.lookat", |p| p.lookat += dvec3(0.3, 0.2, -0.1)),
 ];
 
-/// Mistakes of the board.
+/// Mistakes in the board.
 const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
     row("board_truncated", |p| p.squares = Squares::Truncated),

@@ -25,12 +25,12 @@ pub enum Shape {
     Board(f64, f64, [u8; 3]),
 }
 
-/// A shape with its name and colour.
+/// An object of a scene: a shape with a name and a colour.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// Name in the scene's text.
     pub name: &'static str,
-    /// The shape.
+    /// Shape of the object.
     pub shape: Shape,
     /// Colour of the object; of a board, its first colour.
     pub color: [u8; 3],
@@ -108,11 +108,11 @@ pub enum Axes {
     NewU,
     /// The up vector is used as v.
     UpAsV,
-    /// w is not normalised.
+    /// The vector w is not normalised.
     LongW,
     /// w is computed from `lookat` without subtracting the eye.
     WithoutEye,
-    /// Only u is rolled.
+    /// Only the vector u is rolled.
     RolledU,
     /// A ray's angle grows linearly with the distance from the picture's middle.
     Fisheye,
@@ -158,7 +158,7 @@ pub struct Program {
     pub view_height: f64,
     pub near: f64,
     pub far: f64,
-    /// The objects, in the order of the text.
+    /// Objects of the scene, in the order of the text.
     pub objects: Vec<Object>,
     pub sampling: Sampling,
     /// Number of samples per pixel, a square.
@@ -330,7 +330,8 @@ impl Program {
         }
     }
 
-    /// Returns the colour that a ray sees.
+    /// Returns the colour that a ray sees. The ray starts at `from`, and `view` is the view
+    /// direction.
     fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> [u8; 3] {
         // With a mistake, surfaces behind the eye count as nearest, or are compared by their
         // distance.

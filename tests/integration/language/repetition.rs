@@ -9,7 +9,8 @@ use crate::{
     table::rows,
 };
 
-/// Rows of a repeated block, the names of its objects, and the same objects written one by one.
+/// Rows of three columns: a repeated block, the names of its objects, and the same objects written
+/// one by one.
 const REPEATED: &str = "
     sphere B for i < 3 { center (i, 1, 0) } -> B[0] B[1] B[2] \
         -> sphere { center (0, 1, 0) } sphere { center (1, 1, 0) } sphere { center (2, 1, 0) }

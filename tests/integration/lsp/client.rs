@@ -84,7 +84,8 @@ impl<C: Transport> Client<C> {
         self.response(id)
     }
 
-    /// Sends a request, waits for the response and returns its result. Panics if it is an error.
+    /// Sends a request, waits for the response and returns its result. Panics if the response is an
+    /// error.
     pub fn ask(&mut self, method: &str, params: Value) -> Value {
         let response = self.respond(method, params);
         assert!(response.get("error").is_none(), "{response}");
@@ -117,7 +118,7 @@ impl<C: Transport> Client<C> {
     }
 }
 
-/// Maximum time to wait for a message.
+/// Maximum time to wait for a message. After it, the test fails.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Running server with its standard input and output.

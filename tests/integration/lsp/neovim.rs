@@ -54,7 +54,7 @@ fn neovim_gets_the_recorded_answers() {
     let folder = Folder::with([("scene.scn", SCENE)]);
     let script = root("tests/lsp/neovim.lua");
     let mut found = answers(&folder, neovim(&folder, &script));
-    // Lua tables have no order, so sort the members of objects.
+    // Lua tables have no order, so the members of objects are sorted.
     found.sort_all_objects();
     let found = format!("{found:#}\n");
     assert_file(&script.with_extension("json"), &found);
@@ -79,7 +79,7 @@ const ASKED: &[Typed] = &[
 /// Completions offered during typing, as rows of [`Typed`], if Neovim 0.11 is configured as the
 /// documentation for editors says.
 const OFFERED: &[Typed] = &[
-    // Nothing is inserted before the user chooses a completion.
+    // While a word is typed, nothing is inserted before the user chooses a completion.
     ["$0\ncamera {}", "s menu p h", "sph"],
     [
         "$0\ncamera {}",

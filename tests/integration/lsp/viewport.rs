@@ -167,7 +167,7 @@ fn added_objects_lie_within_the_picture_in_distinct_colours() {
         format!("{figure}{board}"),
         format!("image {{ width 300 height 500 }}\n{figure}{board}"),
         format!("camera {{ eye (0, 1, 6) lookat (0, 1, 0) fov 30deg }}\n{board}"),
-        // Here the board is not in the picture.
+        // In this view, the board is not in the picture.
         format!("camera {{ eye (0, 2, 6) lookat (0, 9, 0) }}\n{board}"),
     ] {
         let mut text = before.clone();
@@ -358,7 +358,7 @@ fn a_drag_with_a_step_snaps_to_round_numbers() {
                 .parse()
                 .expect("a number")
         });
-        // Here 1 m is 90 pixels, so 0.01 m is 0.9 pixels and 0.1 m is 9 pixels.
+        // In the picture, 1 m is 90 pixels, so 0.01 m is 0.9 pixels and 0.1 m is 9 pixels.
         match x {
             None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
             Some(x) => {

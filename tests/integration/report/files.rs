@@ -80,7 +80,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
         let labels = labels(&read(&format!("error-against-{of}.svg")));
         let has = |word: &str| labels.iter().any(|(label, _)| label.starts_with(word));
         assert!(has("1/256") && has("exact") == has_exact, "{of}");
-        // Labels do not overlap.
+        // The labels of the chart do not overlap.
         let is_method = |label: &str| methods.iter().any(|m| label.split(' ').next() == Some(m));
         let labels = labels.iter().filter(|(label, _)| is_method(label));
         let mut heights: Vec<i32> = labels.map(|(_, height)| *height).collect();

@@ -44,7 +44,7 @@ fn sampling_with_total(
     Sampling::new(&sampler, width, height)
 }
 
-/// Returns those sample points of the pixel (x, y) whose indices are in `indices`.
+/// Returns the sample points of the pixel (x, y) whose indices are in `indices`.
 pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> Vec<DVec2> {
     let mut points = Points::default();
     let count = sampling.count(x, y);
@@ -52,7 +52,7 @@ pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> 
     points.iter().collect()
 }
 
-/// Returns all sample points of a pixel, with `n` per pixel.
+/// Returns all sample points of the pixel (x, y), if each pixel has `n`.
 fn points(method: Method, n: u64, seed: u64, [x, y]: [u32; 2]) -> Vec<DVec2> {
     let points = points_at(&sampling(method, n, seed), [x, y], 0..n);
     assert_eq!(points.len() as u64, n);

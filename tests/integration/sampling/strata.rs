@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use super::*;
 
-/// Seeds and pixels with which properties are tested.
+/// Seeds and pixels for which properties are tested.
 const PLACES: [(u64, [u32; 2]); 3] = [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])];
 
 /// Returns the index of the stratum, of `n` equal ones, in which an offset lies: ⌊(offset + 1/2) ·
@@ -21,7 +21,7 @@ fn fraction(offset: f64) -> u128 {
     (scaled as i64 + (1 << 53)) as u128
 }
 
-/// Returns whether the numbers are 0, 1, 2 and so on, each once, in any order.
+/// Returns whether `numbers` are 0, 1, 2 and so on, each once, in any order.
 fn each_once(numbers: impl Iterator<Item = u64>) -> bool {
     let mut numbers: Vec<_> = numbers.collect();
     numbers.sort_unstable();

@@ -119,7 +119,7 @@ impl Drop for Studio {
     }
 }
 
-/// A page's end of its WebSocket.
+/// The page's end of a WebSocket.
 pub struct Page(pub WebSocket<TcpStream>);
 
 impl Transport for Page {

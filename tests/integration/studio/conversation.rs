@@ -150,7 +150,7 @@ fn closing_a_page_cancels_its_work() {
 
     let (_folder, studio) = studio();
     let tasks = format!("/proc/{}/task", studio.child.id());
-    // Render threads have the same name as the thread that starts them.
+    // A render thread has the same name as the thread that starts it.
     let wait = |name: &str, is_there: bool| {
         for _ in 0..500 {
             let tasks = fs::read_dir(&tasks)

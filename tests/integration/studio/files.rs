@@ -18,8 +18,8 @@ fn save(page: &mut Client<Page>, text: &str, base: Option<&str>) -> Value {
     page.respond("studio/save", json!({ "text": text, "base": base }))
 }
 
-/// Waits for the host's next message about the file. Returns the file's text, and the reason if it
-/// has none.
+/// Waits for the host's next message about the file. Returns the file's text, and the reason if
+/// there is no text.
 fn told(page: &mut Client<Page>) -> [Value; 2] {
     let mut file = page.notification("studio/file");
     ["text", "reason"].map(|field| file[field].take())
@@ -362,7 +362,7 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
             // With a pipe in place of the file, opening the file would wait for a writer.
             fs::remove_file(folder.path("a.scn")).unwrap();
             folder.make_pipe("a.scn");
-            // Wait until the host has looked at the file.
+            // This is long enough for the host to look at the file.
             thread::sleep(Duration::from_millis(2500));
         }
         let begun = Instant::now();

@@ -47,7 +47,8 @@ pub fn is_upright(scene: &Scene) -> bool {
     direction.cross(up) != DVec3::ZERO
 }
 
-/// Tracer and oracle of the same scene. All objects and squares have different colours.
+/// The tracer and the oracle for the same scene. All objects and all squares have different
+/// colours.
 struct TracerAndOracle {
     scene: Scene,
     world: World,
@@ -141,7 +142,7 @@ fn scenes_of_random_numbers_agree_with_the_oracle() {
 
 #[test]
 fn scenes_full_of_ties_agree_with_the_oracle() {
-    // All sample points are at multiples of 1/8 pixel.
+    // The sample points are at multiples of 1/8 pixel, so many lie exactly on edges.
     let mut random = Random::new(11);
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 11).map(|(_, scene)| scene);
     for scene in scenes.filter(is_upright).take(150) {
