@@ -50,7 +50,7 @@ class Frames {
   private isBroken = false;
   private lastTook = Infinity;
 
-  /** Ends a drag, unless another drag has begun. */
+  /** Ends the drag `dragged`, unless another drag has begun since. */
   released(dragged: object): void {
     if (this.dragging === dragged) this.dragging = null;
     this.onRest();

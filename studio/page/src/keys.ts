@@ -28,7 +28,7 @@ function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the control of a key, or undefined. The key of the active constraint releases it. */
+/** Returns the control of a key, or undefined. The active constraint's key belongs to `free`. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));

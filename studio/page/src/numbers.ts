@@ -162,7 +162,7 @@ function createSlider(): TooltipView {
   } };
 }
 
-/** Changes `literal` by the pointer's horizontal movement until release. Returns false for null. */
+/** Changes `literal` by the pointer's horizontal movement. Returns false if `literal` is null. */
 function scrub(event: PointerEvent, literal: Literal | null): boolean {
   if (literal === null) return false;
   event.preventDefault();

@@ -36,7 +36,7 @@ async function unpacked(text: string): Promise<string> {
 /** Compressed scene that was last read from the address. */
 let known: string | null = null;
 
-/** Returns the scene in the page's address, or null if it has none or the same as before. */
+/** Returns the scene in the page's address, or null if it has none or was read before. */
 export async function sceneInAddress(): Promise<string | null> {
   const held = inAddress(KEY);
   if (held === null || held === known) return null;
