@@ -126,8 +126,7 @@ impl Iterator for LineChanges<'_> {
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
                 // An empty line has the same number of solid characters before it as the line after
-                // it. Where
-                // these numbers are equal, the empty line is passed first.
+                // it. Where these numbers are equal, the empty line is passed first.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),

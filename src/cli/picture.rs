@@ -75,9 +75,8 @@ impl RenderedPicture {
     }
 }
 
-/// Precision in which pixels are stored: as low as the file allows, unless the 64-bit means are
-/// needed for something else, for example to show the
-/// picture in the terminal.
+/// Precision in which pixels are stored. It is as low as the file allows, unless the 64-bit means
+/// are needed for something else, for example to show the picture in the terminal.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeptPixels {
     /// Means in 64-bit floats.

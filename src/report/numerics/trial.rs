@@ -81,12 +81,13 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// One of this many inputs is also measured: the errors of the distance and of the point that are
-/// seen. A measurement takes longer than a decision.
+/// Number of inputs per measured input. Only one input of this many is measured (the errors of the
+/// distance and of the point that are seen), since a measurement takes longer than a decision.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// One of this many searches for a boundary uses the oracle's decisions; the others use Pinhole's.
-/// A search by the oracle takes about six times as long as testing beside the boundary.
+/// Mean number of searches for a boundary per search by the oracle. The other searches use
+/// Pinhole's decisions, since a search by the oracle takes about six times as long as testing
+/// beside the boundary.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {

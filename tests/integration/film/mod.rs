@@ -232,8 +232,7 @@ fn every_8_and_16_bit_srgb_value_decodes_to_its_linear_light() {
 }
 
 /// The rounding of an EXR's colours does not depend on channels that are not read, such as opacity
-/// or another layer. One file has 16-bit opacity, the other a 16-bit green
-/// channel.
+/// or another layer. One file has 16-bit opacity, the other a 16-bit green channel.
 #[test]
 fn unused_exr_channels_do_not_affect_the_detected_rounding() {
     for (file, rounding) in [

@@ -8,7 +8,7 @@ use pinhole::{diagnostic::Applicability, scene};
 use super::diagnostics;
 use crate::scenes::{scenes, sources};
 
-/// Scenes that also have other mistakes, most of them in the heads of blocks.
+/// Scenes with other mistakes besides a missing delimiter, most of them in the heads of blocks.
 const WITH_MISTAKES: [&str; 3] = [
     "\
 camera { eye (0, 3, 8)  lookat (0, 1, 0) }
