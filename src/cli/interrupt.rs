@@ -27,8 +27,8 @@ struct Flags {
     then: OnceLock<Box<dyn Fn() + Send + Sync>>,
 }
 
-/// Time after the first Ctrl-C before another one ends a process that still cleans up. Removing a
-/// temporary file and stopping threads take a small part of it.
+/// Time after the first Ctrl-C from which on another one ends the process at once. Until then, a
+/// command can clean up. Removing a temporary file and stopping threads take a small part of it.
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {

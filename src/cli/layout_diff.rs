@@ -12,7 +12,7 @@ use crate::{
     source::Source,
 };
 
-/// Number of unchanged lines around a change, as is usual in diffs.
+/// Number of unchanged lines that are shown around a change, as is usual in diffs.
 const CONTEXT: usize = 3;
 
 /// Returns a unified diff from the source to the formatted text. If the source has both kinds of

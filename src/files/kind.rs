@@ -164,8 +164,8 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a text file of the system, such as `/proc/meminfo`. Returns `None` if the file cannot be
 /// read.
 pub fn read_system_text(path: impl AsRef<Path>) -> Option<String> {
-    /// Maximum length in bytes; a longer file is not read. The longest file, `/proc/cpuinfo`, has
-    /// at most a few thousand bytes for each processor.
+    /// Maximum length of the file, in bytes. A longer file is not read. The longest that is needed,
+    /// `/proc/cpuinfo`, has at most a few thousand bytes for each processor.
     const LIMIT: u64 = 16 << 20;
     String::from_utf8(read(path.as_ref(), LIMIT).ok()?).ok()
 }

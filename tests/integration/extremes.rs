@@ -27,7 +27,7 @@ use crate::{
 /// Number of scenes in an exhaustive run, unless `PINHOLE_SCENES` overrides it.
 const SCENES: usize = 1200;
 
-/// Number of random samples per pixel.
+/// Number of random samples per pixel, whose mean is compared with the exact mean.
 const SAMPLES: u64 = 64;
 
 /// Maximum distance between the mean of a pixel's samples and the exact mean. By Hoeffding's

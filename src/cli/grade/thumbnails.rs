@@ -5,7 +5,7 @@ use std::io;
 
 use crate::film::{self, Film, Tolerance};
 
-/// Maximum side of a thumbnail, in pixels.
+/// Maximum side of a thumbnail, in pixels. A larger picture is reduced.
 const LONGEST: u32 = 320;
 
 /// The pictures of a student that the HTML page shows.

@@ -25,7 +25,8 @@ pub const METADATA: &str = "submission_metadata.yml";
 /// more is an error.
 const MOST_FILES: usize = 200_000;
 
-/// Maximum depth of nested folders that are listed.
+/// Maximum depth of nested folders that are listed. A deeper folder is listed with an error instead
+/// of its content.
 const DEEPEST: usize = 40;
 
 /// Maximum depth at which folders are recorded, empty ones included. Depth 1 may be classes and

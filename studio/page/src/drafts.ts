@@ -13,7 +13,7 @@ import { setText } from "./visible";
 
 /** Delay from the first unstored change to storing the text, in milliseconds. */
 const BEHIND = 500;
-/** Maximum number of drafts stored in the browser. */
+/** Maximum number of drafts stored in the browser. When there are more, the oldest are deleted. */
 const MOST = 10;
 /** Maximum number of drafts offered at once. */
 const OFFERED = 3;
