@@ -8,9 +8,7 @@ import { files } from "./files";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/**
- * Maximum length of a scene in a link, in characters. A longer scene cannot be shared by a link.
- */
+/** Maximum length of a scene in a link, in characters. A longer scene gets no link. */
 const LONGEST = 1_000_000;
 const KEY = "scene";
 const NO_COPY = "The browser does not let the page copy: copy the selected link yourself.";
