@@ -21,7 +21,7 @@ async function leave(page) {
   await page.context().close();
 }
 
-/** Returns the texts of a number of drafts, each restored and undone. */
+/** Restores `count` offered drafts in turn, each followed by Undo. Returns the drafts' texts. */
 async function restoredInTurn(page, count) {
   const texts = [];
   for (let i = 0; i < count; i++) {

@@ -1,4 +1,4 @@
-// Files of the served host: saving, outside changes, and conflicts.
+// Tests of the host's file: saving it, changes by other programs, and conflicts.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
@@ -201,7 +201,7 @@ test("a scene beside the host's can be saved after the host restarts", async t =
 test("New reports that Studio is not ready before the scene arrives", async t => {
   const started = await host(t);
   const context = await (await launch(t)).newContext();
-  // The host's message about its file arrives late.
+  // Each message of the host arrives 1.5 seconds late.
   await context.addInitScript(() => {
     window.WebSocket = class extends WebSocket {
       addEventListener(type, hear) {
@@ -395,7 +395,7 @@ test("an outside save during a drag is shown when the drag ends", async t => {
     started.write(before.replace("8)", "6)"));
     await page.waitForTimeout(1000);
     assert.ok(await page.isHidden("#conflict-dialog"));
-    // The drag continues after the conflict.
+    // The drag is not interrupted by the outside save.
     const [x, y] = await from();
     await page.mouse.move(x + 90, y, { steps: 6 });
     await rested(page);

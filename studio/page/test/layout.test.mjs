@@ -1,5 +1,5 @@
-// First use of the page: scenes from the menu, new objects, the first problem, the projector
-// window.
+// Tests of the first use of the page: scenes from the menu, new objects, the first problem, and the
+// projector's window.
 
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";

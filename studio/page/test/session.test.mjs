@@ -1,4 +1,4 @@
-// Sessions: reloading, reconnecting, another host, an address used twice, and other servers.
+// Tests of sessions: reloading, reconnecting, a new host, an address used twice, and other servers.
 
 import assert from "node:assert/strict";
 import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";

@@ -1,4 +1,4 @@
-// Sliders of definitions and of numbers, playing, and their behaviour at errors.
+// Tests of sliders for definitions and numbers: their limits, playing them, and errors in the text.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,4 +1,5 @@
-// The static page: the engine in a web worker, without host or file. SITE is its folder.
+// Tests of the static page: its engine runs in a web worker, without host or file. SITE is its
+// folder.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";

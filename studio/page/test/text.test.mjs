@@ -1,4 +1,4 @@
-// The text: problems and their fixes, completion, hints and sliders, and safe display.
+// Tests of the text editor: problems and fixes, completion, hints, sliders, and unsafe texts.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -1,4 +1,4 @@
-//! Tests of the comparison of two pictures, as far as the tests of `diff` do not cover it.
+//! Tests of the comparison of two pictures, besides those of `diff`.
 
 use pinhole::{
     color::srgb_to_linear,

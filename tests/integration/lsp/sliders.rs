@@ -1,4 +1,4 @@
-//! Limits and ranges of the sliders for numbers in a text.
+//! Tests of the limits and ranges that the language server gives for sliders of numbers.
 
 use serde_json::{Value, json};
 

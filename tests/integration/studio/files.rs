@@ -89,7 +89,7 @@ fn a_save_never_overwrites_a_change_of_another_program() {
 fn a_save_that_fails_changes_nothing() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
-    // A new scene can be saved only in the folder of the file.
+    // A new scene can be saved only in the folder of the file, and only with the extension `.scn`.
     for name in ["../b.scn", "sub/b.scn", "b.txt"] {
         let elsewhere = json!({ "text": "x", "base": SCENE, "name": name });
         let error = page.respond("studio/save", elsewhere)["error"].take();
