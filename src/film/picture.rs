@@ -69,9 +69,9 @@ impl Rounding {
 pub enum Coding {
     /// No effect.
     Exact,
-    /// Colours change where it is hardly visible: JPEG and lossy WebP.
+    /// JPEG or lossy WebP: colours are changed where this is hardly visible.
     Lossy,
-    /// Colours are replaced by the nearest of at most 256: GIF.
+    /// GIF: colours are replaced by the nearest of at most 256.
     Palette,
     /// The file declares a curve other than sRGB's, by a PNG's `gAMA` or `iCCP`, but is read as
     /// sRGB.

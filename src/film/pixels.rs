@@ -52,7 +52,7 @@ impl AsBytes for [f64; 3] {
         buffer.clear();
         let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
         for &light in row {
-            // Most pixels equal the pixel before, so the last conversion is kept.
+            // Most pixels equal the pixel before, so the last conversion is used again.
             if light != before {
                 (before, last) = (light, encoder.pixel(light));
             }

@@ -1,5 +1,5 @@
 //! A picture traced with culling and in batches has the same bits as one traced sample by sample.
-//! The tests of `tracer` compare the latter with the oracle.
+//! Pictures traced sample by sample are compared with the oracle in the tests of `tracer`.
 
 use std::{
     collections::BTreeSet,

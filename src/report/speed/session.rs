@@ -215,7 +215,8 @@ impl Benchmark<'_> {
     }
 
     /// Renders a picture with each sampled method for the page, all in about the same CPU time:
-    /// that of the slowest method with at least [`SHOWN`] samples. Keeps the same part of each.
+    /// that of the slowest method with at least [`SHOWN`] samples. Keeps the same part of each
+    /// picture.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {

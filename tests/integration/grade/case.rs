@@ -13,7 +13,7 @@ use super::{
 /// A picture of a program with known mistakes.
 pub struct Case {
     pub title: String,
-    /// The correct program. `text` is its scene.
+    /// The program without the mistakes. `text` is its scene.
     right: Program,
     pub text: String,
     pub mistakes: Vec<&'static Mistake>,
