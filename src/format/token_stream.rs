@@ -23,9 +23,9 @@ pub enum Before {
     Nothing,
     /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long. The line is broken first at the words
-    /// with the lowest number. The number is greater in more parentheses, and at operators of
-    /// higher precedence.
+    /// A blank, or a line end if the line would be too long. A line is broken first at the words
+    /// with the lowest number. The number grows with the number of parentheses around the word, and
+    /// is greater at products than at sums.
     Fold(usize),
     /// A line end.
     Line,

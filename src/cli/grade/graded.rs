@@ -292,7 +292,7 @@ impl GradedStudent {
     }
 }
 
-/// Formats a share in whole per cent; shares below 1 % as `less than 1 %`.
+/// Formats a share in whole per cent. A share below 1 % becomes `less than 1 %`.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
         few if few < 1.0 => "less than 1 %".to_owned(),

@@ -1,4 +1,4 @@
-//! Views along a diagonal of the board, where squares contribute most to a pixel even if they are
+//! Views along a diagonal of the board. There, squares contribute most to a pixel even if they are
 //! too small to be visible.
 
 use super::*;

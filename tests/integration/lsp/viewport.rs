@@ -317,8 +317,7 @@ fn copying_a_block_does_not_move_its_trailing_comment() {
     }
 }
 
-/// A number that another field uses, too, cannot be dragged to just any point, so the drag is
-/// refused, with or without a step.
+/// The drag of a number that another field also uses is refused, with or without a step.
 #[test]
 fn dragging_a_number_shared_with_another_field_is_refused() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nlet r = 1\n\
