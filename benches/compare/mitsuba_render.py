@@ -1,9 +1,9 @@
 """Renders a scene by Mitsuba 3 and writes the picture: mitsuba_render.py VARIANT THREADS SAMPLER
 SAMPLES SCENE PICTURE [AGAIN]
 
-Does what the `mitsuba` command does, but also writes PNG files. Prints, as JSON, the seconds of wall time of each
-phase: importing, loading the scene, rendering, writing, and, if AGAIN is given, the least of three
-times that rendering takes when nothing is left to compile."""
+Does what the `mitsuba` command does, but also writes PNG files. Prints, as JSON, the seconds of
+wall time of each phase: importing, loading the scene, rendering, writing, and, if AGAIN is given,
+the least of three times that rendering takes when nothing is left to compile."""
 
 import json
 import sys

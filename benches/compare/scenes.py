@@ -1,7 +1,8 @@
 """Converts the output of `pinhole inspect` to POV-Ray and Mitsuba: scenes.py INSPECTED FOLDER
 
-The converted scenes have the same camera, shapes and flat colours. Both programs get the camera's axes as they are, so that nothing is
-left to their own rules for them, and colours in linear light."""
+The converted scenes have the same camera, shapes and flat colours. Both programs get the camera's
+axes as they are, so that nothing is left to their own rules for axes, and colours in linear light.
+"""
 
 import json
 import os
