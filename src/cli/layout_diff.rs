@@ -156,7 +156,7 @@ impl Iterator for LineChanges<'_> {
 /// Options for printing lines.
 struct Printer {
     color: bool,
-    /// Whether the text has LF and CRLF line ends.
+    /// Whether the text has both kinds of line ends, LF and CRLF.
     is_mixed: bool,
 }
 

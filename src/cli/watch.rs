@@ -181,8 +181,8 @@ fn with_sketch(
                     progress: &|_| {},
                     cancel: is_stale,
                 };
-                // A cancelled sketch needs no error, since the render of the picture itself reports
-                // the cancellation.
+                // A cancelled coarse picture is not reported here, since the render of the picture
+                // itself reports the cancellation.
                 let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
                     screen.draw(sketch.film);
                 });

@@ -173,8 +173,8 @@ fn oblong(per_pixel: f64) -> f64 {
 }
 
 /// Returns the time that `per_pixel` samples take, by linear interpolation between the neighbouring
-/// measured numbers of samples. Beyond the greatest, the line through the first and the last of
-/// `steps` is used. `per_pixel` must be at least that of the first.
+/// measured numbers of samples. Above the greatest, the line through the first and the last of
+/// `steps` is used. `per_pixel` must be at least the number of the first step.
 fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
     let times: Vec<_> = times.collect();

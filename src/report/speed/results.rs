@@ -63,8 +63,8 @@ pub struct MethodSeries {
     pub method: Method,
     /// Results for each number of samples per pixel, in ascending order.
     pub points: Vec<SeriesPoint>,
-    /// Picture that a page shows to compare methods. Its number of samples takes about the same
-    /// CPU time with every method. `None` if the pictures were not rendered.
+    /// Picture that a page shows to compare methods. Each method's number of samples takes about
+    /// the same CPU time. `None` if the pictures were not rendered.
     pub picture: Option<MethodPicture>,
 }
 

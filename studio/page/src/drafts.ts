@@ -15,7 +15,7 @@ import { setText } from "./visible";
 const BEHIND = 500;
 /** Maximum number of drafts stored in the browser. When there are more, the oldest are deleted. */
 const MOST = 10;
-/** Maximum number of drafts offered at once. */
+/** Maximum number of drafts offered at once; the next ones follow when these are answered. */
 const OFFERED = 3;
 
 const store = createStore("pinhole-drafts", "drafts");

@@ -77,7 +77,7 @@ export const openSwatch: Command = view => {
   return swatch !== undefined;
 };
 
-/** Requests the hints and swatches of the current text, after a pause. */
+/** Requests the hints and swatches of the current text; called after a pause in changes. */
 export async function refreshHints(): Promise<void> {
   const { doc } = editor.view.state;
   const [hints, colors] = await Promise.all([
