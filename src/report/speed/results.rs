@@ -60,6 +60,7 @@ pub struct Measurement {
 /// Results of a sampled method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodSeries {
+    /// Method that was measured.
     pub method: Method,
     /// Results for each number of samples per pixel, in ascending order.
     pub points: Vec<SeriesPoint>,
