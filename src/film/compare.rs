@@ -31,8 +31,8 @@ pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 pub struct Tolerance<'a> {
     /// Tolerance of every channel, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// Error bound of each pixel's mean, in linear light, row by row. [`Self::slack`] converts the
-    /// bounds to steps, and they are added to `steps`. `None` if they are unknown.
+    /// Error bound of each pixel's mean, in linear light, row by row; `None` if it is unknown. The
+    /// bound of a pixel, converted to steps, is added to `steps`.
     pub bounds: Option<&'a [f32]>,
 }
 

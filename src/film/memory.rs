@@ -40,8 +40,8 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
     }
 }
 
-/// Checks the available memory as [`check`] does, then tries to allocate the needed bytes, and
-/// frees them at once. Fails if there is too little memory or the system refuses the allocation.
+/// Checks the available memory, then tries to allocate the needed bytes, and frees them at once.
+/// Fails if there is too little memory or the system refuses the allocation.
 pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
     let needed = check(width, height, bytes_per_pixel)?;
     let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
