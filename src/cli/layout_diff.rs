@@ -1,8 +1,8 @@
 //! A unified diff between a text and its layout, in time and memory linear in their length.
 //!
-//! No search for a shortest edit is needed, since a layout changes only blanks and line ends. The
-//! number of other characters before a line says where the line belongs in the other text, so one
-//! pass over both texts finds the unchanged lines.
+//! A layout changes only white space. Therefore, the number of other characters before a line gives
+//! the line's place in the other text. One pass over both texts finds the unchanged lines, without
+//! a search for a shortest edit.
 
 use super::{
     output,
@@ -44,7 +44,7 @@ struct LineCursor<'t> {
     lines: &'t [&'t str],
     /// Index of the next line.
     next: usize,
-    /// Number of characters before the next line that are not white space.
+    /// Number of characters before the next line, except white space.
     solid_before: usize,
 }
 
@@ -92,8 +92,8 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // An empty line contains no such characters, so it is passed before the line of the
-                // other text.
+                // An empty line has the same number of solid characters before it as the line after
+                // it. Where these numbers are equal, the empty line is passed first.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),
@@ -143,7 +143,8 @@ mod tests {
                 "a\nb c\n",
                 "@@ -1,3 +1,2 @@\n a\n-b\n-c\n+b c\n",
             ),
-            // An equal line at another position is not matched.
+            // A `}` is matched only with the `}` at the same place, not with an earlier or later
+            // one.
             (
                 "}\n}\n x\n}\n",
                 "}\n}\nx\n}\n",

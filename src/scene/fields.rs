@@ -1,4 +1,4 @@
-//! The fields of an image, a camera and a shape by their names.
+//! Reads and changes the fields of an image, a camera or a shape by their names.
 
 use std::cmp::Ordering;
 
@@ -11,7 +11,7 @@ use crate::{
     schema::{CAMERA, FieldValue, IMAGE, Value},
 };
 
-/// An image, a camera or a shape, whose fields are read and changed by their names.
+/// An image, a camera or a shape: the owner of fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FieldOwner {
     /// The picture.
@@ -23,8 +23,9 @@ pub enum FieldOwner {
 }
 
 impl FieldOwner {
-    /// Returns the value of a field; `None` if the field is not used, because another way of a
-    /// choice is taken. A box has the fields of both of its ways.
+    /// Returns the value of a field. Returns `None` if the owner does not use the field, such as
+    /// `direction` of a camera that has a `lookat`. For a box, all of `min`, `max`, `center` and
+    /// `size` are available.
     pub fn value(mut self, field: &str) -> Option<Value> {
         if let Self::Shape(Shape::Box(cuboid)) = &self
             && let Some(value) = cuboid.center_or_size(field)
@@ -34,8 +35,8 @@ impl FieldOwner {
         Some(self.field_mut(field)?.value())
     }
 
-    /// Returns the same with another value of a field; `None` if the field is not used, or the
-    /// value is of another type. The language's conditions are not checked.
+    /// Returns a copy in which `field` has the value `value`. Returns `None` if the owner does not
+    /// use the field, or if the value has another type. Does not check the language's conditions.
     pub fn with(mut self, field: &str, value: Value) -> Option<Self> {
         if let (Self::Shape(Shape::Box(cuboid)), Value::Vector(to)) = (&mut self, value)
             && cuboid.set_center_or_size(field, to)
@@ -60,7 +61,8 @@ impl FieldOwner {
         }
     }
 
-    /// Whether the language's conditions hold, as far as rounded numbers tell.
+    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
+    /// rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         match self {
             Self::Image(_) => true,

@@ -1,5 +1,5 @@
-//! What the row of a kind of block says of words: fields by their names, or by words that are near
-//! to them or that people try.
+//! Lookups in the row of a kind of block: fields by their names, or by words that are near to them
+//! or that people use by mistake.
 
 use super::{
     blocks::BlockRow,
@@ -14,13 +14,13 @@ impl BlockRow {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns the fields that a word may stand for, if it may stand for several.
+    /// Returns all fields that `written` may stand for, if its meaning is uncertain.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
     }
 
-    /// Returns what to write instead of a word of other programs that no field stands for.
+    /// Returns the help for a word of other programs that corresponds to no field.
     pub fn elsewhere(&self, written: &str) -> Option<&'static str> {
         let mut rows = self.elsewhere.iter();
         let row = rows.find(|(words, _)| is_among(written, words));
@@ -43,20 +43,20 @@ impl BlockRow {
         self.nameless.iter().find(fits).copied().unwrap_or_default()
     }
 
-    /// Returns the choice that a field is a part of.
+    /// Returns the choice that contains a field, if there is one.
     fn choice(&self, field: &str) -> Option<&'static Choice> {
         let holds = |choice: &&Choice| choice.ways.iter().any(|way| way.contains(&field));
         self.choices.iter().find(holds)
     }
 
-    /// Returns the fields that a field excludes: those of the other ways of its choice.
+    /// Returns the fields that a field excludes: the fields of the other ways of its [`Choice`].
     pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
         let ways = self.choice(field).into_iter().flat_map(|it| it.ways);
         let others = ways.filter(move |way| !way.contains(&field));
         others.flat_map(|way| way.iter().copied())
     }
 
-    /// Returns the conditions between fields that mention a field.
+    /// Returns the conditions in [`Self::together`] that contain a field's name.
     pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
         self.together.iter().copied().filter(move |rule| {
             let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
@@ -64,8 +64,8 @@ impl BlockRow {
         })
     }
 
-    /// Returns the fields that a block needs: the required ones, and those of the first way of each
-    /// choice that have no default.
+    /// Returns the fields of a minimal block: the required ones, and of each choice those fields of
+    /// the first way that have no default.
     pub fn least_fields(&self) -> Vec<&'static FieldRow> {
         let is_needed = |field: &&FieldRow| match field.preset {
             Preset::Required => true,
@@ -78,7 +78,7 @@ impl BlockRow {
         self.fields.iter().filter(is_needed).collect()
     }
 
-    /// Writes a block with the fields that it needs.
+    /// Returns the text of a minimal block, with example values.
     pub fn example(&self) -> String {
         let fields = self.least_fields().into_iter();
         let fields = fields.map(|field| format!("{} {}", field.name, field.example));
@@ -90,8 +90,8 @@ impl BlockRow {
         }
     }
 
-    /// Returns the field whose name is a word, apart from capitals and `_`; or else the field that
-    /// people try the word for.
+    /// Returns the field named `written`, ignoring case and `_`, or else the field for which people
+    /// use `written` by mistake.
     pub fn field_tried(&self, written: &str) -> Option<&'static FieldRow> {
         let find = |words: fn(&FieldRow) -> &'static str| {
             let mut fields = self.fields.iter();
@@ -100,8 +100,8 @@ impl BlockRow {
         find(|field| field.name).or_else(|| find(|field| field.also_tried))
     }
 
-    /// Returns the field that was probably meant, if its name is near to what is written or to a
-    /// word within it, as in `near_clip` and `eyepoint`.
+    /// Returns the field that was probably meant by `written`: its name is similar to `written` or
+    /// occurs in it as a word, as in `near_clip` and `eyepoint`.
     pub fn nearest_field(&self, written: &str) -> Option<&'static FieldRow> {
         let words = suggest::words(written);
         let starts = |field: &&FieldRow| field.name.len() > 2 && written.starts_with(field.name);

@@ -1,4 +1,4 @@
-//! The table of blocks and their fields.
+//! The table of the kinds of blocks and their fields.
 
 use std::marker::PhantomData;
 
@@ -14,33 +14,36 @@ use Condition::{NotZero, Whole};
 /// The table's row for a kind of block.
 #[derive(Debug)]
 pub struct BlockRow {
-    /// The kind.
+    /// Kind of block.
     pub kind: BlockKind,
     /// The keyword that the block starts with.
     pub name: &'static str,
     /// The keyword with its article, for messages.
     pub noun: &'static str,
-    /// Whether the block describes an object: a scene may have many, and each may have a name.
+    /// Whether the block describes an object. A scene may have many objects, and each may have a
+    /// name.
     pub is_object: bool,
     /// One line of help.
     pub help: &'static str,
-    /// The fields.
+    /// Rows of the block's fields.
     pub fields: &'static [FieldRow],
-    /// Groups of fields that say the same in several ways.
+    /// Groups of fields that express the same thing in different ways and exclude each other.
     pub choices: &'static [Choice],
-    /// Conditions between fields, written with the fields' names.
+    /// Conditions that relate several fields, as formulas with the fields' names.
     pub together: &'static [&'static str],
-    /// Words that people try for several of the fields at once, with a list of the fields' values,
+    /// Words that people use by mistake to give several fields at once, with a list of the values;
     /// and these fields.
     pub several: &'static [(&'static str, &'static [&'static str])],
-    /// Sets of words that people try together for the parts of one field, or for one field each.
+    /// Sets of words that people use together by mistake, such as three names for the three
+    /// coordinates of one field.
     ///
-    /// The words of a set are separated by blanks, and sets by `|`. The second part names the one
-    /// field whose parts the words stand for, or as many fields as there are words.
+    /// The words of a set are separated by spaces, and sets by `|`. The second element names either
+    /// the one field whose parts the words stand for, or one field for each word.
     pub parted: &'static [(&'static str, &'static [&'static str])],
-    /// Other words that people try for the keyword.
+    /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,
-    /// Words of other programs that no field stands for, each with what to write instead.
+    /// Words of other programs that correspond to no field, each with the help, which says what to
+    /// write instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
     /// Lists of fields that values without names stand for, at the start of the block.
     pub nameless: &'static [&'static [&'static str]],
@@ -50,16 +53,16 @@ pub struct BlockRow {
     pub added: &'static str,
 }
 
-/// A field of one kind of block whose values are of the Rust type `T`.
+/// Typed handle of a field, whose values have the Rust type `T`.
 ///
-/// Code names a field by such a constant, so that a misspelt name does not compile.
+/// Code refers to a field by such a constant, so that a misspelt name does not compile.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldHandle<T> {
     /// The field's name.
     pub name: &'static str,
     /// The kind of block that has the field.
     pub kind: BlockKind,
-    /// The index of the field's row among those of its block.
+    /// Index of the field's row in [`BlockRow::fields`].
     pub index: usize,
     values: PhantomData<T>,
 }
@@ -137,7 +140,7 @@ macro_rules! blocks {
     };
 }
 
-/// A row without fields or other words, which the table's rows start from.
+/// Template of a row, without fields or additional words. The table's rows override parts of it.
 const BLOCK: BlockRow = BlockRow {
     kind: BlockKind::Image,
     name: "",
@@ -347,17 +350,18 @@ blocks! {
     }
 }
 
-/// Conditions on a number of pixels along a side of the picture.
+/// Conditions on the width or height of the picture in pixels.
 const PIXELS: &[Condition] = &[Whole, AtLeast(1.0), AtMostTwoTo(20)];
 
-/// The condition on a length that must not be zero.
+/// Condition on a length, which must be positive.
 const POSITIVE: &[Condition] = &[MoreThan(0.0)];
 
-/// Words that people try for the centre of an object.
+/// Words that people use by mistake for the centre of an object.
 const POSITION: &str = "position pos at centroid middle location";
 
-/// Words that people try for the colour of an object.
+/// Words that people use by mistake for the colour of an object.
 const COLOR: &str = "fill material";
 
-/// Shapes of other programs that can be built of triangles.
+/// Shapes of other programs, separated by spaces. The help says that such shapes can be made of
+/// triangles.
 pub const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";

@@ -1,5 +1,5 @@
-//! The columns of the language's table that do not depend on the kinds of blocks: what is known of a
-//! field, its preset, its conditions, and choices among fields.
+//! Columns of the language's tables: what is known about a field, its preset, its conditions, and
+//! choices among fields.
 
 use std::fmt;
 
@@ -8,13 +8,14 @@ use glam::DVec3;
 use super::types::{Type, Value};
 use crate::math::compare_half_turns;
 
-/// Several ways to say the same, of which a block takes one.
+/// Fields that exclude each other, grouped into ways to express the same thing. A block uses one of
+/// the ways.
 #[derive(Debug)]
 pub struct Choice {
-    /// The fields of each way. A block that takes a way needs those of its fields that are
-    /// [alternatives](Preset::Alternative).
+    /// The fields of each way. A block that uses a way must have those of its fields whose preset
+    /// is [`Preset::Alternative`].
     pub ways: &'static [&'static [&'static str]],
-    /// Why only one of them can be given.
+    /// The reason why a block can use only one of the ways, for messages.
     pub why: &'static str,
 }
 
@@ -23,26 +24,29 @@ pub struct Choice {
 pub struct FieldRow {
     /// The field's name.
     pub name: &'static str,
-    /// The type of its values.
+    /// The type of the field's values.
     pub takes: Type,
-    /// The value of a field that is not given.
+    /// Default of the field, if it has one.
     pub preset: Preset,
-    /// Conditions that every value must meet.
+    /// Conditions that every value of the field must meet.
     pub must: &'static [Condition],
     /// One line of help.
     pub help: &'static str,
-    /// Other words that people try for the field.
+    /// Words that people use by mistake for the field, separated by spaces.
     pub also_tried: &'static str,
-    /// Words that people try for this field and for others, so that a program cannot choose.
+    /// Words that people use by mistake both for this field and for others, so that the meaning is
+    /// uncertain.
     pub perhaps: &'static str,
-    /// Words that people try for twice the field's value.
+    /// Words that people use by mistake for twice the field's value, such as `diameter` for a
+    /// radius.
     pub doubled: &'static str,
-    /// A possible value in the language's notation: for messages, and for editors to insert.
+    /// An example value in the language's notation, for messages and for editors to insert.
     pub example: &'static str,
 }
 
 impl FieldRow {
-    /// Returns the row of a field without conditions or other words. The example is the default.
+    /// Returns the row of a field without conditions or additional words. Its example is its
+    /// default.
     pub(super) const fn new(
         name: &'static str,
         takes: Type,
@@ -65,37 +69,38 @@ impl FieldRow {
         }
     }
 
-    /// Whether a value meets the field's conditions. Conditions on other types hold.
+    /// Returns whether a value meets the field's conditions. A condition on another type of value
+    /// counts as met.
     pub fn allows(&self, value: Value) -> bool {
         self.must.iter().all(|condition| condition.holds(value))
     }
 }
 
-/// The value of a field that is not given.
+/// Default of a field: what holds if a block does not have the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preset {
-    /// None: the field must be given.
+    /// No default: the field is required.
     Required,
-    /// None: the field must be given if its way of a [`Choice`] is taken.
+    /// No default: the field is required if the block uses its way of a [`Choice`].
     Alternative,
-    /// None: the field may be left out.
+    /// No default: the field may be left out.
     Nothing,
     /// A default, in the language's notation.
     Value(&'static str),
 }
 
-/// A condition on a field's value, beyond its type.
+/// Condition on a field's value, in addition to its type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
     /// A number without a fraction.
     Whole,
-    /// A number greater than this one.
+    /// A number greater than the given one.
     MoreThan(f64),
-    /// A number not less than this one.
+    /// A number of at least the given one.
     AtLeast(f64),
-    /// A number not greater than 2 to this power.
+    /// A number of at most 2 to the given power.
     AtMostTwoTo(u32),
-    /// A number less than 2 to this power.
+    /// A number less than 2 to the given power.
     LessThanTwoTo(u32),
     /// An angle between 0 and 180 degrees, both excluded.
     LessThanHalfTurn,
@@ -106,7 +111,8 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Whether a value meets the condition. Conditions on other types hold.
+    /// Returns whether a value meets the condition. A condition on another type of value counts as
+    /// met.
     pub fn holds(&self, value: Value) -> bool {
         let two_to = |power: u32| (1_u64 << power) as f64;
         match (*self, value) {
@@ -125,7 +131,7 @@ impl Condition {
     }
 }
 
-/// The condition in words, after "must be".
+/// Formats the condition as words that follow "must be".
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

@@ -1,4 +1,4 @@
-//! The language's types, and values of them.
+//! The language's types and values.
 
 use std::fmt;
 
@@ -31,7 +31,7 @@ macro_rules! types {
                 }
             }
 
-            /// Returns the help that says what to write for a value of the type.
+            /// Returns a help text with an example value of the type.
             pub fn such_as(self) -> &'static str {
                 match self {
                     $(Self::$variant => $such_as,)*
@@ -54,7 +54,7 @@ macro_rules! types {
             }
         }
 
-        /// For each of the language's types the Rust type of its values.
+        /// The Rust types of values, under the names of the language's types.
         pub(super) mod contents {
             $(pub type $variant = $contents;)*
         }
@@ -103,8 +103,8 @@ impl Type {
         noun.split_once(' ').map_or(noun, |(_, word)| word)
     }
 
-    /// Returns the type and the number of a list's elements: of a vector three numbers, of a pair
-    /// two colours. Returns `None` for a type that is no list.
+    /// Returns the type and the number of a list's elements: three numbers for a vector, two
+    /// colours for a pair. Returns `None` if the type is not a list.
     pub fn parts(self) -> Option<(Self, usize)> {
         match self {
             Self::Vector => Some((Self::Number, 3)),
@@ -116,7 +116,7 @@ impl Type {
 }
 
 impl Value {
-    /// Whether no number in the value is infinite or NaN.
+    /// Returns whether all numbers in the value are finite.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Number(number) => number.is_finite(),
@@ -127,7 +127,7 @@ impl Value {
     }
 }
 
-/// The value in the language's notation, with six digits of each number, for people to read.
+/// Formats the value in the language's notation, for people to read: numbers have six digits.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -146,9 +146,9 @@ impl fmt::Display for Value {
     }
 }
 
-/// A Rust type that holds the values of one of the language's types.
+/// Rust type for the values of one of the language's types.
 pub trait FieldValue {
-    /// Returns the contents of a value; `None` if the value is of another type.
+    /// Returns the contents of a value, or `None` if the value has another type.
     fn from_value(value: Value) -> Option<Self>
     where
         Self: Sized;

@@ -1,5 +1,5 @@
-//! Criteria of grading. Each mistake belongs to the camera, an object, the board, colours,
-//! sampling, or hits.
+//! Criteria of grading: the camera, an object, the board, colours, sampling, and hits. Each mistake
+//! belongs to one of them.
 
 use std::collections::BTreeSet;
 
@@ -12,22 +12,22 @@ use crate::{
 /// Criterion that a mistake belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
-    /// The camera and the window.
+    /// Mistakes in the camera or the window.
     Camera,
-    /// An object, by its index.
+    /// Mistakes in an object, given by its index.
     Object(usize),
-    /// The checkerboards.
+    /// Mistakes in the checkerboards.
     Board,
-    /// Colours and their encoding.
+    /// Mistakes in colours or their encoding.
     Colours,
-    /// The positions of samples, and their average.
+    /// Mistakes in the positions of samples or in their average.
     Sampling,
-    /// Which hit of a ray is visible, and everything that belongs to no other criterion.
+    /// Mistakes in which hit of a ray is visible, and mistakes of no other criterion.
     Hits,
 }
 
-/// Criteria of mistakes by prefixes of their ids. A mistake whose id has none of these prefixes is
-/// about a field of the camera or about hits.
+/// Criteria of mistakes, by prefixes of the mistakes' ids. If an id has none of these prefixes, the
+/// mistake is about a field of the camera or about hits.
 const BEGINNINGS: &[(Criterion, &str)] = &[
     (Criterion::Board, "board_"),
     (
@@ -62,7 +62,8 @@ pub fn criterion(mistake: &NamedMistake, scene: &Scene) -> Criterion {
     of_id(mistake.id).unwrap_or(Criterion::Hits)
 }
 
-/// Returns the criterion of an id, whatever object it is about; `None` for the field of an object.
+/// Returns the criterion of a mistake's id, without regard to the object that the mistake is about.
+/// Returns `None` for the field of an object.
 fn of_id(id: &str) -> Option<Criterion> {
     let is_among = |beginnings: &str| beginnings.split(' ').any(|it| id.starts_with(it));
     let found = BEGINNINGS
@@ -79,8 +80,8 @@ fn of_id(id: &str) -> Option<Criterion> {
     }
 }
 
-/// Returns the index of the object that a mistake is about, which is the object whose title begins
-/// the message. Returns `None` if there is no such object.
+/// Returns the index of the object that a mistake is about: the object with whose title the message
+/// begins. Returns `None` if there is no such object.
 pub fn object(mistake: &NamedMistake, scene: &Scene) -> Option<usize> {
     let title = |index: usize| {
         let object = &scene.objects[index];
@@ -92,8 +93,8 @@ pub fn object(mistake: &NamedMistake, scene: &Scene) -> Option<usize> {
     (0..scene.objects.len()).find(|&index| mistake.message.starts_with(&title(index)))
 }
 
-/// Returns the ids of all mistakes in alphabetical order: those of the table, and the names of
-/// fields whose values may be wrong.
+/// Returns the ids of all mistakes in alphabetical order: the ids in the table of mistakes, and the
+/// names of fields whose values may be wrong.
 pub fn ids() -> impl Iterator<Item = &'static str> {
     let blocks = schema::block_names().filter(|name| *name != "sampler");
     let fields = blocks

@@ -13,27 +13,28 @@ use crate::{
 /// A student, with the results of the submitted pictures.
 pub struct GradedStudent {
     pub name: String,
-    /// The number of the submission in Moodle.
+    /// Number of the submission in Moodle.
     pub number: Option<String>,
-    /// Path of the folder or file, for output.
+    /// Path of the student's folder or file, for output.
     pub place: String,
     /// The pictures that were compared, the best one first.
     pub compared: Vec<ComparedPicture>,
-    /// The pattern of `--picture`.
+    /// The pattern of file names in `--picture`.
     pub chosen: Option<String>,
-    /// The other files, each with the reason why it was not compared.
+    /// Files of the student that were not compared, some with the reason.
     pub not_compared: Vec<String>,
-    /// Names of other students whose best picture is equal in every pixel.
+    /// Names of other students whose best picture equals this student's in every pixel.
     pub equal_to: Vec<String>,
-    /// The points; `None` if there are no points, or the picture is wrong for unknown reasons.
+    /// The student's points; `None` if there is no scheme of points, or the picture is wrong for
+    /// unknown reasons.
     pub score: Option<f64>,
 }
 
 /// A picture that was compared.
 pub struct ComparedPicture {
-    /// Path within the student's submission.
+    /// Path of the picture within the student's submission.
     pub path: String,
-    /// Path that starts with the argument on the command line.
+    /// Path of the picture, starting with the argument on the command line, for output.
     pub shown: String,
     pub result: Result<JudgedPicture, String>,
 }
@@ -45,18 +46,18 @@ pub struct JudgedPicture {
     pub rmse: f64,
     /// Whether the picture carries the text that Pinhole writes into its own.
     pub is_ours: bool,
-    /// The fields of the JSON output.
+    /// Fields of the verdict in the JSON output.
     pub fields: Map<String, Value>,
     /// A warning if the file's format changes colours.
     pub warning: Option<&'static str>,
     /// SHA-256 of the picture's width and pixels.
     pub hash: [u8; 32],
-    /// The pictures for the HTML page; `None` if no page is written.
+    /// Pictures that the HTML page shows; `None` if no page is written.
     pub pictures: Option<Pictures>,
 }
 
 impl JudgedPicture {
-    /// Returns the result in one word.
+    /// Returns the verdict as a word: `right`, `noise`, `wrong` or `unknown`.
     pub fn word(&self) -> &'static str {
         self.verdict.kind.word()
     }
@@ -68,8 +69,8 @@ impl JudgedPicture {
 }
 
 impl ComparedPicture {
-    /// Returns the key by which a student's pictures are sorted, smaller for better ones. The best
-    /// picture counts.
+    /// Returns the key by which a student's pictures are sorted; a better picture has a smaller
+    /// key. The first one after sorting is graded.
     pub fn rank(&self) -> (u8, f64) {
         let Ok(judged) = &self.result else {
             return (4, 0.0);
@@ -85,7 +86,7 @@ impl ComparedPicture {
 }
 
 impl GradedStudent {
-    /// Returns the result of the best picture, or the reason why there is none.
+    /// Returns the result of the best picture, or the reason why there is no result.
     pub fn best(&self) -> Result<&JudgedPicture, String> {
         match self.compared.first() {
             Some(best) => best.result.as_ref().map_err(Clone::clone),
@@ -96,7 +97,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the path of the best picture, or that of the submission if there is no picture.
+    /// Returns the path of the best picture, or that of the submission if no picture was compared.
     pub fn file(&self) -> &str {
         self.compared
             .first()
@@ -133,7 +134,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the exit status for this student.
+    /// Returns the exit status for this student: [`Status::Done`] if the best picture is right.
     pub fn status(&self) -> Status {
         match self.best() {
             Ok(judged) if judged.is_right() => Status::Done,
@@ -141,7 +142,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the student's JSON object.
+    /// Returns the JSON object of the student.
     pub fn json(&self) -> Value {
         let mut fields = Map::new();
         let mut put = |key: &str, value: Value| {
@@ -181,7 +182,7 @@ impl GradedStudent {
         Value::Object(fields)
     }
 
-    /// Returns the comment that the student gets to read.
+    /// Returns the comment on the picture that the student gets to read.
     pub fn comment(&self) -> String {
         let judged = match self.best() {
             Ok(judged) => judged,
@@ -223,7 +224,7 @@ impl GradedStudent {
     }
 }
 
-/// Formats a share in whole per cent; shares below 1 % as `less than 1 %`.
+/// Formats a share in whole per cent. A share below 1 % becomes `less than 1 %`.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
         few if few < 1.0 => "less than 1 %".to_owned(),
