@@ -51,6 +51,11 @@ const policy = [
 ].join("; ");
 // The reference of the language, without links, which would leave the page.
 const renderer = new Renderer();
+// Figures are part of the page, which loads no other file.
+renderer.image = ({ href, text }) => {
+  const svg = readFileSync(path.join("../../grammar", href), "utf8").replaceAll("\n", "");
+  return `<img src="data:image/svg+xml,${encodeURIComponent(svg)}" alt="${text}">`;
+};
 renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
 renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
 // Without its end: overrides and columns are for the command line, and Shift-Alt-F formats.

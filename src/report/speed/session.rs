@@ -17,11 +17,13 @@ use rand::seq::SliceRandom;
 
 use super::{
     machine::Machine,
+    mixture::Mixture,
     results::{MeasuredScene, Measurement, MethodPicture, MethodSeries, Request, Run, SeriesPoint},
 };
 use crate::{
     area::Area,
-    film::{self, Film, TooLarge},
+    color::Color,
+    film::{self, Film, Tolerance, TooLarge},
     render::{Control, RenderError, Rendered, render_as_asked, render_exact},
     sampling::{Sampling, rng::Key},
     scene::{Count, Method, Sampler, Scene},
@@ -81,6 +83,7 @@ pub fn measure(
         exact: (request.methods.contains(&Method::Exact)).then(Vec::new),
         series: series.collect(),
         reference,
+        mixture: Mixture::of(scene),
         interrupted: false,
     };
     let mut session = Benchmark {
@@ -232,14 +235,23 @@ impl Benchmark<'_> {
             let (film, reference) = (made.film(), &measured.reference.film);
             let part = match part {
                 Some(part) => part,
-                None => *part.insert(worst_part(film, reference)?),
+                None => *part.insert(worst_part(film, reference, self.scene.image.background)?),
             };
+            let [shown, exact] = [film.part(part)?, reference.part(part)?];
             series.picture = Some(MethodPicture {
                 per_pixel,
                 cpu: run.cpu,
                 rmse: film::rmse(film, reference),
                 part,
-                film: film.part(part)?,
+                difference: film::heat_map(
+                    &shown,
+                    &exact,
+                    Tolerance {
+                        steps: 0.0,
+                        bounds: None,
+                    },
+                )?,
+                film: shown,
             });
         }
         Ok(())
@@ -281,25 +293,29 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// Maximum width and height of the part that is shown, in pixels. Several parts stand side by side
-/// on a page, and the noise of single samples should be visible.
-const PART: (u32, u32) = (240, 135);
+/// Maximum width and height of the part that is shown, in pixels. The page magnifies it so that
+/// single pixels are seen, and several parts stand side by side.
+const PART: (u32, u32) = (48, 27);
 
 /// Returns the part of a picture with the greatest error. Parts are compared in steps of half of
-/// their size.
-fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
+/// their size. A part in which the background is seen is taken only if there is no other, since
+/// nothing can go wrong in a sky.
+fn worst_part(film: &Film, exact: &Film, background: Color) -> Result<Area, TooLarge> {
     let (width, height) = (film.width().min(PART.0), film.height().min(PART.1));
     let places = |length: u32, size: u32| {
         let last = length - size;
         (0..last).step_by((size / 2).max(1) as usize).chain([last])
     };
-    let (mut worst, mut most) = (Area::whole(width, height), 0.0);
+    let background = background.to_linear();
+    let (mut worst, mut most) = (Area::whole(width, height), (false, 0.0));
     for y in places(film.height(), height) {
         for x in places(film.width(), width) {
             let part = Area { x, y, ..worst };
-            let error = film::rmse(&film.part(part)?, &reference.part(part)?);
-            if error > most {
-                (worst, most) = (part, error);
+            let [shown, exact] = [film.part(part)?, exact.part(part)?];
+            let has_no_sky = !exact.pixels().contains(&background);
+            let found = (has_no_sky, film::rmse(&shown, &exact));
+            if found > most {
+                (worst, most) = (part, found);
             }
         }
     }
