@@ -75,7 +75,7 @@ fn section(measured: &Measurement) -> io::Result<Value> {
         has_exact: measured.exact.is_some(),
         has_slopes: slopes().next().is_some(),
         has_slope_errors: slopes().any(|slope| slope.error.is_some()),
-        heads: summary.heads,
+        heads: summary.heads.iter().map(|head| head.replace('\n', " ")).collect::<Vec<_>>(),
         rows: summary.rows,
         notes: notes(measured),
         reasons: reasons(measured),

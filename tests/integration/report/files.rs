@@ -102,6 +102,8 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     let order = ["class=\"verdict\">Use ", "<svg ", "<table>", "<img "];
     let places = order.map(|what| page.find(what).expect(what));
     assert!(places.is_sorted(), "{places:?}");
+    // No character is left that had to be made visible.
+    assert!(!page.contains("\\u{"), "{page}");
     for image in elements(&document, "img") {
         assert!(!image.attribute("alt").unwrap().is_empty());
         let is_whole = image.attribute("alt") == Some("the exact picture as a whole");
