@@ -64,13 +64,13 @@ impl Default for Control<'_> {
     }
 }
 
-/// Why there is no picture.
+/// Reason why a render gives no picture.
 #[derive(Debug, Error)]
 pub enum RenderError {
-    /// There is not enough memory for it.
+    /// There is not enough memory for the picture.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// The system starts no threads.
+    /// The system cannot start threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] threads::NoThreads),
     /// The render was cancelled.
@@ -108,9 +108,9 @@ impl<P> Rendered<P> {
     }
 }
 
-/// Renders a part of the picture as its sampler specifies: with samples or exactly. The part must
-/// lie in the picture. The film stores light, or the bytes of sRGB that a PNG file needs. With
-/// bytes, the file is the same, and less memory is used.
+/// Renders a part of the picture as its sampler specifies, with samples or exactly. The part must
+/// lie in the picture. `P` is the film's kind of pixel: light, or the bytes of sRGB in a PNG file.
+/// With bytes, the film takes less memory, and the PNG file is the same.
 ///
 /// # Errors
 ///
@@ -128,15 +128,14 @@ pub fn render_as_asked<P: Pixel>(
 }
 
 /// Returns the tiles of a part of the picture: squares of side `side`, in pixels, in a grid from
-/// the picture's top left corner, clipped to the part. The iterator ends if the render is
-/// cancelled. Otherwise, iterating over millions of tiles that are not rendered would take a
-/// second.
+/// the picture's top left corner, clipped to the part. The iterator ends early if the render is
+/// cancelled, because iterating over millions of tiles without rendering them would take a second.
 fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
 }
 
-/// Returns the result, or an error if the render was cancelled.
+/// Returns the result, or [`RenderError::Cancelled`] if the render was cancelled.
 fn finished<T>(result: Mutex<T>, control: &Control) -> Result<T, RenderError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);

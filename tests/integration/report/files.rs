@@ -65,7 +65,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     for name in ["time", "wall"] {
         assert!(first[at(name)].parse::<f64>().unwrap() > 0.0, "{name}");
     }
-    // The exact method has an error bound instead of a measured error.
+    // In the row of the exact method, the error is empty, and an error bound is given instead.
     for name in ["per_pixel", "rmse", "slope"] {
         assert_eq!(exact[at(name)], "", "{name}");
         assert_ne!(first[at(name)], "", "{name}");
@@ -80,7 +80,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
         let labels = labels(&read(&format!("error-against-{of}.svg")));
         let has = |word: &str| labels.iter().any(|(label, _)| label.starts_with(word));
         assert!(has("1/256") && has("exact") == has_exact, "{of}");
-        // Labels do not overlap.
+        // The labels of the chart do not overlap.
         let is_method = |label: &str| methods.iter().any(|m| label.split(' ').next() == Some(m));
         let labels = labels.iter().filter(|(label, _)| is_method(label));
         let mut heights: Vec<i32> = labels.map(|(_, height)| *height).collect();
@@ -109,7 +109,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
         let is_whole = image.attribute("alt") == Some("the exact picture as a whole");
         assert_eq!(size(image), if is_whole { (48, 32) } else { (48, 27) });
     }
-    // Nothing is fetched from other addresses.
+    // The page fetches nothing from other addresses.
     for node in document.descendants() {
         for name in ["src", "href"] {
             let target = node.attribute(name).unwrap_or("data:");
@@ -163,7 +163,8 @@ fn scene_names_cannot_escape_the_output_folder_or_break_a_file() {
     let errors = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{errors}");
     assert!(!errors.contains('\u{1b}'));
-    // Nothing was created outside the scenes' folder, and only the report's folder inside it.
+    // The command created nothing outside of the scenes' folder, and only the report's folder
+    // inside.
     assert_eq!(folder.names(), ["work"]);
     let entries = |name: &str| program::names(&folder.path(name));
     assert_eq!(entries("work").len(), names.len() + ["a", "out"].len());

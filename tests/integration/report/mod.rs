@@ -152,7 +152,7 @@ fn sample_counts_grow_until_the_error_is_reached() {
     for method in report["methods"].as_array().unwrap() {
         assert_eq!(method["needed"][0]["extrapolated"], false, "{method}");
     }
-    // The measurement stops at the first number of samples that reaches the error.
+    // The number of samples is increased only until the error reaches 1/256.
     let random = report["methods"][0]["measured"].as_array().unwrap();
     let is_enough = |point: &Value| number(&point["rmse"]) <= 1.0 / 256.0;
     assert_eq!(random.iter().position(is_enough), Some(random.len() - 1));
