@@ -117,7 +117,6 @@ pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("grain", "noise"),
     ("error", "rmse"),
     ("convergence", "slope"),
-    ("owen", "sobol"),
     ("handedness", "left_handed"),
     ("for loop", "repetition"),
     ("ball.x", "limits: A part of a vector"),
