@@ -66,6 +66,12 @@ impl JudgedPicture {
     pub fn is_right(&self) -> bool {
         matches!(self.verdict.kind, Kind::Right | Kind::Noise)
     }
+
+    /// Returns the number of independent samples per pixel that would be as noisy. Returns `None` if
+    /// the picture is wrong, because its mistakes would count as noise.
+    pub fn samples(&self) -> Option<f64> {
+        self.verdict.samples.filter(|_| self.is_right())
+    }
 }
 
 impl ComparedPicture {

@@ -12,7 +12,7 @@ pub fn figures(one: &GradedStudent) -> [String; 2] {
         Err(_) => [String::new(), String::new()],
         Ok(judged) => [
             format!("{:.5}", judged.rmse),
-            judged.verdict.samples.map_or_else(String::new, |samples| {
+            judged.samples().map_or_else(String::new, |samples| {
                 short((10.0 * samples).round() / 10.0)
             }),
         ],
