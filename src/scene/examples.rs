@@ -35,13 +35,14 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         DVec3::ONE,
     ];
     let others = POINTS.iter().filter_map(|name| match given(name)? {
-        // The example for a direction does not depend on the points.
+        // The field's own value is left out. For a direction, all points are, so only steps from
+        // the origin are tried.
         _ if DIRECTIONS.contains(&field.name) || *name == field.name => None,
         Value::Vector(point) => Some(point),
         _ => None,
     });
-    // The first tried step is −z, the direction in which a camera usually looks. From `lookat` to
-    // `eye`, the steps are therefore reversed.
+    // The first step that is tried is −z, the direction in which a camera usually looks, from `eye`
+    // to `lookat`. For an example of `eye`, each step goes from `lookat` in the opposite direction.
     let sign = if field.name == CAMERA.eye.name {
         -1.0
     } else {
@@ -63,7 +64,8 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
     }
 }
 
-/// Returns whether the known vectors of a block do not contradict each other.
+/// Returns whether the given vectors of a block do not contradict each other. Vectors that are not
+/// given contradict nothing.
 fn fits(given: &dyn Fn(&str) -> Option<Value>) -> bool {
     let vector = |name: &str| match given(name)? {
         Value::Vector(vector) => Some(vector),

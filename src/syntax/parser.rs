@@ -51,8 +51,9 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::sign))
 });
 
-/// Stack size of the threads that parse, in bytes. Without optimization, pest and recovery use tens
-/// of kilobytes of stack for each of the [`NESTING_LIMIT`](super::NESTING_LIMIT) levels.
+/// Stack size, in bytes, of the threads that parse. Without optimization, pest and recovery use
+/// tens of kilobytes of stack for each of the 256 levels of
+/// [`NESTING_LIMIT`](super::NESTING_LIMIT), which is less than half of this size.
 pub const STACK_BYTES: usize = 64 << 20;
 
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
@@ -111,8 +112,8 @@ fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> u
     recovery.item(at)
 }
 
-/// Returns the first element of the ascending `places` that is at least `offset`. Returns `None` if
-/// all are less.
+/// Returns the first element of `places`, which are in ascending order, that is at least `offset`.
+/// Returns `None` if all elements are less.
 pub fn first_from(places: &[usize], offset: usize) -> Option<usize> {
     let first = places.partition_point(|&place| place < offset);
     places.get(first).copied()

@@ -37,7 +37,7 @@ pub struct Names<'s> {
     pub(super) objects: HashSet<&'s str>,
     /// The names of the indices of all blocks.
     pub(super) indices: HashSet<&'s str>,
-    /// Remaining number of comparisons in searches for the nearest name.
+    /// Number of comparisons of names that are left for all searches for the nearest name.
     budget: ComparisonBudget,
     /// Problems of undefined names. They are kept apart because some of the other problems are
     /// discarded when a value is evaluated again.

@@ -12,7 +12,7 @@ use crate::{
 /// Unit in which a number without a unit is meant, as far as its formula shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitOrigin {
-    /// Unknown, since the formula consists of numbers without `pi`.
+    /// Unknown: the formula consists of numbers without a unit and without `pi`.
     Plain,
     /// The number is meant in this unit.
     In(Unit),

@@ -273,8 +273,8 @@ impl<'s> Lowering<'s> {
     }
 
     /// Improves the report of a field with a wrong number of colours, such as `color (red, green,
-    /// blue)`: suggests the block's field that takes that number, `color` or `colors`, if `is_free`
-    /// says that it is not given.
+    /// blue)`: suggests `color` or `colors`, whichever of them takes that number. `is_free` says
+    /// that the block does not have the suggested field yet.
     fn other_colors(&mut self, before: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
         let is_color = |value: &tree::Value<'s>| match &value.kind {
             ValueKind::Call(call) => call.function.text == "rgb",

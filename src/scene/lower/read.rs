@@ -17,8 +17,8 @@ use crate::{
     syntax::{self, tree::Item},
 };
 
-/// Number of bytes at the start of a file that are searched for zero bytes, which show that the
-/// file is binary.
+/// Number of bytes at the start of a file that are searched for zero bytes. If there are more than
+/// one or two, the file is binary rather than text.
 const BINARY_BYTES: usize = 1 << 14;
 
 /// Reads a scene: parses the file and the overrides, and lowers them.

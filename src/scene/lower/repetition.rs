@@ -17,8 +17,9 @@ use crate::{
     },
 };
 
-/// Maximum number of objects in a scene with repeated blocks. A block that would exceed it is
-/// reported as an error and builds no objects.
+/// Maximum number of objects in a scene with repeated blocks, as the language defines it, since a
+/// short text could otherwise ask for more objects than fit into memory. A block that would exceed
+/// it is reported as an error and builds no objects.
 const MOST_OBJECTS: usize = 1 << 24;
 
 impl<'s> Lowering<'s> {

@@ -29,13 +29,14 @@ const LARGEST: Image = Image {
     background: Color::BLACK,
 };
 
-/// Fields that an unknown word was probably meant to be.
+/// The meaning of an unknown word: the fields that it probably stands for.
 struct Meant {
     /// The fields.
     fields: Vec<&'static str>,
-    /// The fields in words.
+    /// The names of the fields, joined for a message.
     shown: String,
-    /// Fixes that write the fields; empty if they would lead to an error.
+    /// Alternative fixes that write the fields in place of the unknown word; empty if they would
+    /// lead to an error.
     fixes: Vec<Fix>,
 }
 
@@ -100,8 +101,8 @@ impl<'s> Lowering<'s> {
         taken
     }
 
-    /// Reports the fields `found`, whose names stand for the parts of the field `names[0]`, or, if
-    /// there are several `names`, for one of them each.
+    /// Reports the unknown fields `found`. If `names` has one element, the words are taken for the
+    /// parts of that field; otherwise, each word for the field at the same position in `names`.
     fn report_parts(
         &mut self,
         row: &BlockRow,

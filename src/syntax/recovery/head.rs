@@ -36,7 +36,8 @@ const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the v
 const LACKS_COUNT: &str =
     "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
 const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
-/// Correction that moves the object's name before the `for`.
+/// Value of a pattern's column for the correction, by which the object's name is moved before the
+/// `for` instead of writing a text.
 const NAME_FIRST: &str = "^";
 
 /// Patterns of one index with its count, such as `i < 8`, without and with mistakes.
@@ -147,7 +148,8 @@ pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     }
 }
 
-/// Texts that the names and values of a pattern matched last.
+/// Texts that the items `I`, `N`, `M` and `W` of a pattern matched when it was matched last. They
+/// are empty if the pattern has no such item.
 #[derive(Default)]
 struct Captures<'t> {
     i: &'t str,
