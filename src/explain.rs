@@ -13,9 +13,8 @@ pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 /// upwards.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// Words of other programs. A row holds such a word, and a heading of the reference or a word of
-/// the language that explains it. A heading may be followed by `: ` and the first words of an item
-/// or paragraph in that section.
+/// Terms of other programs, each with what `explain` shows for it: a heading of the reference, a
+/// word of the language, or, for one item or paragraph under a heading, `HEADING: FIRST WORDS`.
 pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop", "repetition"),
     ("repeat", "repetition"),
@@ -108,7 +107,8 @@ pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("ball.x", "limits: A part of a vector"),
 ];
 
-/// Returns the section of the reference with a heading, ignoring case; `None` if there is none.
+/// Returns the section of the language's reference with the heading `heading`, in any
+/// capitalization; `None` if there is none.
 pub fn section(heading: &str) -> Option<&'static str> {
     let is_heading = |line: &str| line.starts_with("## ");
     let mut start = None;
@@ -129,9 +129,9 @@ pub fn section(heading: &str) -> Option<&'static str> {
     start.and_then(|start| LANGUAGE.get(start..).map(str::trim_end))
 }
 
-/// Returns a part of the section `heading`: its heading, the item or paragraph that starts with
-/// `words`, and a reference to the rest of the section. Returns `None` if the section or the item
-/// does not exist.
+/// Returns a part of the section `heading` of the reference: its heading, the item or paragraph
+/// that starts with `words`, and a sentence that refers to the rest of the section. Returns `None`
+/// if the section or the item does not exist.
 pub fn part(heading: &str, words: &str) -> Option<String> {
     let section = section(heading)?;
     let lines = section.lines();

@@ -107,7 +107,8 @@ struct Watcher<R> {
     _sender: Sender<notify::Result<Event>>,
     /// The folders that are watched.
     folders: BTreeSet<PathBuf>,
-    /// Names of the file in the watched folders, also that of a link's target.
+    /// File names whose events concern the file: its own name and, for a symbolic link, that of the
+    /// link's target.
     names: Vec<OsString>,
     /// Stamp of the file when it was last read.
     stamp: Option<Stamp>,

@@ -52,8 +52,8 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
 });
 
 /// Stack size, in bytes, of the threads that parse. Without optimization, pest and recovery use
-/// tens of kilobytes of stack for each of the 256 levels of
-/// [`NESTING_LIMIT`](super::NESTING_LIMIT), which is less than half of this size.
+/// tens of kilobytes of stack for each level of nesting, and there are at most 256 levels
+/// ([`NESTING_LIMIT`](super::NESTING_LIMIT)). All levels together fit into half of this size.
 pub const STACK_BYTES: usize = 64 << 20;
 
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
