@@ -32,8 +32,9 @@ pub fn fixes<'a>(
     })
 }
 
-/// Returns the ranges of the example values in the text `written` of a placeholder fix: numbers and
-/// lists, or else the whole text. The author replaces these values.
+/// Returns the byte ranges of the made-up example values in `written`, the new text of a
+/// placeholder fix: its numbers and lists, or the whole text if it has none. The author replaces
+/// these values.
 pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     let mut values: Vec<Range<usize>> = Vec::new();
     let (mut lexer, mut open) = (Lexer::new(written, 0), 0_usize);

@@ -115,8 +115,8 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
         }
         _ => {}
     }
-    // Indices of different blocks may have the same name, so an index `new` of another block is no
-    // conflict.
+    // Indices of different blocks may have the same name, so it is no conflict if `new` is an index
+    // of another block.
     let block = |name: &str, at| analysis.index_at(name, at).map(|(block, _)| block.span);
     let own = block(analysis.slice(name.span), name.span.start);
     let is_elsewhere = |token: &RoleToken| {

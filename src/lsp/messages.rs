@@ -4,9 +4,9 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response,
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Maximum number of JSON values in a message; a longer message is refused. A JSON object takes
-/// about 400 bytes of memory, but possibly only eight bytes of text. The limit allows 40 000
-/// changes of a text in one message.
+/// Maximum number of JSON values in a message. A message with more values is refused, since an
+/// object takes about 400 bytes of memory, but possibly only eight bytes of text. The limit allows
+/// 40 000 changes of a text in one message.
 const MOST_VALUES: usize = 1 << 19;
 
 /// Error: a text is not a valid message.

@@ -19,11 +19,12 @@ use crate::{
     scene::Object,
 };
 
-/// Prefix of the methods of Pinhole's own requests.
+/// Prefix of the method names of those requests that Pinhole adds to the protocol.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// Answers the request with the method [`NAMESPACE`] + `about`, except one for a frame. If the text
-/// has errors, most answers are null. `analysis` is computed only if the request needs it.
+/// Answers a request with the method [`NAMESPACE`] + `about`; the method for frames is handled
+/// elsewhere. If the text has errors, so that `version` is `None`, most answers are null.
+/// `analysis` is computed only if the request needs it.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,
@@ -160,7 +161,7 @@ fn label(object: &Object) -> Cow<'_, str> {
     }
 }
 
-/// Answers with the objects that the parameters select, without their outlines.
+/// Answers with a list of the objects that the parameters select, but without their outlines.
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
@@ -238,7 +239,8 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
     }))
 }
 
-/// Returns, in words, the part of the picture in which the first handle of an object is visible.
+/// Returns in words where an object is: the part of the picture that contains its first handle,
+/// such as "top left", or a phrase that says that the handle is not in the picture.
 fn place(outline: &ObjectOverlay, size: [u32; 2]) -> String {
     let at = outline.handles.first().and_then(|(_, at)| *at);
     let size = DVec2::from(size.map(f64::from));

@@ -15,11 +15,11 @@ pub const FIX_ALL: &str = "source.fixAll";
 pub struct Client {
     /// Unit in which columns are counted.
     pub encoding: Encoding,
-    /// Whether completions may be snippets.
+    /// Whether the client accepts completions whose text is a snippet, i.e. has placeholders.
     pub snippets: bool,
-    /// Whether edits may name the version of the document that they apply to.
+    /// Whether the client accepts edits that name the version of the document that they apply to.
     pub versioned_edits: bool,
-    /// Whether edits may be snippets.
+    /// Whether the client accepts edits whose text is a snippet, i.e. has placeholders.
     pub snippet_edits: bool,
 }
 
