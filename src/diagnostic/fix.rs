@@ -151,6 +151,7 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
     Span::new(span.source, span.start, span.end + behind.trim_end().len())
 }
 
+/// Blanks: the characters of white space within a line.
 const BLANK: [char; 2] = [' ', '\t'];
 
 /// Returns whether `before` ends within the blanks at the start of a line: after its last line end,

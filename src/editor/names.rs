@@ -128,8 +128,7 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
             && analysis.slice(token.span) == new
             && !is_elsewhere(token)
     };
-    // An undefined use of the new name would then refer to the renamed definition, so it counts as
-    // taken.
+    // An undefined use of `new` would refer to the renamed definition, so it counts as taken, too.
     let taken = analysis.tokens().iter().find(is_taken);
     match taken.filter(|_| analysis.slice(name.span) != new) {
         Some(taken) => Err(format!(

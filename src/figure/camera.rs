@@ -17,6 +17,7 @@ use crate::{
     tracer::Hit,
 };
 
+/// Height of the figure, in SVG units.
 const HEIGHT: f64 = 460.0;
 
 /// Maximum distance of the visible point from the eye for which the whole ray up to that point is

@@ -25,6 +25,7 @@ const LETTERS: f64 = 18.0;
 /// estimated. The width is the mean in wide typefaces such as DejaVu Sans.
 const LETTER: DVec2 = DVec2::new(10.2, 21.0);
 
+/// Style sheet of every figure, for its CSS classes.
 const STYLE: &str = "\
 text{font:18px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:currentColor;stroke:#fff;stroke-width:5px;stroke-linejoin:round;paint-order:stroke}\
 tspan{font-style:italic}.strong{font-weight:bold}\

@@ -13,6 +13,7 @@ use crate::{
     scene::{Camera, Scene},
 };
 
+/// Height of the figure, in SVG units.
 const HEIGHT: f64 = 400.0;
 
 /// Number of segments of the polygonal line that is drawn as the arc of the roll's angle.

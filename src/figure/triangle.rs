@@ -13,6 +13,7 @@ use crate::{
     tracer::vertices,
 };
 
+/// Height of the figure, in SVG units.
 const HEIGHT: f64 = 430.0;
 
 /// Number of segments of the polygonal line that is drawn as the arc of the spin.

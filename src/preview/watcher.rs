@@ -36,10 +36,11 @@ use notify::{
 use super::Latest;
 use crate::files;
 
-/// Time without events after which a changed file is read.
+/// Time without events from the file system after which a changed file is read.
 const QUIET_TIME: Duration = Duration::from_millis(10);
 
-/// Maximum time from the first event to reading the file, even if further events come.
+/// Maximum time from the first event of a change to reading the file. The file is then read even if
+/// events still arrive.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
 /// Maximum time to wait for a file that is missing or empty, since a program may be saving it.

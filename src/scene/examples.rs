@@ -16,6 +16,7 @@ use crate::{
 /// Returns an example for `field` that does not contradict the values of the other fields, which
 /// `given` returns by name. Returns the field's own example if no tried value fits.
 pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -> String {
+    // Names of the fields for points. An example may lie beside the value of such a field.
     const POINTS: [&str; 7] = [
         BOX.max.name,
         BOX.min.name,
@@ -26,6 +27,7 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         TRIANGLE.v2.name,
     ];
     const DIRECTIONS: [&str; 2] = [CAMERA.direction.name, CAMERA.up.name];
+    // Steps from a point to an example beside it, in the order in which they are tried.
     const STEPS: [DVec3; 6] = [
         DVec3::NEG_Z,
         DVec3::X,

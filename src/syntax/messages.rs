@@ -29,6 +29,7 @@ pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "{0}", "not 
 /// Message about the indices in an object's head, `for INDEX < COUNT`, if no more specific message
 /// applies.
 pub const REPEATED: &str = "an object is repeated by `for INDEX < COUNT`";
+/// Help for the message [`REPEATED`].
 pub const REPEATED_SO: &str = "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first";
 pub const MISPLACED_INDICES: Message = Message::new(["bad_repetition", "indices stand in the head of an object", "not in its block", "write them before the `{`, as in `sphere for i < 8 {`"]);
 pub const COUNT_WITH_LAST: Message = Message::new(["bad_repetition", "an index ends before its count, and is never equal to it", "not written so", ""]);

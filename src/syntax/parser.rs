@@ -57,8 +57,8 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
 pub const STACK_BYTES: usize = 64 << 20;
 
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
-/// shorter value is parsed on the caller's stack: each level of nesting takes at least one byte, so
-/// it cannot nest deep. Most defaults of fields are shorter.
+/// shorter value cannot nest deep, since each level takes at least one byte, so it is parsed on the
+/// caller's stack. That saves most of the threads for the defaults of fields, which are short.
 const SHORT_VALUE_BYTES: usize = 32;
 
 /// Minimum number of bytes that pest reads at a time; it reads on to the next split point of the

@@ -121,8 +121,9 @@ fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     found.unwrap_or(COLORS[scene.objects.len() % COLORS.len()])
 }
 
-/// Returns a scene for a text with errors. Parts with errors are replaced by those of the smallest
-/// scene, so that new objects are placed beside those that were added before.
+/// Returns a scene for a text with errors, in which a new object can be placed. It has the objects
+/// without errors. An image, camera or sampler with errors is replaced by that of the smallest
+/// scene.
 fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     let smallest = Sources::new(Source::from_text("", SMALLEST));
     let smallest = Analysis::new(&smallest).scene()?;
@@ -140,8 +141,8 @@ fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     })
 }
 
-/// Copies an object's block to the next line. The copy is moved to the right by a twentieth of the
-/// picture, unless the block shares its numbers with other blocks.
+/// Returns the edit that copies an object's block to the line after it. The copy is moved to the
+/// right by a twentieth of the picture, unless that would change numbers outside of the block.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;

@@ -237,6 +237,7 @@ pub fn drag(
 /// Describes the field of view of a camera in several forms, if one of the fields that determine it
 /// has changed.
 fn lens(image: &Image, changes: &[FieldChange], found: FieldOwner) -> Option<String> {
+    // Names of the fields that determine the field of view.
     const LENS: [&str; 4] = [
         CAMERA.d.name,
         CAMERA.fov.name,

@@ -56,6 +56,7 @@ const CORNERS: [&str; 3] = [TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name
 /// Name of the handle at an object's centre, for all kinds that have one.
 const CENTER: &str = BOX.center.name;
 
+/// Names of the coordinate axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Names of the handles in the middle of a box's faces. For each axis, the face at the lower

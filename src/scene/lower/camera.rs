@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                         .at(eye_place, "the eye")
                         .help("move one of them, or give a `direction` instead of `lookat`"),
                 );
-                // An editor shows the correct parts of a scene with errors. Without a view, it
-                // shows no camera.
+                // An editor shows the parts of a scene that have no errors. Without a view, the
+                // camera is not one of them.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {

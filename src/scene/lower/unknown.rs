@@ -189,8 +189,8 @@ impl<'s> Lowering<'s> {
         let is_tried = |words| is_of_file && suggest::is_among(word, words);
         if let Some(field) = row.field_tried(word) {
             let meant = self.renamed(block, field, name, value, whole);
-            // If another kind of block has this field, the field may have been meant for such a
-            // block.
+            // If the word is a keyword or the name of another block's field, the field may have
+            // been meant for another block, so the fix is not safe.
             let is_known = schema::is_word(word);
             return Some(if is_known { meant.unsure() } else { meant });
         }
@@ -198,7 +198,8 @@ impl<'s> Lowering<'s> {
             return None;
         }
         let mut perhaps: Vec<&FieldRow> = row.fields_perhaps(word).collect();
-        // A vector of length 1 is more likely a direction than a point.
+        // A vector of length 1 is more likely a direction than a point, so the fields are suggested
+        // in reverse order.
         let is_unit = |text: &str| match literal(text, Type::Vector) {
             Some(Value::Vector(vector)) => (vector.length() - 1.0).abs() < 1e-3,
             _ => false,

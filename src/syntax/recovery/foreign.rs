@@ -257,6 +257,7 @@ impl<'s> Recovery<'_, 's> {
     /// comment, so `c */` is the rest. Returns `false` and skips nothing if the text is not such a
     /// rest.
     pub(super) fn nested_comment(&mut self) -> bool {
+        // Maximum number of tokens that are searched for the `*/` that was meant to end the comment.
         const ENOUGH: usize = 64;
         let start = self.here().start;
         let before = self.text.get(..start).unwrap_or_default();
@@ -281,6 +282,7 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
+        // Number of bytes at the start of the file that are searched for the strings of a row.
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');

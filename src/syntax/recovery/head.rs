@@ -28,6 +28,7 @@ pub(super) struct HeadSlip {
 /// and `»`. In the other texts, `{I}`, `{W}`, `{N}` and `{M}` stand for the matched texts.
 type HeadPattern = [&'static str; 4];
 
+// Messages and help texts that several patterns of a head ([`HeadPattern`]) share.
 const FROM_ZERO: &str = "an index begins at 0 by itself";
 const NO_RANGE: &str = "an index has a count, and no range";
 const EITHER: &str = "write `for {I} < {N}`, or `for {I} < {N+1}` if {N} is one of its values";
