@@ -108,8 +108,8 @@ fn placeholder(value: impl Into<String>) -> SnippetPart {
     SnippetPart::Placeholder(value.into())
 }
 
-/// Returns completions for `let`, for all objects, and for the settings that the scene does not
-/// have yet.
+/// Returns completions for `let`, for all kinds of objects, and for those of `image`, `camera` and
+/// `sampler` that the scene does not have yet.
 fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let is_there = |row: &schema::BlockRow| {
         // If a block follows the word that is being typed, the typed word is parsed as a kind, and
@@ -204,8 +204,8 @@ fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Ve
     pieces
 }
 
-/// Returns an example value for a field that does not contradict the other fields of the current
-/// block.
+/// Returns an example value for the field `field`. The value does not contradict the other fields
+/// of the current block.
 fn example(analysis: &Analysis<'_>, situation: &Situation, field: &FieldRow) -> String {
     let at = situation.word.start;
     // The current block is the last one that starts before the word. It may not be closed yet.

@@ -28,7 +28,7 @@ enum Namespace {
     Objects,
 }
 
-/// Returns the span of the name at the offset `at` in its definition.
+/// Returns where the name at the offset `at` is defined: the span of the name in its definition.
 pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     let mut occurrences = occurrences(analysis, at).into_iter();
     let first = occurrences.find(|occurrence| occurrence.is_definition);

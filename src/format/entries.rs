@@ -106,8 +106,9 @@ enum Container {
 }
 
 impl<'s> TokenReader<'_, 's> {
-    /// Returns the entries of `nodes`, which end before the offset `end`, and the comments after
-    /// the `{` on its line.
+    /// Returns the entries of `nodes`, i.e. of a file's items or a block's fields, and of the
+    /// comments between them. They end before the offset `end`. Also returns the comments after a
+    /// block's `{` on its line.
     fn entries<N>(
         &mut self,
         nodes: impl IntoIterator<Item = impl Borrow<N>>,

@@ -51,7 +51,8 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     }
 }
 
-/// Answers with the limits of the number at a position. The text may have errors.
+/// Answers with the limits of the number at a position, and of its slider. The text may have
+/// errors.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
     Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
@@ -67,7 +68,8 @@ fn written_limits(limits: editor::Limits) -> Value {
     })
 }
 
-/// Answers with the sliders of all definitions of numbers and angles. The text may have errors.
+/// Answers with the sliders of all definitions whose values are numbers or angles. The text may
+/// have errors.
 fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let sliders = editor::sliders(analysis).into_iter();
     let written = |slider: editor::Slider<'_>| {

@@ -139,8 +139,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
                         self.follow();
                         continue;
                     }
-                    // The file has changed without an event: a watched folder was removed, or does
-                    // not report events.
+                    // The file has changed although no event told so. Either the watch is lost,
+                    // because a watched folder was removed, or the folder does not report events.
                     self.forget_folders();
                 }
             }

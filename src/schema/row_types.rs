@@ -76,8 +76,8 @@ pub struct Choice {
     pub why: &'static str,
 }
 
-/// Words that people use by mistake to give several fields at once, followed by a list of the
-/// values.
+/// Words that people use by mistake to give several fields at once. A list with the values of these
+/// fields follows the word, as in `resolution (640, 480)`.
 #[derive(Debug)]
 pub struct Several {
     /// The words, separated by spaces.

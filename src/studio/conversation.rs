@@ -54,8 +54,8 @@ const PROGRESS: Duration = Duration::from_millis(200);
 /// which the host, when it ends, waits for its connections.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// Serves the page until it disconnects, its pass is over, or the host ends. The tasks of `runtime`
-/// transport the messages.
+/// Serves the page until it disconnects, its [`Pass`] is over, or the host ends. The tasks of
+/// `runtime` transport the messages.
 pub fn converse(
     runtime: Handle,
     socket: WebSocket,
@@ -345,8 +345,8 @@ impl Conversation<'_> {
     }
 }
 
-/// Returns the code with which the socket must be closed, because the host ends or the page's pass
-/// is over; otherwise `None`.
+/// Returns the code with which the socket must be closed if the host ends or the page's [`Pass`] is
+/// over, and otherwise `None`.
 fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
     if *ending.borrow() {
         return Some(close_code::AWAY);

@@ -142,7 +142,8 @@ fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
 }
 
 /// Returns the edit that copies an object's block to the line after it. The copy is moved to the
-/// right by a twentieth of the picture, unless that would change numbers outside of the block.
+/// right by a twentieth of the picture. Only numbers that stand in the block itself are changed for
+/// that, so a block that consists of names is copied without a move.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;

@@ -345,7 +345,8 @@ fn others_changed(
     changed
 }
 
-/// Reads the scene of a text after `edits`. Returns a message if the text has errors then.
+/// Reads the scene of the text of `source` after `edits`, which are given as two lists. Returns a
+/// message if the text has errors then.
 fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let fix = Fix::new("", edits.concat());
     let text = apply(&fix, SourceId::File, source.text());

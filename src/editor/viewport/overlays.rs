@@ -55,7 +55,8 @@ pub struct Overlays {
 pub struct Vanishing {
     /// The point; `None` if the axis is parallel to the view plane, and so has none.
     pub point: Option<DVec2>,
-    /// Edges of boxes parallel to the axis, each extended to the vanishing point.
+    /// For each edge of a box that is parallel to the axis: the line along the edge and on to the
+    /// vanishing point.
     pub lines: Vec<Polyline>,
 }
 
@@ -170,7 +171,8 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
                 let joined = lines.last_mut().filter(|line| line.last() == Some(&begin));
                 match joined {
                     Some(line) => {
-                        // Of points on a straight line, only the first and the last one are kept.
+                        // If the parts before and after this point are on one straight segment, the
+                        // point is left out.
                         if part > 0 {
                             line.pop();
                         }

@@ -43,8 +43,8 @@ impl Client {
     }
 }
 
-/// Returns the first supported encoding in `offered`, the client's list in its order of preference.
-/// Returns UTF-16 if none is supported.
+/// Returns the first unit for columns in `offered` that the server supports. `offered` is the
+/// client's list in its order of preference. Returns UTF-16 if the server supports none of it.
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),

@@ -127,9 +127,9 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Removes and returns the `let` of the same name as `index` that stands further down in the
-    /// file, if it is defined already. With `--set` arguments, all definitions are evaluated before
-    /// the blocks.
+    /// Removes and returns the `let` that has the same name as `index` and stands further down in
+    /// the file, if it is defined already, so that the index can be defined. With `--set`
+    /// arguments, all definitions are evaluated before the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;

@@ -93,7 +93,7 @@ impl<'s> Lowering<'s> {
         None
     }
 
-    /// Reports a list in place of a value that is not a list.
+    /// Reports a list as the value of a field that takes no list.
     fn unexpected_list(
         &mut self,
         row: &'static FieldRow,

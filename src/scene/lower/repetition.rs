@@ -383,8 +383,8 @@ impl<'s> Lowering<'s> {
                 let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
                 problem.help = Some(help.to_owned());
             }
-            // Triangles with vertices on one line are typical of rows of triangles that meet in a
-            // point.
+            // The vertices of a triangle are often on one line at the end of a row of triangles
+            // that meet in a point. The help says how to leave such a triangle out.
             if problem.is("on_one_line")
                 && let Some(help) = &mut problem.help
             {

@@ -157,8 +157,8 @@ impl Shape {
         for_each_kind!(self, own => own.field_mut(name))
     }
 
-    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
-    /// rounding error of a limit may be misjudged.
+    /// Returns whether all fields of the shape meet the language's conditions. These are checked in
+    /// `f64`, so a value within rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         for_each_kind!(self, own => own.is_possible())
     }
