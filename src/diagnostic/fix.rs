@@ -154,8 +154,7 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
 /// Blanks: the characters of white space within a line.
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Returns whether `before` ends within the blanks at the start of a line: after its last line end,
-/// or from its start if it has none, there are only blanks.
+/// Returns whether a text that follows `before` is the first on its line, apart from blanks.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])

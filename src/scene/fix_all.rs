@@ -9,7 +9,8 @@ use crate::{
     source::{LineColumn, Source, SourceId, Sources},
 };
 
-/// The text that [`fix_all`] returns, and the counts of fixes.
+/// Result of [`fix_all`]: the corrected text, the applied fixes, and the numbers of errors that
+/// remain.
 #[derive(Clone, Debug)]
 pub struct Fixed {
     /// The text.

@@ -73,7 +73,7 @@ pub fn nearest_method(written: &str) -> Option<&'static str> {
     tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
-/// Returns whether no other technique than `near`, a name of one, can be meant by `written`.
+/// Returns whether `written` can mean no other technique than the one that is named `near`.
 pub fn is_sure_method(written: &str, near: &str) -> bool {
     let mut tried = ALSO_TRIED.iter();
     tried.any(|(method, words)| method.name() == near && is_among(written, words))

@@ -112,8 +112,8 @@ fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> u
     recovery.item(at)
 }
 
-/// Returns the first element of `places`, which are in ascending order, that is at least `offset`.
-/// Returns `None` if all elements are less.
+/// Returns the first element of `places` that is at least `offset`. The elements must be in
+/// ascending order. Returns `None` if all are less.
 pub fn first_from(places: &[usize], offset: usize) -> Option<usize> {
     let first = places.partition_point(|&place| place < offset);
     places.get(first).copied()

@@ -125,7 +125,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports and skips a condition, such as `> 1 ? a : b` after an operand, or `if n > 1 then a`.
-    /// Returns whether the next token starts one.
+    /// Returns `false`, and skips nothing, if no condition starts at the next token.
     pub(super) fn condition(&mut self) -> bool {
         let is_one = match self.word(0) {
             "if" => !self.words.is_let("if"),

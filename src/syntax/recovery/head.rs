@@ -37,8 +37,8 @@ const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the v
 const LACKS_COUNT: &str =
     "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
 const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
-/// Value of a pattern's column for the correction, by which the object's name is moved before the
-/// `for` instead of writing a text.
+/// Correction of a pattern ([`HeadPattern`]) that is no text to write: the object's name is moved
+/// before the `for`.
 const NAME_FIRST: &str = "^";
 
 /// Patterns of one index with its count, such as `i < 8`, without and with mistakes.
