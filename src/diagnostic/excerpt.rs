@@ -108,7 +108,7 @@ impl<'s> Excerpt<'s> {
             let left = start.midpoint(end) - line + HOOK_COLUMNS;
             let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
             let message = textwrap::fill(&visible_line(message), room);
-            // miette shows the line and column of the primary label in its header.
+            // The first label is the primary one, whose line and column miette shows in its header.
             excerpt.labels.push(match index {
                 0 => LabeledSpan::new_primary_with_span(Some(message), inner),
                 _ => LabeledSpan::new_with_span(Some(message), inner),

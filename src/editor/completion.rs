@@ -262,7 +262,7 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
     if lists.contains(&wanted) {
-        // A single colour cannot be the value of a field for several colours.
+        // A field for several colours takes no single colour, so nothing else is offered for it.
         return completions;
     }
     completions.extend(functions(situation, is_color));

@@ -47,7 +47,7 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
         return malformed(Value::Null, ErrorCode::InvalidRequest, message);
     }
     let has = |name: &str| value.get(name).is_some();
-    // Responses are never answered.
+    // A response is never answered, even if it is malformed.
     let is_response = !has("method") && (has("result") || has("error"));
     let id = identifier(value.get("id").cloned());
     match message(value) {
@@ -68,7 +68,7 @@ fn message(mut value: Value) -> Option<Message> {
     let id = match take("id") {
         None => None,
         Some(Value::String(id)) => Some(RequestId::from(id)),
-        // Integers in the protocol have 32 bits.
+        // An integer in the protocol has 32 bits, so a longer identifier is not valid.
         Some(id) => Some(i32::try_from(id.as_i64()?).ok()?.into()),
     };
     let method = match take("method") {

@@ -73,7 +73,7 @@ pub fn watch(
     let (sender, events) = mpsc::channel();
     let own_sender = sender.clone();
     let notifier = notify::recommended_watcher(move |event| {
-        // If the receiver is gone, the event is dropped.
+        // If the watching thread has ended, the event is dropped.
         let _ = sender.send(event);
     });
     let mut watcher = Watcher {
@@ -301,7 +301,7 @@ mod tests {
 
     #[test]
     fn a_folder_has_one_name_whether_its_file_is_there_or_not() {
-        // Tests run in the folder of the package.
+        // Tests run in the folder of the package, so this is the path of that folder.
         let here = fs::canonicalize(".").unwrap();
         for path in [
             "Cargo.toml",

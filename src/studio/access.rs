@@ -42,7 +42,7 @@ pub fn refusal(
     let host = only(headers, &HOST).unwrap_or_default();
     let origin = only(headers, &ORIGIN);
     let is_own = ["127.0.0.1", "localhost"].iter().any(|name| {
-        // Browsers leave out the default port.
+        // Browsers leave out the port 80, the default, in the header `Host`.
         host == format!("{name}:{port}") || (port == 80 && host == *name)
     });
     if !is_own || uri.authority().is_some() {

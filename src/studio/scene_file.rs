@@ -257,7 +257,8 @@ fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
     let bytes = bytes?;
     let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
-    // In UTF-16, about half of the bytes are zero.
+    // In UTF-16, about half of the bytes are zero, so a text without zero bytes need not be tested
+    // further.
     if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
         return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
     }

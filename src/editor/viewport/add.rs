@@ -240,8 +240,8 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
         floor.map_or(at, |y| at.with_y(y + size))
     };
     let is_seen = |at: &DVec3| is_seen(*at, size, &projection);
-    // Each row has seven positions. If no position on the floor is in the picture, positions at the
-    // height of the view axis are used.
+    // Each row has seven positions. Positions on the floor are tried first, and then positions at
+    // the height of the view axis.
     let row = |floor, row| [0, 1, -1, 2, -2, 3, -3].map(|steps| place(floor, steps, row));
     let rows = |floor| (0..ROWS).flat_map(move |it| row(floor, it));
     let mut places = rows(floor).chain(rows(None)).filter(is_seen);

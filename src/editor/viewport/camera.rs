@@ -68,8 +68,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // The picture follows the pointer in both modes. The camera therefore turns against the
-            // pointer's movement when it orbits, and with it when it looks around.
+            // In both modes, the picture follows the pointer. The camera therefore turns against
+            // the pointer's movement when it looks around, and with it when it orbits.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {
@@ -124,9 +124,10 @@ fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// Returns the view direction after the pointer has moved by `by`, measured in heights of the
-/// picture. One height corresponds to half a turn. A movement to the right turns the direction
-/// about the up vector, and a movement down turns it away from the up vector.
+/// Returns the view direction of a camera that looks around while the pointer moves by `by`,
+/// measured in heights of the picture. One height corresponds to half a turn. A movement to the
+/// right turns the direction about the up vector, to the left, and a movement down turns it towards
+/// the up vector, so that the picture follows the pointer.
 fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let (up, ahead) = (unit(camera.up).0, projection.ahead);
     // `level_top` is the direction of the picture's top without roll.

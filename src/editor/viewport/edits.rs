@@ -139,7 +139,7 @@ impl DecimalRounding {
     fn sum(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // Half of a rounded amount may have one more decimal.
+            // If the ratio is 1/2, half of a rounded amount may have one more decimal.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }
