@@ -257,7 +257,8 @@ impl<'s> Recovery<'_, 's> {
     /// comment, so `c */` is the rest. Returns `false` and skips nothing if the text is not such a
     /// rest.
     pub(super) fn nested_comment(&mut self) -> bool {
-        // Maximum number of tokens that are searched for the `*/` that was meant to end the comment.
+        // Maximum number of tokens that are searched for the `*/` that was meant to end the
+        // comment.
         const ENOUGH: usize = 64;
         let start = self.here().start;
         let before = self.text.get(..start).unwrap_or_default();
