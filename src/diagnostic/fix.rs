@@ -165,8 +165,8 @@ fn ends_line(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
-/// Returns the text after the blanks and comments at its start, but at most up to the end of its
-/// first line.
+/// Returns the text after the blanks and comments at its start. A line end that is not within a
+/// comment is not skipped.
 fn past_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches([' ', '\t']);
     loop {

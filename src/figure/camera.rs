@@ -20,18 +20,17 @@ use crate::{
 /// Height of the figure, in SVG units.
 const HEIGHT: f64 = 460.0;
 
-/// Maximum distance of the visible point from the eye for which the whole ray up to that point is
-/// drawn, as a multiple of the distance from the eye to a corner of the window. Of a longer ray,
-/// only the first part is drawn, since the window would otherwise be too small.
+/// Maximum length of a ray that is drawn as far as the visible point, as a multiple of the distance
+/// from the eye to a corner of the window. Of a longer ray, only the first part is drawn, since the
+/// window would otherwise be too small.
 const FARTHEST: f64 = 15.0;
 
 /// Maximum number of objects that are drawn, boards not counted. Further ones, in the order of the
 /// scene, are left out.
 const MOST_OBJECTS: usize = 60;
 
-/// Number of squares of a board, in either direction, up to which a line is drawn between all
-/// neighbours. If the drawing contains more squares, there is a line only at every second, third, …
-/// square, so that the number of lines stays at about this number.
+/// Approximate maximum number of lines that are drawn on a board in each direction. If a board has
+/// more squares within the drawing, a line is drawn only at every second, third, … square.
 const MOST_LINES: f64 = 14.0;
 
 /// Draws the figure, with the ray through the middle of `pixel`, or of a pixel of the largest
