@@ -21,7 +21,7 @@ use crate::schema;
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
 /// Minimum number of consecutive blocks of one kind, each written on one line, that form a table.
-/// The blocks of a table stay on one line each even if some are slightly wider than [`WIDTH`].
+/// The blocks of a table stay on one line each even if some are slightly wider than `WIDTH`.
 const MIN_TABLE_ROWS: usize = 3;
 
 /// Sets the columns to which the parts of a file's entries are aligned, also within blocks.

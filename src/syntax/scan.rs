@@ -27,10 +27,9 @@ const SPLIT_SPACING_BYTES: usize = 256;
 pub struct Scan {
     /// All comments, in the order of the text.
     comments: Vec<Span>,
-    /// Offsets where more parentheses and minuses are open than
-    /// [`NESTING_LIMIT`](super::NESTING_LIMIT) allows in a value. Subtraction signs are counted as
-    /// if they were negations, so the count may be too high. Recovery reads the items at these
-    /// offsets and counts exactly.
+    /// Offsets where more parentheses and minuses are open than [`NESTING_LIMIT`] allows in a
+    /// value. Subtraction signs are counted as if they were negations, so the count may be too
+    /// high. Recovery reads the items at these offsets and counts exactly.
     pub deep: Vec<usize>,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a
     /// `let`. Two of them are at least [`SPLIT_SPACING_BYTES`] apart.

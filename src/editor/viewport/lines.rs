@@ -40,8 +40,8 @@ impl Projection {
     }
 
     /// Joins segments in the picture to polygonal lines, and cuts off what is farther outside of
-    /// the picture than [`REACH`]. A segment that starts at the end of the previous one continues
-    /// its line.
+    /// the picture than `REACH`. A segment that starts at the end of the previous one continues its
+    /// line.
     pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Polyline> {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = segments.into_iter();

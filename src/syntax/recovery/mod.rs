@@ -74,8 +74,8 @@ pub struct Recovery<'w, 's> {
     lists: usize,
     /// Number of blocks around the item that is read.
     blocks: usize,
-    /// Whether the value that is read nests deeper than [`NESTING_LIMIT`], so that the rest of it
-    /// was skipped.
+    /// Whether the value that is read nests deeper than [`NESTING_LIMIT`](super::NESTING_LIMIT), so
+    /// that the rest of it was skipped.
     too_deep: bool,
 }
 
