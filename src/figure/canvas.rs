@@ -41,8 +41,9 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 /// farther away from its point costs 6. A label is placed where its total cost is least.
 const MARK: f64 = 40.0;
 
-/// Cost of a label over each of the diagonals that stand for a filled polygon. A label leaves the
-/// polygon if there is room near it.
+/// Cost of a label that covers one of a filled polygon's diagonals, about four of which stand for
+/// the polygon's area. The cost is a little more than that of one step farther away, so that a
+/// label leaves the polygon if there is room near it.
 const FILL: f64 = 7.0;
 
 /// A drawing that is being built.
