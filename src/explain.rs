@@ -9,7 +9,7 @@
 /// The reference of the language, as Markdown.
 pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 
-/// The words of sampling, as Markdown: a section for each word and for each method.
+/// The glossary of sampling, as Markdown: a section for each term and for each method.
 pub const SAMPLING: &str = include_str!("../grammar/sampling.md");
 
 /// Guide, as Markdown, for converting scenes of programs with left-handed coordinates or with z
@@ -85,7 +85,8 @@ pub fn section(heading: &str) -> Option<&'static str> {
     section_of(LANGUAGE, heading).or_else(|| section_of(SAMPLING, heading))
 }
 
-/// Returns the section of a text in Markdown with a heading, ignoring case; `None` if there is none.
+/// Returns the section of `text`, which is Markdown, with the heading `heading`, in any
+/// capitalization. Returns `None` if there is none.
 pub fn section_of(text: &'static str, heading: &str) -> Option<&'static str> {
     let is_heading = |line: &str| line.starts_with("## ");
     let mut start = None;
@@ -106,9 +107,9 @@ pub fn section_of(text: &'static str, heading: &str) -> Option<&'static str> {
     start.and_then(|start| text.get(start..).map(str::trim_end))
 }
 
-/// Returns a part of the section `heading`: its heading, the item or paragraph that starts with
-/// `words`, and a reference to the rest of the section. Returns `None` if the section or the item
-/// does not exist.
+/// Returns a part of the section `heading` of the reference: its heading, the item or paragraph
+/// that starts with `words`, and a sentence that refers to the rest of the section. Returns `None`
+/// if the section or the item does not exist.
 pub fn part(heading: &str, words: &str) -> Option<String> {
     let section = section(heading)?;
     let lines = section.lines();
@@ -126,7 +127,7 @@ pub fn part(heading: &str, words: &str) -> Option<String> {
     ))
 }
 
-/// Returns the headings of the sections of the reference and of the words of sampling.
+/// Returns the headings of the sections of the reference and of the glossary of sampling.
 pub fn headings() -> impl Iterator<Item = &'static str> {
     let lines = LANGUAGE.lines().chain(SAMPLING.lines());
     lines.filter_map(|line| line.strip_prefix("## "))

@@ -34,8 +34,8 @@ pub struct FieldRow {
     pub help: &'static str,
     /// Words that people use by mistake for the field, separated by spaces.
     pub also_tried: &'static str,
-    /// Words that people use by mistake both for this field and for others, so that the meaning is
-    /// uncertain.
+    /// Words that people use by mistake both for this field and for other fields of the block, so
+    /// that the meaning is uncertain.
     pub perhaps: &'static str,
     /// Words that people use by mistake for twice the field's value, such as `diameter` for a
     /// radius.

@@ -33,8 +33,9 @@ use super::{
     scene_file::SceneFile,
 };
 
-/// Maximum time for connections to finish a save and to close when the host ends. The host then
-/// ends in any case, even during a save on a disk that does not respond.
+/// Maximum time that the host waits, when it ends, for its connections to finish a save and to
+/// close. After that, the host ends in any case, even during a save on a disk that does not
+/// respond.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// The page's HTML.
@@ -210,7 +211,8 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
             let reason = "".into();
             let goodbye = Message::Close(Some(CloseFrame { code, reason }));
             let _ = socket.send(goodbye).await;
-            // Unread messages would reset the connection before the code arrives.
+            // Messages that are still unread would reset the connection before the code arrives, so
+            // they are read here.
             while let Some(Ok(_)) = socket.recv().await {}
         }
     }

@@ -110,7 +110,8 @@ impl<'s> Lowering<'s> {
             0.5 * to - 0.5 * from
         };
         let sine = unit(up).cross(unit(along)).length();
-        // The negation also returns here if `sine` is NaN.
+        // The condition is negated so that the function also returns, without a warning, if `sine`
+        // is NaN.
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
