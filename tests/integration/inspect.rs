@@ -177,7 +177,8 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // In the widest view, the part of a pixel that the box covers is too small for an `f64`.
+        // In the widest view, the part of a pixel that the box covers is too small for an `f64`, so
+        // the output has `null` in place of four numbers.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }
@@ -225,7 +226,8 @@ fn inspect_reports_what_is_visible_of_each_object() {
     assert_eq!(hits["hits"][0]["indices"].to_string(), "[0]", "{hits}");
 }
 
-/// Compares two scenes without sampling noise. Each row has an exit status and a message.
+/// Compares the exact pictures of two scenes. Each row has the arguments, the exit status, and a
+/// part of the message.
 #[test]
 fn diff_compares_two_scenes_without_sampling_noise() {
     let folder = Folder::with([

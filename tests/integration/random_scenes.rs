@@ -26,7 +26,7 @@ struct Text<'r> {
     random: &'r mut Random,
     /// Points of the objects so far: vertices, centres, and points of surfaces.
     points: Vec<DVec3>,
-    /// Frequency of numbers of any magnitude: one in `wild` numbers, or none if it is 0.
+    /// How often a number may have any magnitude: one in `wild` numbers, or none if `wild` is 0.
     wild: u64,
 }
 

@@ -163,7 +163,8 @@ fn a_file_changed_since_it_was_read_is_not_overwritten() {
         for (number, purpose) in [Purpose::Change(&original), again].into_iter().enumerate() {
             let changed = || {
                 files::write(&path, purpose, &AtomicBool::new(false), |out| {
-                    // For the second purpose, the other program has changed the file before.
+                    // The other program changes the file during the first write. The second write
+                    // finds it already changed.
                     if number == 0 {
                         meanwhile();
                     }
