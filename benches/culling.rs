@@ -24,8 +24,8 @@ use pinhole::{
 
 use self::one_by_one::one_by_one;
 
-/// Number of rounds. The fastest round is printed, since other work on the machine only makes a
-/// round slower.
+/// Number of times that each picture is rendered in each way. The shortest CPU time counts, since
+/// other work on the machine only makes a render slower.
 const ROUNDS: usize = 3;
 
 /// How samples are traced.
@@ -112,7 +112,7 @@ fn main() {
     exact();
 }
 
-/// Scene with a floor on which nearly every pixel sees many squares.
+/// Scene with a checkerboard of small squares, so that nearly every pixel sees many of them.
 const DENSE: &str = "camera { eye (0.3, 2, 5) lookat (7, 1.8, -30) } checkerboard { square 0.001 }";
 
 /// Returns an element of a Weyl sequence: the fractional part of `index`·`step`, for an irrational

@@ -19,10 +19,10 @@ mod spheres;
 
 const OBJECTS: usize = 1000;
 
-/// Number of times that each request is repeated and measured.
+/// Number of times that each request is repeated. The median and the longest time are printed.
 const ROUNDS: u32 = 200;
 
-/// Number of times that each slow request is repeated and measured.
+/// As [`ROUNDS`], for the slow requests about a line of a million tokens.
 const FEW: u32 = 10;
 
 const URI: &str = "file:///spheres.scn";

@@ -28,7 +28,8 @@ use mistakes::{GROUPS, Mistake, OF_THE_OBJECTS};
 use serde_json::{Value, json};
 use textbook::{SAMPLINGS, Sampling};
 
-/// Sizes of the corpus's pictures, in pixels.
+/// Widths and heights of the pictures that are judged, in pixels. Without `--all`, only those of
+/// the middle size are.
 const SIZES: [[u32; 2]; 3] = [[96, 64], [320, 180], [640, 360]];
 
 fn main() {

@@ -199,7 +199,7 @@ fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Returns the meaning of a heat map's colours.
+/// Returns what a heat map's colours mean, or that it is all black because the pictures are equal.
 fn legend(is_equal: bool) -> &'static str {
     if is_equal {
         "black all over: nothing differs by more than the tolerance"

@@ -120,14 +120,14 @@ pub fn picture(
     })
 }
 
-/// Threshold on the error bound of a pixel, in linear light. A note is printed about pixels above
-/// it.
+/// Error bound of a pixel's mean, in linear light. If bounds are larger, a note for the user says
+/// how many pixels are known less well than to a millionth.
 const VAGUE: f32 = 1e-6;
 
-/// Name of the rounding of pixels in a PNG, for [`certificate`].
+/// Name of the rounding to bytes of sRGB, as the notes about a PNG call it.
 const BYTES: &str = "the 8-bit rounding";
 
-/// Name of the rounding of pixels in an EXR, for [`certificate`].
+/// Name of the rounding to 32-bit floats, as the notes about an EXR call it.
 const FLOATS: &str = "the 32-bit rounding";
 
 /// Returns the certificate of an exact part of the picture: the bound on the error of its means,

@@ -151,8 +151,8 @@ impl OutputFolder {
             .map_err(|error| NotWritten { path, error })
     }
 
-    /// Reads the list from the folder, and replaces `hashes` by those in the list. Returns the
-    /// list's file as it was read.
+    /// Reads `.pinhole`, the list of the files that Pinhole wrote into the folder, and sets
+    /// `hashes` to the hashes in it. Returns `.pinhole` as it was read.
     fn read_list(&mut self) -> Result<Original, NotWritten> {
         let path = self.path.join(LIST);
         let list = read_list_file(&path).map_err(|error| NotWritten::new(&path, error))?;
@@ -160,7 +160,8 @@ impl OutputFolder {
         Ok(list)
     }
 
-    /// Writes the list if it has changed. Fails if its file is no longer `original`.
+    /// Writes `hashes` into the list `.pinhole`, unless the file already contains them. Fails if
+    /// the file is no longer `original`.
     fn write_list(&self, original: &Original) -> Result<(), NotWritten> {
         let text = self.list();
         if original.bytes() == Some(text.as_bytes()) {

@@ -14,16 +14,16 @@ use crate::color::linear_to_srgb;
 const STEPS: f64 = 255.0;
 
 /// Bound of the rounding errors of decoding and encoding a channel, in steps of 8-bit sRGB. A
-/// difference counts as larger than a tolerance only if it exceeds it by more than this bound. It
-/// covers a few roundings of numbers up to 255, and the gap of at most 3e-8 of the range between
-/// the two pieces of the sRGB curve.
+/// difference counts as larger than a tolerance only if it exceeds the tolerance by more than this
+/// bound. The bound covers a few roundings of numbers up to 255, and the gap between the two pieces
+/// of the sRGB curve, which is at most 3e-8 of the range.
 const SLACK: f64 = 1e-5;
 
-/// Maximum slope of the sRGB curve, which it has at black, in steps of 8-bit sRGB per unit of
-/// linear light. It converts a bound of linear light to a bound in steps.
+/// Slope of the sRGB curve at black, where it is steepest, in steps of 8-bit sRGB per unit of
+/// linear light. An error bound in linear light, multiplied by it, is a bound in steps.
 const STEEPEST: f64 = 12.92 * STEPS;
 
-/// Names of a pixel's channels.
+/// Names of a pixel's channels, in the order in which a film stores them.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// Largest difference of a channel that still counts as equal.
@@ -189,7 +189,8 @@ fn heat(steps: f64) -> [f64; 3] {
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
 }
 
-/// Converts linear light to steps of 8-bit sRGB: from 0 to 1 to the range from 0 to 255.
+/// Encodes linear light as sRGB, in 8-bit steps: 0 becomes 0, and 1 becomes 255. The result is not
+/// rounded.
 fn steps(light: f64) -> f64 {
     STEPS * linear_to_srgb(light)
 }

@@ -140,7 +140,7 @@ impl Jpeg {
 /// Returns whether a JPEG continues to its end marker. Decoders fill a truncated file with gray
 /// below the cut, which looks like a picture.
 pub fn is_whole(bytes: &[u8]) -> bool {
-    /// The marker in front of entropy-coded data.
+    /// Second byte of the marker (start of scan) that precedes the entropy-coded data.
     const SCAN: u8 = 0xda;
     const END: u8 = 0xd9;
     // This is the position after the start marker of the file.

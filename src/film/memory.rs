@@ -66,7 +66,7 @@ fn available() -> Option<u64> {
 
 fn machine() -> Option<u64> {
     let table = read_system_text("/proc/meminfo")?;
-    // The table gives numbers of KiB.
+    // The numbers in `/proc/meminfo` are in KiB.
     Some(entry(&table, "MemAvailable:")? * 1024)
 }
 
@@ -96,13 +96,14 @@ fn left(group: &Path) -> Option<u64> {
     Some(limit.saturating_sub(usage.saturating_sub(cache)))
 }
 
-/// Returns the number after `name` in the first line of `table` that begins with `name`.
+/// Returns the number after `name` in the first line of `table` that begins with `name`. `table` is
+/// the text of a system file such as `/proc/meminfo`.
 fn entry(table: &str, name: &str) -> Option<u64> {
     let entry = table.lines().find_map(|line| line.strip_prefix(name))?;
     entry.split_whitespace().next()?.parse().ok()
 }
 
-/// Formats a number of bytes for people.
+/// Formats a number of bytes with a binary unit, such as `1.5 GiB`.
 fn size(bytes: u64) -> String {
     const UNITS: [&str; 7] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
     let power = bytes.max(1).ilog2() / 10;

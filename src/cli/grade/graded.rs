@@ -55,8 +55,8 @@ pub struct Finding<'j> {
     pub message: &'j str,
     pub help: &'j str,
     pub set: Vec<&'j str>,
-    /// Share that the mistake explains of the squared difference from the exact picture, as far as
-    /// noise does not explain it.
+    /// Share of the difference that the mistake explains: the squared difference from the exact
+    /// picture, without the part that noise explains.
     pub explains: f64,
 }
 

@@ -81,13 +81,13 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of inputs per measured input. Only one input of this many is measured (the errors of the
-/// distance and of the point that are seen), since a measurement takes longer than a decision.
+/// One of this many inputs is measured, besides being decided: the errors of the distance and of
+/// the point that are seen. A measurement takes longer than a decision.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Mean number of searches for a boundary per search by the oracle. The other searches use
-/// Pinhole's decisions, since a search by the oracle takes about six times as long as testing
-/// beside the boundary.
+/// On average, one of this many boundaries between colours is searched for with the oracle's
+/// decisions, the others with Pinhole's. A search with the oracle takes about six times as long as
+/// testing the inputs beside the boundary.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {

@@ -151,8 +151,8 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes
 }
 
-/// Makes text from outside safe to print anywhere. Control characters are made visible, and the two
-/// other characters that XML cannot contain are replaced.
+/// Makes text from outside, such as a scene's name, safe to print anywhere. Control characters are
+/// made visible, and the two other characters that XML cannot contain are replaced.
 pub fn printable(text: &str) -> String {
     visible_line(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }
