@@ -80,10 +80,10 @@ pub fn half_byte(k: u8) -> f64 {
 /// Returns whether `light`, in linear light, is darker than the light whose sRGB value is `k` +
 /// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // Double-doubles decide most cases; integers alone would take half the time of rendering a
-    // small picture. In units of the double-double rounding, the relative errors are at most 4 for
-    // light^5, 11 for scale^12, 1 for the product of these, 11 for x^12, and 1 for the difference,
-    // in sum less than 32.
+    // Bound on the relative rounding error of `difference` below. Double-doubles decide most cases;
+    // integers alone would take half the time of rendering a small picture. In units of the
+    // double-double rounding, the relative errors are at most 4 for light^5, 11 for scale^12, 1 for
+    // the product of these, 11 for x^12, and 1 for the difference, in sum less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));

@@ -436,7 +436,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
 /// Returns a sentence about which objects are right and which are not. If there are more than 12
 /// objects, it lists only those that are not right, at most 12.
 fn objects(verdict: &Verdict) -> String {
-    /// Maximum number of objects that the sentence lists.
+    /// Maximum number of objects that the sentence lists. If the scene has more, those that are
+    /// right are only counted.
     const MOST: usize = 12;
     let all = &verdict.objects;
     let is_all = all.len() <= MOST;

@@ -14,8 +14,8 @@ use crate::{
     schema, suggest,
 };
 
-/// Maximum width of a line, in columns, even if the terminal is wider, since longer lines are hard
-/// to read.
+/// Maximum width of a printed page, in columns, even if the terminal is wider, since longer lines
+/// are hard to read.
 const WIDEST: usize = 90;
 
 /// Prints the page of `args.words`, or the list of all codes if there are no words.

@@ -31,7 +31,7 @@ use crate::{
 /// caption.
 type SheetCell = (Scene, String);
 
-/// Gap between two cells, and around all cells, in pixels.
+/// Gap between two cells of the sheet, and around all cells, in pixels.
 const GAP: u32 = 12;
 /// Colour of the frame around each picture, in sRGB bytes.
 const FRAME: [u8; 3] = [192; 3];

@@ -20,13 +20,13 @@ use super::{
     write::{Purpose, check_writable, write},
 };
 
-/// File name of the list of Pinhole's files.
+/// Name of the file in which the names and the hashes of Pinhole's files in the folder are listed.
 const LIST: &str = ".pinhole";
 
-/// First line of the list of Pinhole's files.
+/// First line of the file [`LIST`], for people who open it.
 const HEAD: &str = "# Files that pinhole made here, and replaces unless they were changed\n";
 
-/// Maximum length of the list of Pinhole's files, in bytes. A longer list is an error.
+/// Maximum length of the file [`LIST`], in bytes. A longer one is an error.
 const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum length, in bytes, of a file that Pinhole wrote into the folder. A longer file cannot be

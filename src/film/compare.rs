@@ -179,7 +179,7 @@ pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLar
     Ok(map)
 }
 
-/// Legend of a heat map's colours.
+/// Text that explains the colours of a heat map ([`heat_map`]) to users.
 pub const HEAT_LEGEND: &str =
     "black: within the tolerance; red: 85 steps of 255; yellow: 170; white: 255 (linear)";
 

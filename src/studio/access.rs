@@ -24,7 +24,7 @@ use subtle::ConstantTimeEq as _;
 
 use crate::lock::lock;
 
-/// Path of the WebSocket.
+/// Path at which the host accepts WebSocket connections of the page.
 pub const SOCKET: &str = "/socket";
 
 /// Lifetime of the token in the address with which the host starts a browser; later, the token is

@@ -18,7 +18,7 @@ use crate::files;
 /// A function that reads a file up to the maximum length of a scene.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
-/// Time for which a draft is stored: 30 days.
+/// Time for which a draft is stored, 30 days; an older one is removed.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
 /// Maximum number of drafts of a scene. If there are more, the oldest are removed.

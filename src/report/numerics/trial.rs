@@ -81,13 +81,13 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// One of this many inputs is measured, besides being decided: the errors of the distance and of
+/// Number of decided inputs for each input that is also measured: the errors of the distance and of
 /// the point that are seen. A measurement takes longer than a decision.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// On average, one of this many boundaries between colours is searched for with the oracle's
-/// decisions, the others with Pinhole's. A search with the oracle takes about six times as long as
-/// testing the inputs beside the boundary.
+/// Average number of searches for a boundary between colours, of which one uses the oracle's
+/// decisions and the others use Pinhole's. A search with the oracle takes about six times as long
+/// as testing the inputs beside the boundary.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {

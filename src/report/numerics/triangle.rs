@@ -23,7 +23,7 @@ pub const CASES: &[Case] = &[
     Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
-/// Lengths of the sides of the triangle in the assignment.
+/// Lengths of the sides of the triangle in figure 9.9, the picture of the assignment.
 const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
 
 fn tiny(random: &mut CaseRng) -> CaseScene {

@@ -17,7 +17,7 @@ sphere Ball { center (-1, 1, 0) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// Names of pictures, and the arguments of `render` that make them.
+/// Rows of a picture's file name and the arguments of `render` that make the picture.
 const PICTURES: &str = "
     right.png -> --set sampler.method=exact
     red.png -> --set sampler.method=exact --set image.background=red
