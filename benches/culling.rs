@@ -28,7 +28,7 @@ use self::one_by_one::one_by_one;
 /// other work on the machine only makes a render slower.
 const ROUNDS: usize = 3;
 
-/// How samples are traced.
+/// How the samples of a picture are traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     /// Each sample by itself, with the quadtree finding the objects that its ray may hit.

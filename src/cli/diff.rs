@@ -234,7 +234,7 @@ fn write_heat_map(
     Ok(())
 }
 
-/// The result of a comparison, for output.
+/// Result of `diff`, which is printed as text or as JSON.
 struct DiffReport {
     names: [String; 2],
     sizes: [[u32; 2]; 2],

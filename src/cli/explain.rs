@@ -39,7 +39,7 @@ pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     Ok(Status::Done)
 }
 
-/// Style of headings.
+/// Style in which the headings of a printed page stand out.
 #[derive(Clone, Copy)]
 enum Headings {
     Plain,

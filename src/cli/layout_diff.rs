@@ -64,7 +64,7 @@ struct LineCursor<'t> {
     text: &'t str,
     /// Index of the next line.
     next: usize,
-    /// Byte at which the next line starts.
+    /// Offset of the byte at which the next line starts.
     at: usize,
     /// Number of characters before the next line, except white space.
     solid_before: usize,

@@ -24,11 +24,11 @@ use crate::{
 
 /// A rendered picture, with pixels in the precision that is needed.
 pub enum RenderedPicture {
-    /// Means in 64-bit floats.
+    /// Means of the pixels in linear light, in 64-bit floats.
     Light(Rendered),
-    /// Means rounded to 32-bit floats.
+    /// Means of the pixels in linear light, rounded to 32-bit floats.
     Floats(Rendered<[f32; 3]>),
-    /// Bytes of sRGB.
+    /// Pixels rounded to bytes of sRGB.
     Bytes(Rendered<[u8; 3]>),
 }
 
@@ -79,11 +79,11 @@ impl RenderedPicture {
 /// are needed for something else, for example to show the picture in the terminal.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeptPixels {
-    /// Means in 64-bit floats.
+    /// Means of the pixels in linear light, in 64-bit floats.
     Light,
-    /// Means rounded to 32-bit floats.
+    /// Means of the pixels in linear light, rounded to 32-bit floats.
     Floats,
-    /// Bytes of sRGB.
+    /// Pixels rounded to bytes of sRGB.
     Bytes,
 }
 
@@ -184,18 +184,19 @@ pub enum PictureOutput {
 /// How the path of a file was chosen.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum PathChoice {
-    /// By the command line.
+    /// The user named it on the command line.
     Explicit,
-    /// From the scene's name. A file is replaced only if it is in the scene's folder.
+    /// It was derived from the scene's name. An existing file is replaced only if it is in the
+    /// scene's folder.
     BesideScene,
 }
 
 /// Format of a picture's file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum FileFormat {
-    /// Bytes of sRGB. The file also carries the scene.
+    /// PNG with bytes of sRGB. The file also carries the scene.
     Png,
-    /// Floats in linear light.
+    /// OpenEXR with floats in linear light.
     Exr,
 }
 

@@ -24,7 +24,7 @@ pub struct Sweep {
 
 /// One scene of a sweep.
 pub struct SweepStep {
-    /// The `--set` argument of the scene.
+    /// The `--set` argument that makes this scene from the one in the file.
     pub set: String,
     /// The argument with its value rounded to few digits, for a caption.
     pub label: String,

@@ -48,9 +48,9 @@ impl Tolerance<'_> {
 /// The result of comparing two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Number of columns.
+    /// Number of columns of both pictures.
     pub width: u32,
-    /// Number of rows.
+    /// Number of rows of both pictures.
     pub height: u32,
     /// Root mean square of the differences of all channels of all pixels, in linear light, 0 to 1.
     pub rmse: f64,
@@ -66,17 +66,17 @@ pub struct Comparison {
 /// The largest difference of a channel, and its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Largest {
-    /// The difference, in steps of 8-bit sRGB.
+    /// Difference between the two values of the channel, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// The pixel's column.
+    /// Column of the pixel.
     pub x: u32,
-    /// The pixel's row.
+    /// Row of the pixel.
     pub y: u32,
     /// The channel: 0 for red, 1 for green, 2 for blue.
     pub channel: usize,
-    /// Value in the first picture, in steps of 8-bit sRGB, 0 to 255.
+    /// Value of the channel in the first picture, in steps of 8-bit sRGB, 0 to 255.
     pub a: f64,
-    /// Value in the second picture, in steps of 8-bit sRGB, 0 to 255.
+    /// Value of the channel in the second picture, in steps of 8-bit sRGB, 0 to 255.
     pub b: f64,
 }
 

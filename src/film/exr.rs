@@ -39,9 +39,9 @@ use crate::{area::Area, files::Sink};
 /// A film of linear light, in either precision.
 #[derive(Clone, Copy, Debug)]
 pub enum LinearFilm<'a> {
-    /// Means in `f64`.
+    /// Means of the pixels as `f64`.
     Means(&'a Film),
-    /// Means rounded to 32-bit floats.
+    /// Means of the pixels, rounded to 32-bit floats.
     Floats(&'a Film<[f32; 3]>),
 }
 

@@ -29,9 +29,9 @@ pub struct Jpeg {
 /// coefficient is rounded to a multiple of its step. The first step belongs to the block's mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
-    /// Square of the first step, which is that of the block's mean.
+    /// Square of the first step, by which the mean of a block is quantized.
     pub first: f64,
-    /// Mean of the squares of the steps.
+    /// Mean of the squares of all 64 steps.
     pub mean: f64,
     /// The steps, row by row.
     pub steps: [u16; 64],

@@ -14,9 +14,9 @@ use crate::files::read_system_text;
     .available.map_or("more than there is".to_owned(), |there| format!("and {} are available", size(there)))
 )]
 pub struct TooLarge {
-    /// Number of columns of pixels.
+    /// Width of the picture, in pixels.
     pub width: u32,
-    /// Number of rows of pixels.
+    /// Height of the picture, in pixels.
     pub height: u32,
     /// Number of bytes that the picture needs.
     pub needed: u64,

@@ -24,7 +24,7 @@ pub enum Start {
     /// One byte for each character. The number of bytes before the letter P is 0, or 3 if the file
     /// begins with a byte order mark.
     Plain(usize),
-    /// In UTF-16.
+    /// UTF-16: two bytes for each character.
     Utf16 {
         /// Length of the byte order mark, in bytes.
         mark: usize,

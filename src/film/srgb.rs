@@ -14,7 +14,7 @@ use crate::color::half_byte;
 /// the table [`Encoder::start`] has the byte at which encoding begins its search.
 const PARTS: usize = 4096;
 
-/// An encoder of linear light as bytes.
+/// Encoder of linear light as bytes of sRGB.
 pub struct Encoder {
     /// For each byte k below 255, the linear light whose sRGB value is k + 1/2, in 8-bit steps.
     /// From this light on, the byte is k + 1.
@@ -36,7 +36,7 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Encodes a pixel.
+    /// Encodes the channels of a pixel as bytes of sRGB.
     pub fn pixel(&self, light: [f64; 3]) -> [u8; 3] {
         light.map(|channel| self.encode(channel))
     }

@@ -103,7 +103,7 @@ struct Conversation<'a> {
 struct Download {
     request: Value,
     watch: Arc<Watch>,
-    /// Time of the last progress message.
+    /// Time at which the last progress message was sent.
     last_progress: Instant,
     thread: JoinHandle<Message>,
 }

@@ -214,8 +214,8 @@ fn inspect_reports_what_is_visible_of_each_object() {
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
         // The sphere's silhouette is an ellipse from 41.5 to 29.2 pixels left of the picture's
-        // centre. In a view plane at 1 m, where 1 m is 50 pixels, the silhouette of a sphere with
-        // distance c and depth z has the area
+        // centre. In a view plane at 1 m, where 1 m is 50 pixels, the silhouette of a sphere of
+        // radius r, whose centre has the distance c and the depth z, has the area
         //     π·r²·√(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),

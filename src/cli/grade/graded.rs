@@ -11,7 +11,7 @@ use crate::cli::Status;
 /// A student, with the results of the submitted pictures.
 pub struct GradedStudent {
     pub name: String,
-    /// Number of the submission in Moodle.
+    /// Number that Moodle gives the submission; `None` if Moodle did not collect it.
     pub number: Option<String>,
     /// Path of the student's folder or file, for output.
     pub place: String,

@@ -266,7 +266,8 @@ impl FileTree {
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
         for names in files.chain(&self.folders) {
             match &names[..] {
-                // The argument itself is the class.
+                // The metadata lies beside the folders of the argument itself, which is therefore
+                // the class.
                 [name] if name == METADATA => return Vec::new(),
                 [root, name, ..] => inner.entry(root).or_default().push(name),
                 _ => {}

@@ -9,7 +9,7 @@ use crate::{
     scene::Lens,
 };
 
-/// The cases of spheres.
+/// Hard cases of spheres, in the order of the catalogue.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "S1a", title: "rays that nearly touch a sphere", bound: 1.0, subject: Seen(silhouettes) },

@@ -12,11 +12,11 @@ use crate::scene::Method;
 pub struct Estimate {
     /// Samples per pixel; `None` for the exact method.
     pub per_pixel: Option<f64>,
-    /// CPU time in seconds.
+    /// Estimated CPU time, in seconds.
     pub cpu: f64,
     /// Least and greatest CPU time estimated from single runs, in seconds.
     pub cpu_runs: [f64; 2],
-    /// Elapsed time in seconds.
+    /// Estimated elapsed time, in seconds.
     pub wall: f64,
     /// Whether the error lies beyond the measured range, so that the estimate is extrapolated.
     pub is_extrapolated: bool,

@@ -49,7 +49,7 @@ fn write_escaped(out: &mut fmt::Formatter<'_>, value: &Value) -> fmt::Result {
     }
 }
 
-/// Returns the template's values for a scene.
+/// Returns the values that the page's template inserts into the section of a scene.
 fn section(measured: &Measurement) -> io::Result<Value> {
     let summary = table(measured, &measured.errors);
     let overrides = measured.subject.overrides.iter().map(|set| printable(set));

@@ -17,7 +17,7 @@ pub struct MeasuredScene {
     pub overrides: Vec<String>,
 }
 
-/// The user's request.
+/// What the user asks to be measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// Methods to measure, possibly including `exact`.
@@ -32,7 +32,7 @@ pub struct Request {
     pub budget: Duration,
 }
 
-/// Results of a measurement.
+/// Results of measuring a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// The measured scene.
@@ -57,7 +57,7 @@ pub struct Measurement {
     pub interrupted: bool,
 }
 
-/// Results of a sampled method.
+/// Results of a sampled method on a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodSeries {
     /// Method that was measured.
@@ -74,11 +74,11 @@ pub struct MethodSeries {
 pub struct SeriesPoint {
     /// Samples per pixel; for `scatter` the mean number.
     pub per_pixel: u64,
-    /// Renders with this number of samples.
+    /// Timed renders with this number of samples per pixel.
     pub runs: Vec<Run>,
 }
 
-/// A timed render.
+/// Times and error of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
     /// CPU time of the whole process in seconds, summed over all threads. NaN if the system does
@@ -94,7 +94,7 @@ pub struct Run {
 /// A method's picture that a page shows next to those of other methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodPicture {
-    /// Samples per pixel.
+    /// Samples per pixel of the picture.
     pub per_pixel: u64,
     /// CPU time of the render, in seconds.
     pub cpu: f64,
@@ -102,7 +102,7 @@ pub struct MethodPicture {
     pub rmse: f64,
     /// Part of the picture that the page shows; it is the same for every method.
     pub part: Area,
-    /// Pixels of `part`.
+    /// Pixels of the part of the picture that the page shows.
     pub film: Film,
 }
 

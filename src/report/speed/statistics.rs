@@ -28,7 +28,7 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 /// (Draper and Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
-    /// Exponent b, the slope of the line.
+    /// Exponent b of the power law, which is the slope of the line.
     pub slope: f64,
     /// Standard error of b; `None` for fewer than four points. With three points and two fitted
     /// parameters, only one degree of freedom is left, and the standard error would mean next to

@@ -445,7 +445,7 @@ fn the_folders_of_a_class_may_be_listed() {
         ("class/ben/render.png", "red.png"),
         ("class/cy/out/x.png", "red.png"),
         ("class/dora.png", "right.png"),
-        // These are two classes.
+        // The folders `one` and `two` are two classes.
         ("one/anna/x.png", "right.png"),
         ("two/anna/x.png", "red.png"),
         ("two/ben.png", "red.png"),

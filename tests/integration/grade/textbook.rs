@@ -43,9 +43,9 @@ pub enum Encoding {
     Srgb,
     /// Does not encode: the byte is proportional to the light.
     None,
-    /// Encodes twice by the curve of sRGB.
+    /// Encodes the light by the sRGB curve, and the result once more.
     Twice,
-    /// Encodes by the reciprocal of a power.
+    /// Encodes by a power whose exponent is the reciprocal of this number.
     Power(f64),
 }
 
@@ -171,7 +171,7 @@ pub struct Program {
     /// Ratio of the window's width to its correct width.
     pub aspect: f64,
     pub axes: Axes,
-    /// Factor by which all light is multiplied.
+    /// Factor by which all light is multiplied; 1 is correct.
     pub gain: f64,
     /// Whether the near and far depths are compared with distances instead of depths.
     pub clips_distances: bool,
@@ -217,7 +217,7 @@ impl Program {
         self.object(name).map(|object| &mut object.shape)
     }
 
-    /// Renders the picture.
+    /// Renders the picture of the scene as this program does.
     pub fn render(&self) -> RgbImage {
         let [width, height] = self.size;
         let backward = match self.axes {
