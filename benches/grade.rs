@@ -58,7 +58,7 @@ fn main() {
     for count in 0..4 {
         for &size in &sizes {
             for &sampling in &samplings {
-                // Pairs and triples of mistakes are tested in the middle size only.
+                // Pairs and triples of mistakes are tested only in pictures of the middle size.
                 if count > 1 && size != SIZES[1] {
                     continue;
                 }

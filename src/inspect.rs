@@ -320,7 +320,7 @@ impl Inspection {
     }
 }
 
-/// Formats a camera for people: its axes, its field of view, and the axes' vanishing points.
+/// Formats a camera as readable text: its axes, its field of view, and the axes' vanishing points.
 pub fn camera_summary(camera: &CameraFacts, vanishing_points: &[Option<[f64; 2]>; 3]) -> String {
     let mut text = format!("camera    looks {}\n", camera.looks);
     let vectors = [

@@ -240,7 +240,7 @@ struct DiffReport {
     sizes: [[u32; 2]; 2],
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    /// The verdict on A; `None` if B is not a scene.
+    /// The verdict on the picture A; `None` if B is not a scene.
     verdict: Option<Verdict>,
     is_strict: bool,
 }

@@ -22,7 +22,7 @@ use crate::{
     tracer::World,
 };
 
-/// A rendered picture, with pixels in the precision that is needed.
+/// A rendered picture, with its pixels in the precision that the output needs.
 pub enum RenderedPicture {
     /// Means of the pixels in linear light, in 64-bit floats.
     Light(Rendered),
@@ -51,7 +51,7 @@ impl RenderedPicture {
         }
     }
 
-    /// Returns notes for people on the error bounds of an exact picture; empty for a sampled
+    /// Returns notes for the user on the error bounds of an exact picture; empty for a sampled
     /// picture. `part` is the part of the whole picture that was rendered.
     pub fn notes(&self, part: Area, output: &PictureOutput) -> String {
         match self {

@@ -27,7 +27,7 @@ use crate::{
     tracer::World,
 };
 
-/// A cell of the sheet: a scene whose picture has the size that it has on the sheet, and its
+/// A cell of the sheet: a scene, whose picture is already reduced to its size on the sheet, and its
 /// caption.
 type SheetCell = (Scene, String);
 

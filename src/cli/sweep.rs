@@ -13,7 +13,7 @@ use crate::{
 /// Maximum number of scenes in a sweep. A sweep with more is rejected.
 const MOST: usize = 1000;
 
-/// The target and the range of a sweep.
+/// The argument of `--sweep`: the target, the ends of its range, and the number of scenes.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     target: String,

@@ -33,7 +33,7 @@ const LIST_LIMIT: u64 = 16 << 20;
 /// Pinhole's, so it is not replaced.
 const FILE_LIMIT: u64 = 256 << 20;
 
-/// A folder for the files of a command.
+/// A folder for the output files of a command, in which no file of the user is replaced.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
@@ -239,7 +239,7 @@ fn refused(message: &str) -> io::Error {
 
 const LINK: &str = "it is a symbolic link, and nothing is written outside of the folder";
 
-/// Reads the list's file at a path, if it exists. Fails if the path is a symbolic link.
+/// Reads the file [`LIST`] at `path`, if it exists. Fails if the path is a symbolic link.
 fn read_list_file(path: &Path) -> io::Result<Original> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => return Err(io::Error::other(LINK)),
@@ -250,7 +250,8 @@ fn read_list_file(path: &Path) -> io::Result<Original> {
     Original::read(path, |path| read(path, LIST_LIMIT))
 }
 
-/// Parses the list of Pinhole's files. Returns the hashes of each file by its name.
+/// Parses the content of the file [`LIST`]. Returns the hashes of each file in the list, by its
+/// name.
 fn parse_list(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
     let Some(bytes) = list.bytes() else {
         return Ok(BTreeMap::new());

@@ -36,7 +36,7 @@ use super::{
 };
 use crate::{area::Area, files::Sink};
 
-/// A film of linear light, in either precision.
+/// A film of linear light, in 64-bit or in 32-bit floats.
 #[derive(Clone, Copy, Debug)]
 pub enum LinearFilm<'a> {
     /// Means of the pixels as `f64`.

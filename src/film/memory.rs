@@ -20,7 +20,7 @@ pub struct TooLarge {
     pub height: u32,
     /// Number of bytes that the picture needs.
     pub needed: u64,
-    /// Number of available bytes; `None` if it is unknown.
+    /// Number of bytes of memory that are available; `None` if it is unknown.
     pub available: Option<u64>,
 }
 

@@ -27,7 +27,7 @@ pub struct SceneFile {
     path: Option<PathBuf>,
     /// Content at the time when the file was last read or saved.
     content: FileText,
-    /// Number of contents so far, which increases with each change.
+    /// Number of contents that the file has had so far; each change adds one.
     version: u64,
     /// Watches the file for changes. If it is `None`, a change is found only on saving.
     watch: Option<Arc<Latest<FileContent>>>,

@@ -155,7 +155,7 @@ fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
 
 fn worksheet_name(args: &GradeArgs) -> Option<String> {
     let name = args.worksheet.as_ref()?.file_name()?.to_string_lossy();
-    // The page's own files have the other names in the folder.
+    // `grade` writes files of its own under these names, so such a worksheet gets another name.
     Some(if FILES.contains(&&*name) {
         format!("moodle-{name}")
     } else {

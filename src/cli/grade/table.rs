@@ -19,7 +19,7 @@ pub fn figures(one: &GradedStudent) -> [String; 2] {
     }
 }
 
-/// Returns a table for people: a row for each student, with details below the row.
+/// Returns the readable table: a row for each student, with details below the row.
 pub fn table(graded: &[GradedStudent]) -> String {
     let widest = graded
         .iter()

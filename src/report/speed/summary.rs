@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 
-/// A table with a row for each method.
+/// Table of a measurement, with a row for each method.
 pub struct SummaryTable {
     /// Column headings. A line feed marks where a heading may break if the column is narrow.
     pub heads: Vec<String>,

@@ -81,7 +81,7 @@ fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
     Some(label)
 }
 
-/// Returns a line for each definition and block, with the fields of each block.
+/// Formats document symbols: a line for each definition and block, with the fields of each block.
 fn outline(symbols: &[Symbol]) -> String {
     let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
     let lines = symbols.iter().map(|symbol| {

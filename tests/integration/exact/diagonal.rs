@@ -1,13 +1,13 @@
-//! The exact picture of a board seen along a diagonal of its squares. There, squares contribute
-//! most to a pixel even if they are too small to be visible.
+//! The exact picture of a board where the rays of a pixel run along a diagonal of its squares.
+//! There, squares contribute most to a pixel even if they are too small to be visible.
 
 use super::*;
 
 /// Compares pixels of black and white boards with values from independent computations, within the
-/// errors of these values. In the widest views, whose view plane distance `d` is tiny, the eye is
-/// above the line x = z and looks along it. The board to the left of this line is then the mirror
-/// image of the board to the right, except for rounding errors of the eye's coordinates. Two of the
-/// values are sums of millions of terms, computed with 40 digits for the limit d = 0.
+/// errors of these values. The view plane distance `d` is so tiny that all rays nearly lie in one
+/// vertical plane, which meets the board in a diagonal of its squares. The board is symmetric about
+/// this diagonal, except for rounding errors of the eye's coordinates. Two of the values are sums
+/// of millions of terms, computed with 40 digits for d = 0.
 #[test]
 fn independently_known_pixels_lie_within_the_bound() {
     for [image, camera, board, x, y, truth, off] in rows("

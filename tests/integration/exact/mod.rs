@@ -33,7 +33,8 @@ fn part(scene: &Scene, area: Area) -> Exact {
     render_exact(&World::new(scene), area, &Control::default()).unwrap()
 }
 
-/// Returns generated scenes of `size`, in which all numbers have ordinary magnitudes.
+/// Returns generated scenes in which all numbers have ordinary magnitudes. Their pictures have the
+/// size `size`, in pixels.
 fn ordinary(size: [u32; 2], seed: u64) -> impl Iterator<Item = Scene> {
     generated(Numbers::Wild(0), size, seed).map(|(_, scene)| scene)
 }

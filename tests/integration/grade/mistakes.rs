@@ -245,7 +245,7 @@ const OTHERS: &[Mistake] = &[
     row("eye_lookat_exchanged", |p| {
         (p.eye, p.lookat) = (p.lookat, p.eye)
     }),
-    // The scene's lens has 40 degrees, and half of them are taken for 20 radians.
+    // The field of view is 40°. The program takes half of it, 20°, for 20 radians.
     row("fov_unit", |p| p.distance = 1.0 / libm::tan(20.0)),
     row("colors_exchanged", |p| {
         let colors = ["Ball", "Crate"].map(|name| p.object(name).map(|object| object.color));
