@@ -1,4 +1,4 @@
-//! A check before a picture is allocated whether there is enough memory.
+//! Checks whether there is enough memory for a picture before it is allocated.
 
 use std::path::Path;
 

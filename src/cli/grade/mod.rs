@@ -5,8 +5,8 @@
 //!    and `glob` selects pictures.
 //! 2. Each student's pictures are compared and judged (`graded`), and `points` computes a score
 //!    from the verdict by `criteria`.
-//! 3. The result is written by `table` for people and as CSV, by `page` with `thumbnails` as HTML,
-//!    and by `junit`, `gradescope` and `moodle`.
+//! 3. The result is written by `table` as readable text and as CSV, by `page` with `thumbnails` as
+//!    HTML, and by `junit`, `gradescope` and `moodle`.
 
 mod archive;
 mod class;

@@ -1,4 +1,4 @@
-//! Writes the results of a class as a table, for people and as CSV.
+//! Writes the results of a class as a table, in readable form and as CSV.
 
 use std::iter;
 

@@ -232,7 +232,8 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // The colour changes at the pixel's edge.
+            // This pixel has a single colour, so the boundary is the edge between it and the next
+            // one.
             low = high;
         }
         // Bisect down to neighbouring `f64`s. Near 0, 130 steps end at a distance that is smaller

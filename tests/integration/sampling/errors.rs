@@ -150,8 +150,8 @@ fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
         Method::Halton,
         Method::Sobol,
     ] {
-        // This computes the slope of the least-squares line through five equidistant logarithms,
-        // and the slope's standard error.
+        // This computes the slope of the least-squares line through the logarithms of the errors at
+        // the five counts, whose own logarithms are equidistant, and the slope's standard error.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {
             let nothing = std::iter::repeat(0.0);
