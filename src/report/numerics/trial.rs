@@ -232,8 +232,7 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // This pixel has a single colour, so the boundary is the edge between it and the next
-            // one.
+            // The pixel begins and ends with one colour, so the colour changes at its far edge.
             low = high;
         }
         // Bisect down to neighbouring `f64`s. Near 0, 130 steps end at a distance that is smaller
