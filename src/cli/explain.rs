@@ -128,7 +128,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     Err(Trouble(format!("nothing is known about `{word}`: {hint}")))
 }
 
-/// Appends to a page why the method is good at what it is good at, if `word` is a method.
+/// Appends to `page` the reasons why a sampling method works well, if `word` is the name of one.
 fn with_reasons(page: String, word: &str) -> String {
     let section = schema::method(word).and_then(|_| explain::section_of(explain::SAMPLING, word));
     match section.and_then(|section| section.split_once("\n\n")) {

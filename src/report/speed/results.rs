@@ -50,7 +50,7 @@ pub struct Measurement {
     pub errors: Vec<f64>,
     /// The exact picture, with which all renders are compared.
     pub reference: Exact,
-    /// Pixels in which methods can err.
+    /// Shares of the pixels in which a sampling method can err.
     pub mixture: Mixture,
     /// Renders by the exact method, if it was requested.
     pub exact: Option<Vec<Run>>,
@@ -81,11 +81,11 @@ pub struct SeriesPoint {
     pub runs: Vec<Run>,
 }
 
-/// The slope of a method's error against samples, both logarithmic, at the [`end`] of its series.
-/// The error falls as the power `slope` of the number of samples.
+/// Slope of a method's error against the number of samples, both logarithmic, at the [`end`] of its
+/// series. There, the error is proportional to the power `slope` of the number of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndSlope {
-    /// Slope of the line of least squares.
+    /// Slope of the line of least squares through the logarithms.
     pub slope: f64,
     /// Standard error of the slope, from the slopes of single runs; `None` for fewer than three
     /// runs.
@@ -93,18 +93,18 @@ pub struct EndSlope {
 }
 
 impl EndSlope {
-    /// Minimum steepness for which more samples are said to help, so that measured noise is not
-    /// taken for a slope.
+    /// Minimum value of −`slope` at which the report says that more samples help. A smaller one may
+    /// be noise of the measurement.
     const LEAST: f64 = 0.05;
 
-    /// Returns by how much four times the samples divide the error, 4^−b. Returns `None` if more
-    /// samples do not help.
+    /// Returns the factor by which four times as many samples divide the error, 4^−`slope`. Returns
+    /// `None` if more samples do not help.
     pub fn divisor(&self) -> Option<f64> {
         (self.slope < -Self::LEAST).then(|| libm::pow(4.0, -self.slope))
     }
 
-    /// Returns by how much the samples must be multiplied for a tenth of the error, 10^(−1/b).
-    /// Returns `None` if more samples do not help.
+    /// Returns the factor of samples that divides the error by ten, 10^(−1/`slope`). Returns `None`
+    /// if more samples do not help.
     pub fn cost_of_a_tenth(&self) -> Option<f64> {
         (self.slope < -Self::LEAST).then(|| libm::pow(10.0, -1.0 / self.slope))
     }
@@ -143,7 +143,7 @@ pub struct MethodPicture {
     pub part: Area,
     /// Pixels of the part of the picture that the page shows.
     pub film: Film,
-    /// Difference of that part from the exact picture, as a heat map.
+    /// Heat map of the difference between this part and the exact picture.
     pub difference: Film,
 }
 

@@ -145,8 +145,8 @@ pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     SummaryTable { heads, rows }
 }
 
-/// Returns the cells of a slope: the slope, by how much four times the samples divide the error,
-/// and how many times the samples a tenth of the error costs.
+/// Returns the three cells about a slope: the slope, the factor by which four times as many samples
+/// divide the error, and the factor of samples that divides the error by ten.
 fn slopes(found: Option<EndSlope>) -> [String; 3] {
     let divisor = factor(found.and_then(|it| it.divisor()));
     let cost = found.and_then(|it| it.cost_of_a_tenth());
