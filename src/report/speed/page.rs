@@ -139,8 +139,8 @@ fn whole(measured: &Measurement) -> io::Result<Value> {
 /// Factor by which the page magnifies the part of a picture that it shows for each method.
 const MAGNIFIED: u32 = 5;
 
-/// Returns the values that the template inserts into a figure: a picture and, below it, the heat map
-/// of its difference from the exact picture.
+/// Returns the values that the template inserts into a figure: a picture and, below it, the heat
+/// map of its difference from the exact picture.
 fn picture(film: &Film, difference: Option<&Film>, name: &str, about: String) -> io::Result<Value> {
     let difference = difference.map(film::data_uri).transpose()?;
     Ok(value! {

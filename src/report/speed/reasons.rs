@@ -1,5 +1,5 @@
-//! Explains why sampling methods differ in a scene, in sentences with the numbers that were measured
-//! there.
+//! Explains why sampling methods differ in a scene, in sentences with the numbers that were
+//! measured there.
 
 use super::{
     notation::{asked_error, factor, percent, samples},
