@@ -10,8 +10,8 @@ use crate::{
 /// two seconds. After it is used up, a pixel counts as showing only what is seen at its centre.
 const MAX_WORK: u64 = 40_000_000;
 
-/// Mixed pixels, those that show more than one colour, as shares of all pixels of a picture, 0 to
-/// 1. A sampling method can only err in mixed pixels.
+/// Shares, from 0 to 1, of the mixed pixels among all pixels of a picture. A mixed pixel shows more
+/// than one colour; only there can a sampling method err.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
     /// Share of the pixels that an edge crosses: several objects, or an object and the background,
