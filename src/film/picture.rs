@@ -87,7 +87,7 @@ pub enum Coding {
 }
 
 impl Coding {
-    /// Returns a warning for people who compare such a picture. Returns `None` for
+    /// Returns a warning for users who compare a picture with this coding. Returns `None` for
     /// [`Exact`](Self::Exact).
     pub fn warning(self) -> Option<&'static str> {
         match self {

@@ -16,8 +16,7 @@ pub enum Numbers {
     /// planes and pass through corners and along edges; faces lie in common planes, or at the near
     /// and far depths.
     MultiplesOf(f64),
-    /// Whole, round and other numbers. A percentage of them, which is given, may have any
-    /// magnitude.
+    /// Whole, round and other numbers. The given percentage of them may have any magnitude.
     Wild(u64),
 }
 

@@ -72,7 +72,8 @@ const BEGINNINGS: &[(&str, Criterion)] = &[
     ("behind_seen", Criterion::Hits),
     ("depth_ignored", Criterion::Hits),
     ("sphere_", Criterion::Hits),
-    // The message of such a mistake may name an object. Then this object is the criterion instead.
+    // The message of a mistake with one of the prefixes below may name an object. Then this object
+    // is the criterion instead.
     ("object_", Criterion::Hits),
     ("box_", Criterion::Hits),
     ("faces_", Criterion::Hits),

@@ -117,7 +117,7 @@ fn a_new_file_appears_complete_and_replaces_nothing() {
     assert_eq!(folder.read("a"), b"new");
     let error = new("there").unwrap_err();
     assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
-    // Writing also fails if the other file appears while this one is being written.
+    // Writing a new file also fails if another program creates one of this name meanwhile.
     let path = folder.path("b");
     let late = files::write(&path, Purpose::New, &AtomicBool::new(false), |out| {
         folder.write("b", "theirs");

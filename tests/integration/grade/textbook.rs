@@ -52,7 +52,7 @@ pub enum Encoding {
 /// Which of the surfaces that a ray hits the program shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
-    /// The nearest surface.
+    /// The nearest surface, which is correct.
     Nearest,
     /// The surface of the first object in the scene.
     First,
@@ -65,11 +65,11 @@ pub enum Visible {
 /// How the program treats surfaces behind the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Behind {
-    /// They are not visible.
+    /// Surfaces behind the eye are not visible, which is correct.
     Unseen,
-    /// They are compared by their distance, as if they were before the eye.
+    /// Surfaces behind the eye are compared by their distance, as if they were before it.
     ByDistance,
-    /// They count as nearer than all surfaces before the eye.
+    /// Surfaces behind the eye count as nearer than all surfaces before it.
     First,
 }
 
