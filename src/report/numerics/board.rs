@@ -1,5 +1,5 @@
-//! Planes and checkerboards: horizons, integers, extreme heights and distances, and coplanar
-//! surfaces.
+//! Hard cases of planes and checkerboards: horizons, integers, extreme heights and distances, and
+//! coplanar surfaces.
 
 use glam::{DVec3, dvec3};
 

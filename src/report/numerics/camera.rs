@@ -1,5 +1,5 @@
-//! Cases of the camera: up vectors nearly parallel to the view, directions of all lengths, rolls,
-//! lenses, and wide pictures.
+//! Hard cases of the camera: up vectors nearly parallel to the view, directions of all lengths,
+//! rolls, lenses, and wide pictures.
 
 use glam::{DVec3, dvec3};
 

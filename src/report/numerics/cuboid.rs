@@ -1,4 +1,5 @@
-//! Boxes: rays in the planes of faces, eyes inside and on the surface, thin boxes and neighbours.
+//! Hard cases of boxes: rays in the planes of faces, eyes inside and on the surface, thin boxes and
+//! neighbours.
 
 use glam::{DVec3, dvec3};
 

@@ -1,4 +1,5 @@
-//! Spheres: tangents, small and distant ones, huge ones, and eyes inside and on the surface.
+//! Hard cases of spheres: tangents, small and distant ones, huge ones, and eyes inside and on the
+//! surface.
 
 use glam::{DVec3, dvec3};
 

@@ -1,4 +1,4 @@
-//! The table of the cases, for people and for programs.
+//! The results of all hard cases as a readable table and as JSON.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! Triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices behind the
-//! eye.
+//! Hard cases of triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices
+//! behind the eye.
 
 use glam::{DVec3, dvec3};
 

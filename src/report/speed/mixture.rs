@@ -1,4 +1,5 @@
-//! How many pixels of a picture have more than one colour, and why.
+//! Counts the mixed pixels of a picture, which show more than one colour, and tells those that an
+//! edge crosses from those of a checkerboard alone.
 
 use crate::{
     exact::Integrator,
