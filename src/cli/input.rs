@@ -156,7 +156,7 @@ impl SceneInput {
         reading.scene.ok_or(Trouble::SceneErrors)
     }
 
-    /// Returns the report about the scene's problems, for people.
+    /// Returns the report about the scene's problems as readable text.
     pub fn report(&self, reading: &Reading) -> String {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }

@@ -92,8 +92,9 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // An empty line has the same number of solid characters before it as the line after
-                // it. Where these numbers are equal, the empty line is passed first.
+                // The text whose next line has fewer characters before it, not counting white
+                // space, is advanced first; if equally many, the one whose next line is empty;
+                // otherwise both.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),

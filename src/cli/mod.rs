@@ -114,7 +114,7 @@ fn print_answer(answer: &clap::Error) -> ExitCode {
     }
 }
 
-/// Runs `one` on each scene in turn, and prints errors. Returns the worst status.
+/// Runs `one` on each scene in turn, and prints errors. Returns the worst of the exit statuses.
 fn each(
     scenes: &[PathBuf],
     interrupt: &Interrupt,

@@ -336,7 +336,7 @@ impl Conversation<'_> {
         }
     }
 
-    /// Cancels the download of a request, or any download for `None`.
+    /// Cancels the download that the request `wanted` has started, or any download if it is `None`.
     fn cancel(&self, wanted: Option<&Value>) {
         if let Some(download) = &self.download
             && wanted.is_none_or(|wanted| *wanted == download.request)

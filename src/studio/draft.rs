@@ -24,7 +24,7 @@ const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 /// Maximum number of drafts that are stored for a scene. If there are more, the oldest are removed.
 const MOST: usize = 10;
 
-/// A text that is not saved.
+/// Draft: a text that a page has not saved.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Unsaved {
     /// The key under which a page stores the draft. Each page has a key of its own.

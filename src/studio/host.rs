@@ -38,11 +38,11 @@ use super::{
 /// respond.
 const FAREWELL: Duration = Duration::from_millis(500);
 
-/// The page's HTML.
+/// HTML of Studio's page, as `npm run build` writes it.
 const INDEX: &str = include_str!("../../studio/page/dist/index.html");
-/// The page's script.
+/// Script of Studio's page, as `npm run build` writes it.
 const SCRIPT: &[u8] = include_bytes!("../../studio/page/dist/studio.js");
-/// The page's style sheet.
+/// Style sheet of Studio's page, as `npm run build` writes it.
 const STYLE: &[u8] = include_bytes!("../../studio/page/dist/studio.css");
 
 /// The host of a page on this machine, and the scene that the page edits.

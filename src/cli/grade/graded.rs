@@ -13,7 +13,7 @@ use crate::{
 /// A student, with the results of the submitted pictures.
 pub struct GradedStudent {
     pub name: String,
-    /// Number of the submission in Moodle.
+    /// Number that Moodle gives the submission; `None` if Moodle did not collect it.
     pub number: Option<String>,
     /// Path of the student's folder or file, for output.
     pub place: String,
@@ -67,8 +67,8 @@ impl JudgedPicture {
         matches!(self.verdict.kind, Kind::Right | Kind::Noise)
     }
 
-    /// Returns the number of independent samples per pixel that would be as noisy. Returns `None` if
-    /// the picture is wrong, because its mistakes would count as noise.
+    /// Returns the number of independent samples per pixel with which a picture is as noisy as this
+    /// one. Returns `None` if this picture is wrong, because its mistakes would count as noise.
     pub fn samples(&self) -> Option<f64> {
         self.verdict.samples.filter(|_| self.is_right())
     }
