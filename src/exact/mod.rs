@@ -94,7 +94,7 @@ const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged per piece, in units of about 50 ns. Work constants need not be precise, because
 /// they only stop computations that take too long.
 const PIECE_WORK: f64 = 100.0;
-/// Work charged per object of a piece, in units of about 50 ns.
+/// Work charged per candidate object of a piece, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
 /// Work charged per ordered pair of curves in a piece with a conic, in units of about 50 ns.
 /// Without it, the regions' work accounts for only half of the time measured for a heap of 10⁴
@@ -118,7 +118,7 @@ pub struct ExactPixel<const N: usize = 3> {
 pub struct Integrator<'a, const N: usize = 3> {
     world: &'a World,
     quartering: Quartering<'a>,
-    /// Values of each colour, by palette slot.
+    /// Values of each colour of the world's palette, by its index there (slot).
     colors: Vec<[f64; N]>,
     /// Error bound that is requested, as a fraction of the pixel's area.
     tolerance: f64,

@@ -58,11 +58,12 @@ pub(super) struct BoardLanes {
     few: FormRows,
     many: FormRows,
     below: FormRows,
-    /// Sign for each pixel: 1 if the pixel's first square has the first colour, −1 if it has the
-    /// second. The first square has the smallest number in each family of lines.
+    /// Sign for each pixel: 1 if the pixel's first square has the board's first colour, −1 if it
+    /// has the second. The first square is the one with the smallest number in each family of
+    /// lines.
     sign: Lanes,
-    /// Number of the square at each corner of the pixel, counted in the family with fewer lines
-    /// from the pixel's smallest number.
+    /// Number of the square at each corner of the pixel, for each pixel. It is counted in the
+    /// family with fewer lines, from the smallest number in the pixel.
     squares: [Lanes; 4],
 }
 
@@ -114,7 +115,7 @@ impl LaneSums {
         let (value, bound) = (self.values[pixel], self.bounds[pixel]);
         BoundedSum {
             value,
-            // If squares are extremely large, products overflow to NaN.
+            // If squares are extremely large, products overflow, and the sum is NaN.
             bound: if value.is_nan() { f64::INFINITY } else { bound },
         }
     }
@@ -258,8 +259,8 @@ impl BoardLanes {
                     } else {
                         whole
                     };
-                    // If the form has the same value at both ends, the crossing is undetermined,
-                    // and the cut fails.
+                    // If the form has the same value at both ends of the pixel's side, the crossing
+                    // is undetermined, and the cut fails.
                     let known = if start == end { f64::INFINITY } else { 1.0 };
                     crossed[0][i] = if starts_below & !ends_below {
                         known
