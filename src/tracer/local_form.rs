@@ -18,15 +18,16 @@ use crate::{
 };
 
 /// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
-/// values of its factors. It counts one rounding for each factor, one for its division by the error
-/// bound, and two for products and sums, because offsets are at most ½.
+/// values of the form's factors. It counts one rounding for each factor, one for the factor's
+/// division by the error bound ([`LocalForm::line`]), and two for products and sums, because
+/// offsets are at most ½.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
-/// absolute values of its factors. Each of the six terms has at most five roundings; 16 roundings
-/// of the sum cover them.
+/// absolute values of the form's factors. Each of the six terms has at most five roundings; the
+/// terms' products and sums stay within 16 roundings of that sum.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
-/// Error bound of products below the normal numbers. Each of at most 16 products loses at most half
-/// of the least number.
+/// Error bound for underflow in the value of a form: each of its at most 16 products may be too
+/// small for a normal number, and then loses at most half of the least positive number.
 const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
@@ -46,8 +47,8 @@ pub struct LocalForm {
     pub rad: f64,
 }
 
-/// A linear form divided by its error bound, as factors of x, y and 1. Its sign is certain where
-/// its value is above 1 or below −1.
+/// A linear form divided by its error bound, as factors of x, y and 1. The sign of the form is
+/// certain where the quotient is above 1 or below −1.
 pub type ScaledLine = [f64; 3];
 
 /// A quadratic form of the offset (x, y) from the centre of a [`Patch`], in units of its sides. It
@@ -145,7 +146,7 @@ impl LocalForm {
             .map(|i| self.factors[i].abs() + (k * other.factors[i]).abs())
             .sum();
         let factors = [0, 1, 2].map(|i| self.factors[i] - k * other.factors[i]);
-        // The product and the difference are rounded once each.
+        // The product k·`other` and the difference are rounded once each.
         let inherited = self.rad + k.abs() * other.rad + sizes * (2.0 * f64::UNIT);
         Self::new(factors, inherited)
     }
@@ -176,8 +177,8 @@ impl LocalQuadratic {
         }
     }
 
-    /// Returns the form divided by its error bound. The sign of the result is certain where its
-    /// value is above 1 or below −1.
+    /// Returns the form divided by its error bound. The sign of the form is certain where the
+    /// quotient is above 1 or below −1.
     pub fn certain(&self) -> Self {
         Self {
             factors: self.factors.map(|factor| factor / self.rad),

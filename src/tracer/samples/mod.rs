@@ -89,7 +89,8 @@ pub fn count(
     }
 }
 
-/// Replaces the pixel's list of colours by those that may be seen in it, each with the count 0.
+/// Replaces the pixel's list of colours by those that may be seen in the pixel, each with the count
+/// 0.
 fn may_see(world: &World, pixel: &mut PreparedPixel) {
     let color = |code: f64, slot: usize| ColorCount {
         code,

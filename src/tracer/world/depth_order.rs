@@ -50,8 +50,8 @@ pub(super) fn order_to_clip<T: Real>(
     // A surface in the near or far plane leaves doubt about the other plane only if the two planes
     // are equal.
     let at = (index, crossing.part);
-    // Planes may differ only after hundreds of bits. The highest precision finds this out, but
-    // takes long to prepare; it is therefore used last.
+    // Planes may differ only after hundreds of bits. Only the highest precision finds this out, but
+    // objects take long to prepare in it; it is therefore tried last.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }

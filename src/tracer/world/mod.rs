@@ -248,7 +248,7 @@ impl World {
     ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // Objects at or below this nearness are hidden.
+        // Nearness of the nearest crossing so far: objects that are nowhere nearer are hidden.
         let mut hidden = Nearness::NONE;
         let visit = |index| {
             if self.meet(&r, index, &mut nearest)?
