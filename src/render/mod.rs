@@ -135,7 +135,7 @@ fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area>
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
 }
 
-/// Returns the result, or [`RenderError::Cancelled`] if the render was cancelled.
+/// Returns the result of a render, or [`RenderError::Cancelled`] if the render was cancelled.
 fn finished<T>(result: Mutex<T>, control: &Control) -> Result<T, RenderError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);

@@ -12,14 +12,15 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of samples in a slice: about 10 ms of work for two processors and a few objects.
-/// A pixel with more samples is a slice of its own, because pixels are not divided.
+/// Maximum number of samples in a slice of a picture: about 10 ms of work for two processors and a
+/// few objects. A pixel with more samples is a slice of its own, because pixels are not divided.
 pub const SLICE: u64 = 1 << 20;
 
-/// Work of an exactly computed pixel, in samples that take as long. Measured on figure 9.9.
+/// Work of an exactly computed pixel, as the number of samples that take as long. Measured on
+/// figure 9.9.
 const EXACT_PIXEL_WORK: u64 = 64;
 
-/// A picture that is partly rendered.
+/// A picture of which some slices are rendered.
 #[derive(Debug)]
 pub struct Slices<P> {
     sampling: Sampling,
@@ -89,7 +90,7 @@ impl<P: Pixel> Slices<P> {
     }
 }
 
-/// Returns the work of one pixel, in samples, which is at least 1.
+/// Returns the work of one pixel, as the number of samples that take as long. It is at least 1.
 pub fn pixel_work(sampling: &Sampling) -> u64 {
     if sampling.is_exact() {
         return EXACT_PIXEL_WORK;
