@@ -9,7 +9,7 @@ use crate::{
     tracer::Basis,
 };
 
-/// A camera as numbers in `f64`.
+/// Eye, axes and pixel size of a camera in `f64`, by which points are projected.
 #[derive(Clone, Copy, Debug)]
 pub struct Projection {
     /// Position of the eye, in world coordinates.

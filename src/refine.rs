@@ -21,7 +21,7 @@ use glam::DVec2;
 /// sample per pixel.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
-/// A picture in blocks.
+/// A picture in square blocks, each of one colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coarse {
     /// Side of a block, in pixels.

@@ -60,13 +60,13 @@ impl Arc {
         triangle * triangle_share(self.weight)
     }
 
-    /// Returns the point at the parameter `t`, from 0 to 1.
+    /// Returns the point of the arc at the curve's parameter `t`: 0 is the start, 1 the end.
     pub(crate) fn at(&self, t: f64) -> DVec2 {
         let (point, weight) = self.blossom(t, t);
         point / weight
     }
 
-    /// Returns the part of the arc between the parameters `t0` and `t1`.
+    /// Returns the part of the arc between the curve's parameters `t0` and `t1`.
     pub(crate) fn between(&self, t0: f64, t1: f64) -> Self {
         let (start, w0) = self.blossom(t0, t0);
         let (control, w) = self.blossom(t0, t1);

@@ -65,8 +65,9 @@ use self::{
     region::{Regions, Shares},
 };
 
-/// Error bound that is requested by default, as a fraction of the pixel's area. It is a little
-/// below 1e-9, so that the result is within 1e-9 even after the rounding of sums.
+/// Default of the requested error bound: the fraction of a pixel's area that may have a wrong
+/// colour. It is a little below 1e-9, so that the result is within 1e-9 even after the rounding of
+/// sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// Maximum number of curves that pass through a whole pixel; with more, the pixel is quartered
 /// before anything is computed. n curves cross at about n² points, where all curves have to be
@@ -120,7 +121,7 @@ pub struct Integrator<'a, const N: usize = 3> {
     quartering: Quartering<'a>,
     /// Values of each colour of the world's palette, by its index there (slot).
     colors: Vec<[f64; N]>,
-    /// Error bound that is requested, as a fraction of the pixel's area.
+    /// Requested error bound: the fraction of a pixel's area that may have a wrong colour.
     tolerance: f64,
     work: PictureWork,
 }
@@ -185,7 +186,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Sets the requested error bound, as a fraction of the pixel's area.
+    /// Sets the requested error bound: the fraction of a pixel's area that may have a wrong colour.
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
@@ -219,7 +220,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut curves = Vec::new();
         let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
-        // Checkerboard pixels that the batches cannot compute accurately enough.
+        // Checkerboard pixels that are computed alone, because the batches are not accurate enough.
         let mut deferred = Vec::new();
         let is_over = || cancel.load(Relaxed) || self.work.is_exceeded();
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
@@ -260,10 +261,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Calls `show` with each area of one colour and with each other pixel, together with the share
-    /// of each colour by palette slot. The world must be made by [`World::by_object`]. Above the
-    /// work limit, a pixel's middle counts for the whole pixel. Returns whether all shares are
-    /// known to within 1e-6.
+    /// Calls `show` with each area in which only one object is seen, and with each other pixel,
+    /// together with the objects' shares, by palette slot. The world must be made by
+    /// [`World::by_object`], so that slots stand for objects. Above the work limit, a pixel's
+    /// middle counts for the whole pixel. Returns whether all shares are known to within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();

@@ -174,7 +174,7 @@ impl<'a> Regions<'a> {
             // Intermediate results have overflowed, so the shares are meaningless.
             return self.unknown();
         }
-        // The error of a channel is at most 1.
+        // The error of a channel of the pixel's mean colour is at most 1.
         shares.bound = shares.bound.min(1.0);
         shares
     }
@@ -244,8 +244,8 @@ impl LocalBoard {
 }
 
 impl Shares {
-    /// Adds the shares of a part of this area; `area` is the part's area as a fraction of the
-    /// whole.
+    /// Adds the shares of `part`, a part of this pixel or sub-pixel. `area` is the part's area as a
+    /// fraction of the whole.
     pub fn add_part(&mut self, part: &Self, area: f64) {
         for &(slot, share) in &part.by_slot {
             self.add(slot, area * share);

@@ -198,8 +198,8 @@ impl<T: Real> Ball<T> {
             };
         }
         let mid = self.mid.over(&other.mid);
-        // The denominator is bounded from below: |b'| is at least |b| minus the radius of b. The
-        // error is then at most |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|.
+        // a' and b' are the true numbers, and |b'| is at least `least`, |b| minus the radius of b.
+        // The error is then at most |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|.
         let least = other.size().without(other.rad * UP);
         let lost = underflow_loss::<T>(self.mid.is_zero());
         let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;

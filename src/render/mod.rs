@@ -46,8 +46,8 @@ pub struct Control<'a> {
     /// Number of threads; `None` for the default number, which is one per processor or the
     /// process's limit.
     pub threads: Option<NonZero<usize>>,
-    /// Called, from any thread, with the number of samples, or exact pixels, finished since the
-    /// last call.
+    /// Function that is called, from any thread, with the number of samples, or of exact pixels,
+    /// finished since its last call.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,

@@ -39,8 +39,8 @@ impl<P: Pixel> Slices<P> {
     ///
     /// There is not enough memory for the picture.
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
-        // The side of a slice is a power of two. A slice therefore consists of whole squares of the
-        // tracer's grid, or lies within one.
+        // The side of a slice is a power of two. A slice therefore consists of whole squares with
+        // which the tracer's quartering begins, or lies within one of them.
         let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
             film: Film::new(width, height)?,

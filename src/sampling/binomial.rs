@@ -49,7 +49,8 @@ fn heads(rng: &mut impl Rng, n: u64) -> u64 {
         .sum()
 }
 
-/// Draws the number of heads of `n` fair coins by BTRS with p = 1/2, for large `n`.
+/// Draws the number of heads of `n` fair coins, for large `n`, by transformed rejection (BTRS) with
+/// p = 1/2.
 fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     let deviation = n.sqrt() / 2.0;
     let b = 1.15 + 2.53 * deviation;

@@ -9,14 +9,14 @@ use super::{
     rng::{Key, scale},
 };
 
-/// The cells, and the strata along their sides.
+/// Cells of equal area in a pixel, and the strata along their sides.
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,
     /// Divisions of the pixel's width into columns: those of a short row of cells, and those of a
     /// longer row.
     columns: [Strata; 2],
-    /// Division of the pixel's height into n parts; a row of n_k cells is n_k parts tall.
+    /// Division of the pixel's height into n parts; a row of k cells is k parts tall.
     rows: Strata,
 }
 

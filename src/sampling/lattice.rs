@@ -43,7 +43,7 @@ pub struct Strata {
     n: u64,
     /// Minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
     least: u64,
-    /// All strata, and the one that would follow the last; empty if n is large.
+    /// All strata, and the one that would follow the last; empty if n exceeds [`MAX_STORED`].
     stored: Vec<Stratum>,
 }
 

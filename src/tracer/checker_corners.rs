@@ -35,8 +35,8 @@ const MIN_CLEARANCE: f64 = 4.0;
 /// corner lies in the middle half of that square's width.
 const MAX_ERROR: f64 = 0.25;
 
-/// Maximum side of a block of pixels, in pixels. It is also the side of the squares with which
-/// quartering begins.
+/// Maximum side of a block of pixels at whose corners the board's squares are computed together, in
+/// pixels. It is also the side of the squares with which quartering begins.
 pub(super) const SIDE: usize = 32;
 
 /// Number of entries for the pixel corners in a row of a block: there are 33 corners, rounded up to

@@ -351,7 +351,8 @@ impl Conic {
         let determinant = a * c - b * b;
         hold((b * e - c * d) / determinant, (b * d - a * e) / determinant);
         let size = 0.25 * (a.abs() + 2.0 * b.abs() + c.abs()) + d.abs() + e.abs() + f.abs();
-        // The form is a sum of six terms of three roundings each.
+        // The form is a sum of six terms, of three roundings each; 16 roundings of `size` cover
+        // them.
         let rad = self.rad + 16.0 * f64::UNIT * size;
         Interval {
             low: range.low - rad,

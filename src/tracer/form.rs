@@ -13,7 +13,7 @@ use crate::math::{Ball, Ball3, Double, Real, UP};
 pub struct Form<T: Real> {
     /// The factors a, b and c of X, Y and 1.
     factors: [T; 3],
-    /// Error bound of a computed value.
+    /// Error bound of a computed value of the form in the camera's window.
     rad: T::Radius,
     /// Error bounds of a value per unit of |X|, |Y| and |Z| of the ray's direction; only in the
     /// highest precision, big numbers. The bound `rad` holds in the whole window, and in the middle
@@ -70,7 +70,7 @@ impl<T: Real> Form<T> {
         &self.factors
     }
 
-    /// Returns the error bound of a computed value.
+    /// Returns the error bound of a computed value of the form in the camera's window.
     pub fn rad(&self) -> T::Radius {
         self.rad
     }

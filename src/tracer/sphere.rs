@@ -107,8 +107,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // No other precision follows. The errors are therefore bounded for this ray alone: in
-            // the middle of the widest views, they are far smaller than elsewhere.
+            // This is the highest precision, after which no other is tried. The errors are
+            // therefore bounded for this ray alone: in the middle of the widest views, they are far
+            // smaller than elsewhere.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,

@@ -21,12 +21,13 @@ pub(super) const MAX_TERMS: usize = 20;
 /// longest sum, 300,000 crossings, has 74 such blocks.
 const MAX_BLOCKS: f64 = 128.0;
 
-/// Minimum number of crossings in a block of a sum. With this many, choosing the block's number of
-/// terms is a small part of the work. Not critical: with 4 or 64, the measured running time changes
-/// by at most about 10 %.
+/// Minimum number of crossings in a block of the sum over an edge's crossings. With this many,
+/// choosing the block's number of terms is a small part of the work. Not critical: with 4 or 64,
+/// the measured running time changes by at most about 10 %.
 const MIN_BLOCK: f64 = 16.0;
-/// Maximum number of crossings in a block of a sum, which limits the rounding error of the block.
-/// Not critical: with 1024 or 16,384, the measured running time changes by at most about 10 %.
+/// Maximum number of crossings in a block of the sum over an edge's crossings, which limits the
+/// rounding error of the block. Not critical: with 1024 or 16,384, the measured running time
+/// changes by at most about 10 %.
 const MAX_BLOCK: f64 = 4096.0;
 
 /// Number of running sums, over which consecutive crossings are distributed in turn. It is even, so
@@ -173,7 +174,7 @@ impl LineCrossings {
         ((sums[0] - sums[1]) + (sums[2] - sums[3])) + ((sums[4] - sums[5]) + (sums[6] - sums[7]))
     }
 
-    /// Returns t at crossing `j`, in half turns, reduced by whole turns.
+    /// Returns the edge's coordinate t at crossing `j`, in half turns, reduced by whole turns.
     pub(super) fn reduced_at(&self, j: &Double) -> Double {
         let [t, stride] = &self.reduced;
         reduce_double(&t.plus(&stride.times(j)))

@@ -67,7 +67,7 @@ const ONLY_FINITE_TAIL: f64 = 1.0;
 /// polygon of a larger area may use that area, in square pixels, as its fraction.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
-/// Table of (k + 1)!/2, with the index k.
+/// Factors (k + 1)!/2 of the terms of the series X ([`EdgeSeries`]), by the index k.
 pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
     let mut k = 1;
@@ -78,8 +78,9 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     all
 };
 
-/// Integrates the board's sign over a convex polygon in which the depth changes little from square
-/// to square. The polygon must lie in `visible` and may reach the horizon.
+/// Integrates the board's sign (1 on squares of one colour, −1 on the others) over a convex polygon
+/// in which the depth changes little from square to square. The polygon must lie in `visible`, the
+/// part of the picture's polygon that shows the floor, and may reach the horizon.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -223,9 +224,10 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
-/// An edge of a polygon, directed from its near end to its far end. Of the two coordinates (a, b)
-/// on the board's plane, t is the one that changes more along the edge, and c is the other. The sum
-/// over the edge's crossings runs over the lines of constant c.
+/// An edge of a polygon, directed from its near end to its far end, with the symbols of the
+/// module's documentation. Of the two coordinates (a, b) on the board's plane, t is the one that
+/// changes more along the edge, and c is the other; m is the depth. The sum over the edge's
+/// crossings runs over the lines of constant c.
 struct Edge {
     /// Sign of the integral ρ·∫ s(c) dX in the polygon's sum: +1 if the boundary runs from the near
     /// to the far end and t is b, or if neither holds; otherwise −1.

@@ -26,7 +26,8 @@ const MIN_DETERMINANT: f64 = 1e-100;
 /// hundredth of the default tolerance.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
-/// An integral of the board's sign and a bound on its absolute error, both in square pixels.
+/// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound
+/// on its absolute error, both in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::exact) struct BoundedSum {
     pub value: f64,
@@ -127,7 +128,7 @@ impl BoundedSum {
     }
 }
 
-/// Evaluates the linear form `c` at the point `p`.
+/// Returns c0·x + c1·y + c2, the value of the linear form `c` at the point `p`.
 pub(in crate::exact) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
 }

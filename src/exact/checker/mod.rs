@@ -42,9 +42,9 @@ pub(super) use self::{
 /// Green's theorem. Beyond this distance, term n of the series X is at most n/(18π) of the previous
 /// term. The 20 terms therefore reach 20!/(18π)²⁰, about 2e-17.
 const NEAR_SQUARES: f64 = 18.0;
-/// Maximum number of squares in a polygon whose squares are all cut out one by one, however far
-/// away they are. Not critical: with 6 or 96, the measured running time changes by at most about 10
-/// %.
+/// Number of squares in a polygon up to which all of them are cut out one by one, however far away
+/// they are; with more, only near squares are. Not critical: with 6 or 96, the measured running
+/// time changes by at most about 10 %.
 const MAX_CUT_SQUARES: f64 = 24.0;
 /// Maximum depth m = 1/L ([`Homography`]) at which squares are cut out one by one. The distance to
 /// the horizon in the picture is then only a thousand rounding errors, because the largest factor

@@ -391,8 +391,8 @@ mod tests {
 
     #[test]
     fn they_are_the_integrals() {
-        // The integral is summed by the midpoint rule in x, where v = x/(1 − x), so that the
-        // integrand is (1 − x)·e^(iyv).
+        // Number of steps of the midpoint rule that sums the integral for comparison. The rule runs
+        // over x, where v = x/(1 − x), so that the integrand is (1 − x)·e^(iyv).
         const STEPS: u32 = 400_000;
         for y in [0.0, 0.01, 0.7, 3.5, 12.0] {
             let mut sum = [0.0; 2];

@@ -122,9 +122,9 @@ impl LaneSums {
 }
 
 impl BoardLanes {
-    /// Sets the board of the pixel with the index `place`. `families` has the indices of the two
-    /// families, the one with fewer lines first. `first` has the smallest number of a square in the
-    /// pixel for each family, in the order of the board's forms.
+    /// Sets the board of that one of the eight pixels which has the index `place`. `families` has
+    /// the indices of the two families, the one with fewer lines first. `first` has the smallest
+    /// number of a square in the pixel for each family, in the order of the board's forms.
     pub fn set(
         &mut self,
         place: usize,
@@ -248,8 +248,9 @@ impl BoardLanes {
                     let place = start / (start - end);
                     let place = if place > 0.0 { place } else { 0.0 };
                     let place = if place < 1.0 { place } else { 1.0 };
-                    // In the last strip, both ends count as before the line, so that all parts
-                    // reach to the ends of their sides.
+                    // After the last strip, there is no line. Both ends of each side of the pixel
+                    // then count as before the line, so that all parts reach to the ends of their
+                    // sides.
                     let (starts_below, ends_below) =
                         (is_last | (here[i] < n), is_last | (next[i] < n));
                     let is_up = next[i] >= here[i];

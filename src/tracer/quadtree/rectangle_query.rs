@@ -18,8 +18,8 @@ pub(super) struct Search<'a, F> {
     rectangle: &'a Rectangle,
     /// Maximum number of entries of lists in `found`, where an object may occur several times.
     most: usize,
-    /// Called with an object that fills the rectangle, returns a nearness; objects at or below it
-    /// are hidden.
+    /// Function that is called with an object that fills the rectangle, and returns a nearness;
+    /// objects at or below it are hidden.
     behind: F,
     /// Nearness at and below which objects are hidden by the objects found so far.
     hidden: Nearness,
