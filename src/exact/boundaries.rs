@@ -195,7 +195,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
-                // All boards are parallel, and their common silhouette is the horizon.
+                // Boards are all parallel, so that two of them do not intersect. Their common
+                // silhouette, the horizon, is among the outlines.
                 let are_parallel = is_board(a) && is_board(b);
                 if !apart && !are_parallel {
                     take(BoundarySource::Pair(i, j))?;

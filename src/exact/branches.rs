@@ -185,8 +185,8 @@ impl<'a> ConicSpan<'a> {
         if !y[1].is_finite() {
             return None;
         }
-        // If the curvature has one sign, the distance from the chord is nowhere more than twice the
-        // distance in the middle.
+        // If the branch's curvature has one sign, the branch is nowhere farther from its chord than
+        // twice its distance in the middle, `sagitta`.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;

@@ -213,7 +213,8 @@ impl Homography {
                     .across
                     .map(|across| square_wave(form(&across, middle) * depth));
                 let mut segment = over_one_square(piece.area(), a * b);
-                // Rounding errors displace the lines of the board.
+                // Rounding errors of the forms displace the lines of the board, which changes the
+                // integral.
                 segment.bound += self.displacement_error(&[piece.start, piece.control, piece.end]);
                 chords.sum.add(segment);
                 chords.points.push(piece.end);

@@ -333,8 +333,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue grows by copying to twice the memory, and the old memory exists
-                // until then.
+                // A full queue of pieces grows by copying to twice the memory; the old memory
+                // exists until then.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -406,7 +406,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let widths = (0..N).map(|i| greatest[i] - least[i]);
         ExactPixel {
             mean: array::from_fn(|i| least[i].midpoint(greatest[i])),
-            // The values are at most 1, and each has been rounded twice.
+            // The ends of the range are at most 1, and each has been rounded twice.
             bound: 0.5 * widths.fold(0.0, f64::max) + 4.0 * UNIT,
         }
     }

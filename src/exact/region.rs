@@ -171,7 +171,7 @@ impl<'a> Regions<'a> {
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // Intermediate results have overflowed, so the shares are meaningless.
+            // Intermediate results must have overflowed, so that the shares are meaningless.
             return self.unknown();
         }
         // The error of a channel of the pixel's mean colour is at most 1.
@@ -257,7 +257,8 @@ impl Shares {
         match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
             Some((_, share)) => {
                 *share += area;
-                // This is the rounding error of the sum, which is at most 1.
+                // The sum of two shares of a colour is at most 1, so that it is rounded by at most
+                // this.
                 self.bound += f64::UNIT;
             }
             None => self.by_slot.push((slot, area)),

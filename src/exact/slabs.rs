@@ -85,8 +85,8 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // If every slab leaves one pair of neighbours unseparated, the doubtful area of all slabs adds
-    // up to the tolerance at most.
+    // With one pair of unseparated neighbours in every slab, the doubtful area of all slabs adds up
+    // to at most the pixel's tolerance.
     let doubtful_limit = regions.budget.tolerance / MAX_ADDED_SLABS as f64;
     let mut all = Slabs {
         lines,
@@ -95,7 +95,8 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
         slabs: 0,
         doubtful_limit,
     };
-    // The widest slab is cut first. If there are too many slabs, only narrow ones remain uncut.
+    // The widest slab is cut first. If the number of slabs reaches its limit, only narrow ones are
+    // left uncut.
     let max_slabs = MAX_ADDED_SLABS + cuts.len();
     let slab = |left: f64, right: f64| ByKey(right - left, [left, right]);
     let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| slab(pair[0], pair[1])).collect();

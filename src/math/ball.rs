@@ -111,7 +111,7 @@ impl<T: Real> Ball<T> {
     /// Computes `self` · `power`, where `power` is a power of two.
     #[inline]
     pub fn times_power(&self, power: f64) -> Self {
-        // The product is exact unless it underflows.
+        // The product with a power of two is exact unless it underflows.
         Self {
             mid: self.mid.times(&T::from_f64(power)),
             rad: self.rad * power * UP + T::TINY,
@@ -121,7 +121,7 @@ impl<T: Real> Ball<T> {
     /// Computes `self` · 2^`exponent`.
     pub fn scaled(&self, exponent: i32) -> Self {
         let mid = self.mid.scaled(exponent);
-        // The product is exact unless it underflows.
+        // The product with a power of two is exact unless it underflows.
         let lost = underflow_loss::<T>(self.mid.is_zero());
         Self {
             mid,

@@ -132,7 +132,7 @@ impl Real for Double {
         if self.hi == 0.0 {
             return *self;
         }
-        // One step of Newton's method from the root in `f64`; the residual is in double-double.
+        // One step of Newton's method improves the root in `f64`; the residual is in double-double.
         let root = f64::sqrt(self.hi);
         let rest = self.minus(&two_product(root, root));
         quick_two_sum(root, rest.hi / (2.0 * root))

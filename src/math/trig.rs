@@ -67,7 +67,7 @@ mod tests {
         for turns in [0.0, 1.0, -1.0, 12.0, -7.0, 1e9] {
             for (quarter, (s, c)) in values.iter().enumerate() {
                 let angle = Angle::from_degrees(turns * 360.0 + quarter as f64 * 90.0);
-                // Bits are compared, because no zero may be negative.
+                // Bits are compared, because a result that is zero must not be −0.
                 let bits = [sin(angle), cos(angle)].map(f64::to_bits);
                 assert_eq!(bits, [*s, *c].map(f64::to_bits), "{angle:?}");
             }

@@ -55,8 +55,7 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // In a column with one place more than `least`, the chosen place is the same or the next
-        // one.
+        // In a column of `least` + 1 places, the chosen place is `place` or the next one.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

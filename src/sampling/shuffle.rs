@@ -137,8 +137,8 @@ mod tests {
             sum += shuffle.get(17) as f64;
             neighbours += u32::from(shuffle.get(17).abs_diff(shuffle.get(18)) == 1);
         }
-        // The mean of the entries is 3003, and its standard deviation 6007/√12/√2000 = 39. Two
-        // entries are neighbours once in 3000 cases.
+        // The mean of the 2000 entries is expected to be 3003, with a standard deviation of
+        // 6007/√12/√2000 = 39. Two successive entries are neighbouring numbers once in 3000 cases.
         assert!((sum / 2000.0 - 3003.0).abs() < 160.0, "{}", sum / 2000.0);
         assert!(neighbours < 8, "{neighbours}");
     }

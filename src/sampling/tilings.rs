@@ -73,7 +73,7 @@ pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
         Method::Sobol => vec![],
     };
     let mut grids: Vec<_> = grids.into_iter().map(Tiling::grid).collect();
-    // A grid may equal the columns or the rows.
+    // A grid that equals the columns or the rows is listed once.
     grids.dedup();
     grids
 }

@@ -263,8 +263,8 @@ impl BoardBlock {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The error bound of the block's form counts once for the factors and once for the
-            // value at the pixel's centre.
+            // The error bound of the block's form counts twice: once for the factors, and once for
+            // the value at the pixel's centre.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let CheckerForms { across, below, odd } = &self.squares;

@@ -30,7 +30,8 @@ pub struct Convex<T: Real> {
     forms: Vec<Form<T>>,
     /// Number of edges.
     edges: u8,
-    /// Number of edges and first faces together.
+    /// Number of edges and first faces together: the index in `forms` of the first of the second
+    /// faces.
     firsts: u8,
     /// Number of each face's plane: those of the first faces, then those of the second faces.
     planes: [u8; 6],

@@ -44,9 +44,9 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         faces.push((plane, inverse_depth(camera, &normal, &height)));
     }
     for (i, front) in &fronts {
-        // An edge of the silhouette lies between a front face and a back face that are not
-        // parallel. If only one face is prepared, only its own edges are needed; they imply the
-        // others.
+        // An edge of the box's silhouette lies between a front face and a back face that are not
+        // parallel. If only one face is prepared, only that face's own edges are needed; they imply
+        // the others.
         let is_bound = |j: &u8| i / 2 != j / 2 && only.is_none_or(|only| [*i, *j].contains(&only));
         let bounding = backs.iter().filter(|(j, _)| is_bound(j));
         edges.extend(bounding.map(|(_, back)| front.minus(back)));

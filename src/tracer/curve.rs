@@ -244,10 +244,10 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // The quotients and their conversion to `f64` are rounded.
+    // Unit of the rounding errors of the quotients and of their conversion to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-    // The quotient of the error bound and the conversion of the slope to `f64` are rounded, too.
+    // The error bound covers the roundings of the quotient and of the slope's conversion to `f64`.
     let rad = rad.scaled(exponent).to_f64() / slope.to_f64().abs() * (1.0 + 8.0 * f64::UNIT);
     Boundary::Line(BoundaryLine {
         factors,

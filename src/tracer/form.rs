@@ -120,8 +120,8 @@ fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius 
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
     (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
         + T::TINY * (a + b)
-        // Each of fewer than 16 products may be too small for a normal number, and then loses at
-        // most half of the least positive number.
+        // Each of fewer than 16 products may be too small for a normal number, and then has an
+        // error of at most half of the least positive number.
         + T::TINY * 8.0
 }
 

@@ -433,7 +433,8 @@ fn radii<T: Real>(
     let unit = SPHERE_ROUNDINGS * T::UNIT;
     let mut rad_q = T::Radius::ZERO;
     let mut cross = T::Radius::ZERO;
-    // Each component of c × r is a difference of two products.
+    // Each component of c × r is a difference of two products. `size` bounds the sum of the
+    // products' absolute values, and `reach` is the factor by which the centre's error counts.
     for (size, reach) in [
         (cy * z + cz * y, y + z),
         (cz * x + cx * z, x + z),

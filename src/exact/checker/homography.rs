@@ -157,8 +157,8 @@ impl Homography {
         // Squares may be of any size. N_a and N_b are therefore scaled like L, each by its own
         // power of two, before the matrix is inverted.
         let [(a, of_a), (b, of_b)] = across.map(normalized);
-        // Each column is a column of det M·M⁻¹ (`Homography`). Each of its components is accurate
-        // to two roundings of its own value.
+        // Each of `columns` is a column of det M·M⁻¹ (`Homography`). Each component is accurate to
+        // two roundings of its own value.
         let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
         let det = determinant(&a, &b, &below);
         let is_singular = det.abs() <= MIN_DETERMINANT;

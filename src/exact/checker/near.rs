@@ -188,8 +188,8 @@ impl CompensatedSum {
     fn sum(&self) -> BoundedSum {
         BoundedSum {
             value: self.value + self.rest,
-            // The absolute value of the final sum is at most 1, and the collected rounding errors
-            // are far smaller.
+            // The final sum is rounded by at most one unit roundoff, because its absolute value is
+            // at most 1. The rounding errors of adding up `rest` are far smaller.
             bound: self.bound + 2.0 * UNIT,
         }
     }

@@ -401,8 +401,8 @@ mod tests {
                 let wave = cis(y * x / (1.0 - x));
                 sum = [sum[0] + (1.0 - x) * wave[0], sum[1] + (1.0 - x) * wave[1]];
             }
-            // Near x = 1, the integrand oscillates too fast for the rule. The error is of order (1
-            // − x)².
+            // Near x = 1, the integrand oscillates too fast for the midpoint rule. The part of the
+            // integral from x on, which is then wrong, is of order (1 − x)².
             close(third(y), sum.map(|x| x / f64::from(STEPS)), 1e-4);
         }
     }

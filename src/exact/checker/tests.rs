@@ -195,7 +195,8 @@ fn pixels_of_many_squares() {
             agree(
                 view.board().alone(&PIXEL),
                 brute(view.forms(), &PIXEL),
-                // The integral is twice the mean, and so is its tolerance.
+                // A colour's share is half of the integral of signs plus a half, so that the
+                // integral's tolerance is twice that of a mean.
                 2.0 * DEFAULT_TOLERANCE,
                 view,
             );
@@ -277,7 +278,8 @@ fn the_horizon() {
             view.place = DVec2::new(0.5, y);
             let board = view.board();
             let found = board.alone(&PIXEL);
-            // The integral is twice the mean, and so is its bound.
+            // A colour's share is half of the integral of signs plus a half, so that the integral's
+            // bound may be twice that of a mean.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
             // The pixel's vertical slices have edges that cross other lines, and their crossings
             // are counted from other points.
@@ -472,7 +474,7 @@ fn nothing_is_computed_beyond_the_budget() {
 /// The integral is known if a single square reaches up to the horizon, whatever the square's size.
 #[test]
 fn a_square_that_goes_to_the_horizon_is_known() {
-    // Beyond this exponent, the forms cannot be distinguished from singular ones.
+    // With an exponent of 90 or more, the forms cannot be distinguished from singular ones.
     for exponent in 0..90 {
         let view = PixelView {
             height: libm::pow(10.0, -f64::from(exponent)),

@@ -37,7 +37,8 @@ pub fn prepare(
     (pixel.x, pixel.y) = (x, y);
     pixel.candidates.clear();
     match candidates {
-        // This is the most frequent case. `push` avoids the call to copy a slice.
+        // A pixel with a single candidate is the most frequent case. `push` avoids the call to copy
+        // a slice.
         [only] => pixel.candidates.push(*only),
         _ => pixel.candidates.extend_from_slice(candidates),
     }

@@ -114,7 +114,7 @@ fn geometric(theta: f64, lines: f64, [place, last]: [Complex; 2]) -> Complex {
         let middle = cis(half * (lines - 1.0));
         return times(place, middle.map(|x| ratio * x));
     }
-    // The sum is the difference divided by 1 − e^(iθ) = −2i·sin(θ/2)·e^(iθ/2).
+    // The sum is `difference` divided by 1 − e^(iθ) = −2i·sin(θ/2)·e^(iθ/2).
     let difference = [place[0] - last[0], place[1] - last[1]];
     let [x, y] = times(difference, cis(-half));
     [-0.5 * y / sine, 0.5 * x / sine]
@@ -163,7 +163,8 @@ mod tests {
     #[test]
     fn geometric_sums() {
         for theta in [0.0, 1e-9, -1e-3, 0.7, 3.0, -PI] {
-            // In the direct sum, angles have errors of up to 1000·3·2⁻⁵³.
+            // The tolerance allows for the errors of the direct sum: its angles have errors of up
+            // to 1000·3·2⁻⁵³.
             close(
                 geometric(theta, 1000.0, places(theta, 1000.0)),
                 one_by_one(theta, f64::INFINITY, 1000.0, 3),

@@ -54,9 +54,9 @@ const MAX_DIRECT: f64 = 20_000.0;
 /// Maximum number of crossings that are added one by one for an edge, and of the last Fourier mode
 /// that is added; the remaining ones count as an error. So many take a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Upper bound of an edge's whole sum, as a fraction of the edge's tolerance, up to which the sum
-/// is left out and counts as an error. Skipped Fourier modes may have the same fraction. The
-/// fractions of all kinds of errors add up to less than 1.
+/// Maximum size of an edge's whole sum, known by its upper bound, at which the sum is left out and
+/// counts as an error, as a fraction of the edge's tolerance. Skipped Fourier modes may have the
+/// same fraction. The fractions of all kinds of errors add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
 /// Fraction of an edge's tolerance for the error of leaving out the later terms of the series X
 /// ([`EdgeSeries`]), which are not summed by Fourier modes. Not critical: with 0.0125 or 0.2, the
@@ -144,7 +144,7 @@ fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f6
 /// than a quarter of `limit`, unless this takes more than [`MAX_TERMS_ADDED`] modes. Returns `None`
 /// if the bound is not less than `trivial`, or if the budget does not afford the modes.
 fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Option<(f64, f64)> {
-    // Σ n^−3 over the odd n beyond an integer Q is at most 1/(4Q²).
+    // The sum of n^−3 over the odd n beyond an integer Q is at most 1/(4Q²). Here, Q is `last` − 1.
     let last = ((size / limit).sqrt().ceil() + 1.0).clamp(3.0, MAX_TERMS_ADDED);
     let beyond = size / (4.0 * (last - 1.0) * (last - 1.0));
     if beyond.is_nan() || beyond >= trivial || !budget.try_charge(last * MODE_WORK) {
