@@ -1,7 +1,8 @@
 //! Renders a part of the picture with samples.
 //!
-//! In: the world, the sampling and the part. Out: the part's means, as light or as bytes. The part
-//! is divided into tiles for the threads; `renderer` renders each tile.
+//! In: the world, the positions of the samples, and the part. Out: the means of the part's pixels,
+//! as light or as bytes. The part is divided into tiles for the threads; `renderer` renders each
+//! tile.
 
 use std::sync::Mutex;
 

@@ -121,8 +121,8 @@ impl Owen {
         }
     }
 
-    /// Returns the scrambled offset of each combination of the topmost `depth` bits. `depth` must
-    /// be at most 12, so that two hashes decide each combination.
+    /// Returns the scrambled offset of each combination of the topmost `depth` bits of a
+    /// coordinate. `depth` must be at most 12, so that two hashes decide each combination.
     #[inline(always)]
     fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
         let mut prefixes = [0; MOST];

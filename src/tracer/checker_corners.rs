@@ -394,8 +394,8 @@ impl CheckerForms {
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)
     }
 
-    /// Returns an upper bound of the error of `across`/ℓ, whose absolute value is at most
-    /// `greatest`. ℓ must be at least `least`.
+    /// Returns an upper bound of the error of the board coordinate `across`/ℓ, whose absolute value
+    /// is at most `greatest`. The value of ℓ must be at least `least`.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
         let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP

@@ -60,7 +60,7 @@ pub struct LocalQuadratic {
 }
 
 impl Patch {
-    /// Returns the rectangle of an area of pixels.
+    /// Returns the rectangle that an area of pixels occupies in the view plane.
     pub fn new(camera: &Camera<f64>, area: Area) -> Self {
         Self {
             center: camera.direction(&camera.middle(area)),
@@ -68,7 +68,7 @@ impl Patch {
         }
     }
 
-    /// Returns the square of a sub-pixel.
+    /// Returns the square that a sub-pixel occupies in the view plane.
     pub fn of_sub_pixel(camera: &Camera<f64>, sub_pixel: SubPixel) -> Self {
         Self {
             center: sub_pixel.middle(camera),
@@ -76,7 +76,7 @@ impl Patch {
         }
     }
 
-    /// Returns the rectangle of the whole window of a camera.
+    /// Returns the rectangle of a camera's whole window, which contains all sample points.
     pub fn window(camera: &Camera<f64>) -> Self {
         let window = camera.window;
         Self {

@@ -109,7 +109,8 @@ pub(super) struct LineCrossings {
 }
 
 impl LineCrossings {
-    /// Computes Σ (−1)^j·X over the first `lines` crossings, crossing by crossing, in blocks.
+    /// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over the first
+    /// `lines` crossings, crossing by crossing, in blocks.
     ///
     /// Over each block, the depth m grows by half, unless that takes fewer than [`MIN_BLOCK`] or
     /// more than [`MAX_BLOCK`] crossings. Each block uses as few terms of X as `tolerance`, the

@@ -92,8 +92,8 @@ pub(super) fn sum(
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
     // The polygons of a pixel divide its tolerance among them in proportion to their areas, but
     // each gets at least `MIN_SHARE`. The omitted terms of all polygons then add up to about those
-    // of a single polygon. `FINITE_TAIL` and its kin assume four edges, so that a polygon of more
-    // edges gets proportionally less per edge.
+    // of a single polygon. The limits of the tails (`FINITE_TAIL` and the two that follow it)
+    // assume four edges, so that a polygon of more edges gets proportionally less per edge.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))

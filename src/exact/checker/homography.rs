@@ -307,8 +307,8 @@ fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
         .to_f64()
 }
 
-/// Returns the exact products of the cross product `a` × `b`. Each component is the first product
-/// of a pair minus the second.
+/// Returns for each component of the cross product `a` × `b` the two exact products whose
+/// difference it is: the first minus the second.
 fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
 }
