@@ -14,7 +14,7 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// Maximum error of an arc's area, divided by the arc's width, for a result in `f64`; above it, the
+/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width; above it, the
 /// arc is computed in double-double. All arcs of a curve across the pixel then contribute at most
 /// 4e-15 square pixels, far below the default tolerance of 9e-10.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
@@ -23,9 +23,9 @@ const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 /// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Minimum distance in y between a branch and the pixel at which the branch is ignored, divided by
-/// the branch's largest |y| or by 1, whichever is greater. The branch includes its bulge over the
-/// chord. Rounding errors of y are millions of times smaller.
+/// Minimum distance in y between the pixel and a branch, its bulge over the chord included, at
+/// which the branch is ignored. It is divided by the branch's largest |y| or by 1, whichever is
+/// greater. Rounding errors of y are millions of times smaller.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).

@@ -76,8 +76,8 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves grows with each quartering. Curves that pass
-/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap:
-/// with 1 instead of 4, the time is two thirds; with 16, it is four times as long.
+/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap of
+/// objects: with 1 instead of 4, the time is two thirds; with 16, it is four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed piece is quartered to reduce its
 /// bound. The piece with the largest bound comes first, while the pixel's bound exceeds the

@@ -35,9 +35,9 @@ const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 /// curves is added to the error bound. Not critical: with 2^−50 or 2^−46, the measured bounds
 /// change by at most 2 % and the running time by at most about 10 %.
 const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
-/// Maximum number of slabs, done or queued, in addition to the initial ones. Above it, slabs are
-/// not cut, and their doubtful area is added to the error bound. Not critical: with 1024 or 16,384,
-/// the measured bounds change by at most 2 % and the running time by at most 10 %.
+/// Maximum number of slabs of a sub-pixel, done or queued, in addition to the initial ones. Above
+/// it, slabs are not cut, and their doubtful area is added to the error bound. Not critical: with
+/// 1024 or 16,384, the measured bounds change by at most 2 % and the running time by at most 10 %.
 const MAX_ADDED_SLABS: usize = 4096;
 
 /// Maximum number of steps of the false position method that searches where two curves cross; after

@@ -13,7 +13,8 @@ use rand::{SeedableRng, TryRng};
 /// golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Number of pairs of random numbers that [`Key::pairs`] generates at a time.
+/// Number of pairs of random numbers that [`Key::pairs`] generates for each call of its parameter
+/// `each`.
 const BATCH: usize = 64;
 
 /// The purpose of random numbers: a hash of a seed, a method, and parts such as a pixel or an axis.

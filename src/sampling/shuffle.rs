@@ -13,7 +13,7 @@ const SHORT: usize = 64;
 /// entries right after they are written stalls processors.
 pub type Buffer = [u16; SHORT];
 
-/// A buffer without entries.
+/// Buffer to which no entries are written yet: all zeros.
 pub const EMPTY_BUFFER: Buffer = [0; SHORT];
 
 /// A permutation of 0 … n − 1 that a key determines.

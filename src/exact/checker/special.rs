@@ -16,8 +16,8 @@ use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
-/// Size of the terms at which a series is truncated, divided by the size of its sum. It is about a
-/// tenth of the unit roundoff.
+/// Size of a term, divided by the size of the sum, below which a series of an exponential integral
+/// is truncated. It is about a tenth of the unit roundoff.
 const VANISHING: f64 = 1e-17;
 
 /// A complex number: real and imaginary part.
@@ -189,10 +189,11 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
 const ORDER: u32 = 3;
 
 /// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the
-/// power series.
+/// power series. Up to it, no term of that series exceeds 3, so that few digits cancel.
 const SMALL: f64 = 3.0;
 /// Value of |y| from which on the exponential integral F_3(y) ([`integrals`]) is computed by the
-/// asymptotic series.
+/// asymptotic series. From it on, the terms of that series become negligible before they grow
+/// again.
 const LARGE: f64 = 64.0;
 
 /// Distance in y between the expansion points of the Taylor series of the exponential integral F_3

@@ -47,8 +47,8 @@ pub(super) const PIXELS: usize = 8;
 /// One number per pixel.
 type Lanes = [f64; PIXELS];
 
-/// Maximum number of sides of strips: four parts of the pixel's sides for each strip, and one chord
-/// for each line between strips.
+/// Maximum number of sides of a pixel's strips: four parts of the pixel's sides for each strip, and
+/// one chord for each line between strips.
 const SIDES: usize = 4 * (MAX_STRIP_LINES + 1) + MAX_STRIP_LINES;
 
 /// The linear forms of eight pixels' boards. Of the board's two families of lines, the one with

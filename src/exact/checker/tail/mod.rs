@@ -51,12 +51,12 @@ const MODE_TERMS: usize = 3;
 /// are tried. So many crossings take 60 µs, 3 ns each. Not critical: with 5000 or 80,000, the
 /// measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
-/// Maximum number of crossings that are added one by one for an edge, and of the last Fourier mode
-/// that is added; the remaining ones count as an error. So many take a few milliseconds.
+/// Maximum number of an edge's crossings that are added one by one, and maximum number n of a
+/// Fourier mode; the crossings or modes beyond count as an error. So many take a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Maximum size of an edge's whole sum, known by its upper bound, at which the sum is left out and
-/// counts as an error, as a fraction of the edge's tolerance. Skipped Fourier modes may have the
-/// same fraction. The fractions of all kinds of errors add up to less than 1.
+/// Fraction of an edge's tolerance up to which the edge's whole sum is left out: if an upper bound
+/// of the sum is at most this fraction, the bound counts as an error instead. Skipped Fourier modes
+/// may have the same fraction. The fractions of all kinds of errors add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
 /// Fraction of an edge's tolerance for the error of leaving out the later terms of the series X
 /// ([`EdgeSeries`]), which are not summed by Fourier modes. Not critical: with 0.0125 or 0.2, the
