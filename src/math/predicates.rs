@@ -84,7 +84,7 @@ pub fn are_on_one_line([a, b, c]: [DVec3; 3]) -> bool {
 }
 
 /// Returns whether three lengths are the sides of a triangle: each is less than the exact sum of
-/// the other two.
+/// the two other lengths.
 pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
     exceeds(b, c, a) && exceeds(c, a, b) && exceeds(a, b, c)
 }

@@ -133,8 +133,8 @@ impl CornerRow {
 }
 
 impl BoardBlock {
-    /// Prepares a block. Returns `None` if the board is too far away for its squares to be
-    /// distinguished.
+    /// Prepares a block of pixels. Returns `None` if the board is too far away for its squares to
+    /// be distinguished.
     fn new(squares: CheckerForms, block: Area) -> Option<Self> {
         let CheckerForms { across, .. } = squares;
         let least = squares.least()?;

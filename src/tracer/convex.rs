@@ -94,8 +94,8 @@ impl<T: Real> Convex<T> {
         &self.forms[..usize::from(self.firsts)]
     }
 
-    /// Returns whether the eye is inside. A ray then first hits the nearest of the first faces'
-    /// planes.
+    /// Returns whether the eye is inside the object. A ray then first hits the nearest of the first
+    /// faces' planes.
     pub fn is_inside(&self) -> bool {
         self.is_inside
     }
@@ -106,8 +106,8 @@ impl<T: Real> Convex<T> {
         SurfacePart::Plane(self.planes[face])
     }
 
-    /// Returns the inverse depth of the face `part` as a form. Returns `None` if the object does
-    /// not have this face.
+    /// Returns the inverse depth of the face `part` as a linear form. Returns `None` if the object
+    /// does not have this face.
     pub fn face(&self, part: SurfacePart) -> Option<&Form<T>> {
         let mut faces = self.forms[usize::from(self.edges)..].iter().enumerate();
         faces.find_map(|(face, form)| (self.part(face) == part).then_some(form))

@@ -65,7 +65,7 @@ impl<T: Real> Form<T> {
         }
     }
 
-    /// Returns the factors of X, Y and 1.
+    /// Returns the factors a, b and c of X, Y and 1.
     pub fn factors(&self) -> &[T; 3] {
         &self.factors
     }
@@ -125,8 +125,8 @@ fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius 
         + T::TINY * 8.0
 }
 
-/// Returns the inverse depth of the plane n·q = h as a form. The normal n is given along the axes
-/// of the world, and the points q are relative to the eye.
+/// Returns the inverse depth of the plane n·q = h as a linear form. The normal n is given along the
+/// axes of the world, and the points q are relative to the eye.
 pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> Form<T> {
     let n = camera.turned(n).map(|component| component / h);
     Form::new(camera, &n)

@@ -110,8 +110,8 @@ impl Form<f64> {
 }
 
 impl LocalForm {
-    /// Builds a form from its factors. `inherited` is the error of its values from the errors of
-    /// the factors; the rounding errors of the evaluation are added.
+    /// Builds a form from its factors. `inherited` is the error that the form's values have from
+    /// the errors of the factors; the rounding errors of the evaluation are added.
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
@@ -153,8 +153,8 @@ impl LocalForm {
 }
 
 impl LocalQuadratic {
-    /// Builds a form from its factors. `inherited` is the error of its values from the errors of
-    /// the factors; the rounding errors of the evaluation are added.
+    /// Builds a form from its factors. `inherited` is the error that the form's values have from
+    /// the errors of the factors; the rounding errors of the evaluation are added.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
         let rad = (inherited + sizes * LOCAL_ROUNDING + UNDERFLOW_ERROR) * UP;

@@ -36,8 +36,8 @@ pub struct Sphere<T: Real> {
     rad_square: T::Radius,
     /// C = c·c − R², with a small relative error however close the eye is to the surface.
     power: Ball<T>,
-    /// The exact sign of C: `Greater` if the eye is outside, `Equal` if it is on the surface,
-    /// `Less` if it is inside.
+    /// The exact sign of C: `Greater` if the eye is outside the sphere, `Equal` if it is on the
+    /// surface, `Less` if it is inside.
     side: Ordering,
     /// Power of two by which an inverse depth in the sphere's own unit is multiplied to give the
     /// inverse depth in the world's unit.

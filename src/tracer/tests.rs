@@ -278,7 +278,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
             assert!(all_found);
             let patch = Patch::new(camera, part);
             candidates::visible_among(&world, &patch, 0..world.object_count(), &mut all);
-            // The quadtree's bounds may exclude more objects, but never include additional ones.
+            // The quadtree's bounds may exclude objects that the plain loop includes, but not the
+            // reverse.
             let objects = |candidates: &[VisibilityCandidate]| -> Vec<_> {
                 candidates
                     .iter()

@@ -61,7 +61,7 @@ const FINITE_TAIL: f64 = 1.0 / 9.0;
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// Maximum truncation error of the sum over the crossings of an edge, as a fraction of the pixel's
 /// tolerance, if no edge of the polygon reaches the horizon. Only two edges then recede and have
-/// long sums; the others hardly contribute (`tail::level`).
+/// long sums; the sums over other edges hardly contribute (`tail::level`).
 const ONLY_FINITE_TAIL: f64 = 1.0;
 /// Minimum fraction of the pixel's tolerance that the truncated sums over a polygon may use up. A
 /// polygon of a larger area may use that area, in square pixels, as its fraction.

@@ -81,7 +81,7 @@ struct Cutter {
     /// Numbers of the next strip and of the last one; `None` if the polygon is empty or a
     /// coordinate is not below [`MAX_SQUARE`].
     strips: Option<(i64, i64)>,
-    /// Maximum number of corners of the rest; above it, the rest is not cut any further.
+    /// Maximum number of corners of `rest`; above it, `rest` is not cut any further.
     too_many: usize,
 }
 

@@ -30,7 +30,8 @@ pub struct PreparedPixel {
     /// Minimum difference of two inverse depths at which their order is certain. `None` if the
     /// surfaces are sorted from back to front, so that samples compare no depths.
     pub(super) apart: Option<f64>,
-    /// Inverse depths of all flat faces as forms; filled only if depths are compared per sample.
+    /// Inverse depths of the flat faces of all surfaces, as linear forms; filled only if depths are
+    /// compared per sample.
     pub(super) planes: Vec<LocalForm>,
     /// Whether all samples must be traced one by one.
     pub(super) is_hard: bool,

@@ -61,8 +61,8 @@ impl PreparedPixel {
         self.apart = None;
     }
 
-    /// Adds a candidate as a surface, with its boundaries and colours as forms. Adds nothing if the
-    /// candidate is certainly not seen in the pixel.
+    /// Adds the candidate with the index `index` as a surface, with its boundaries and colours as
+    /// forms. Adds nothing if the candidate is certainly not seen in the pixel.
     fn add_surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
         let candidate = self.candidates[index];
         let object = &*f64::object(&world.geometry, candidate.object);
