@@ -21,7 +21,7 @@ use crate::{
 
 /// Margin of a comparison, relative to the lengths that are compared. It exceeds all rounding
 /// errors: since the sine of the angle between up and the view direction is at least
-/// [`LEAST_SINE`], the relative error of the camera's axes is at most 2^−52/10^−6, about 2·10⁻¹⁰,
+/// `LEAST_SINE`, the relative error of the camera's axes is at most 2^−52/10^−6, about 2·10⁻¹⁰,
 /// and all other errors are smaller.
 const MARGIN: f64 = 1e-8;
 
@@ -105,7 +105,7 @@ pub struct Sight {
 
 impl Sight {
     /// Makes the visible space of a camera. Returns `None` if the camera's axes are too inaccurate;
-    /// see [`LEAST_SINE`].
+    /// see `LEAST_SINE`.
     pub fn new(camera: &Camera, image: &Image) -> Option<Self> {
         Some(Self {
             frustum: Frustum::new(camera, image)?,
@@ -174,7 +174,7 @@ struct Frustum {
 
 impl Frustum {
     /// Makes the pyramid of a camera. Returns `None` if the camera's axes are too inaccurate; see
-    /// [`LEAST_SINE`].
+    /// `LEAST_SINE`.
     fn new(camera: &Camera, image: &Image) -> Option<Self> {
         let (from, to) = camera.view.ends(camera.eye);
         let forward = (to - from).normalize();

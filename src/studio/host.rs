@@ -91,7 +91,7 @@ impl Host {
     }
 
     /// Serves until `end` is ready. A save in progress is completed, unless it takes longer than
-    /// [`FAREWELL`].
+    /// `FAREWELL`.
     ///
     /// # Errors
     ///
