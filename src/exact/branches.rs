@@ -55,7 +55,7 @@ pub enum Track<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct ConicGraph {
     factors: [Double; 6],
-    /// Coefficients of x², 2x and 1 in the polynomial Δ.
+    /// Coefficients of x², 2x and 1 in Δ, a polynomial in x.
     delta: [Double; 3],
 }
 

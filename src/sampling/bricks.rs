@@ -12,7 +12,7 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub struct Bricks {
     n: u64,
-    /// Number m of rows.
+    /// Number m of rows of cells.
     rows: u64,
     /// Length of a short row: ⌊n/m⌋ cells.
     short: u64,

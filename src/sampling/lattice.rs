@@ -59,7 +59,8 @@ impl Stratum {
         self.0 >> 1
     }
 
-    /// Returns the number of places beyond ⌊2^53/n⌋: 1 or 0.
+    /// Returns the number of places that the stratum has beyond the ⌊2^53/n⌋ places of each of the
+    /// n strata: 1 or 0.
     #[inline(always)]
     pub fn more(self) -> u64 {
         self.0 & 1

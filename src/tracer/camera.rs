@@ -23,7 +23,8 @@ pub struct Basis {
     pub v: [Big; 3],
     /// Unit vector against the view direction.
     pub w: [Big; 3],
-    /// Side of a pixel at depth 1: view_height/(height · d), with the picture's height in pixels.
+    /// Side of a pixel at depth 1: view_height/(height · d), with the picture's height in pixels
+    /// and the distance d of the view plane.
     pub pitch: Big,
     /// Distance from the eye to the view plane, in metres.
     pub d: Big,

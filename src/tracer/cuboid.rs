@@ -74,7 +74,7 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
     Convex::nothing()
 }
 
-/// Returns the eight corners relative to the eye, in the camera's axes.
+/// Returns the eight corners of a box relative to the eye, in the camera's axes.
 pub fn corners<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid) -> [Ball3<T>; 8] {
     let (min, max) = (camera.relative(shape.min), camera.relative(shape.max));
     array::from_fn(|corner| {

@@ -456,7 +456,7 @@ fn from_straight_above() {
     );
 }
 
-/// An integral is returned as unknown if it exceeds the budget or is cancelled.
+/// An integral is returned as unknown if its work exceeds the budget or the picture is cancelled.
 #[test]
 fn nothing_is_computed_beyond_the_budget() {
     let below = [0.0, 0.0, 1.0];
