@@ -146,8 +146,8 @@ impl<T: Real> Convex<T> {
         Ok(is_met.then_some(crossing))
     }
 
-    /// Returns the crossing behind the first one. The ray must hit the object. Returns `None` if
-    /// the object has no second faces.
+    /// Returns the ray's crossing with the object behind the first one. The ray must hit the
+    /// object. Returns `None` if the object has no second faces.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }

@@ -152,8 +152,8 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns the crossing behind the first one. The ray must hit the sphere. Returns `None` if
-    /// the eye is not outside the sphere.
+    /// Returns the ray's crossing with the sphere behind the first one. The ray must hit the
+    /// sphere. Returns `None` if the eye is not outside the sphere.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         if self.side != Ordering::Greater {
             return None;
