@@ -4,7 +4,7 @@ use super::{
     Status, Trouble,
     args::{AnswerFormat, ReportArgs},
     interrupt::Interrupt,
-    output, progress, trouble,
+    output, progress,
 };
 use crate::{render::RenderError, report::numerics};
 
