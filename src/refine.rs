@@ -63,11 +63,8 @@ pub fn coarse(
     side: u32,
     control: &Control,
 ) -> Result<Coarse, RenderError> {
-    let colors: Vec<_> = world
-        .palette()
-        .iter()
-        .map(|color| color.to_linear())
-        .collect();
+    let colors = world.palette().iter();
+    let colors: Vec<_> = colors.map(|color| color.to_linear()).collect();
     let (width, height) = (part.width.div_ceil(side), part.height.div_ceil(side));
     let film = Mutex::new(Film::new(width, height)?);
     threads::install(control.threads, || {

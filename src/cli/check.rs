@@ -8,7 +8,7 @@ use super::{
     each,
     input::{SceneInput, change, check_standard, is_standard},
     interrupt::Interrupt,
-    output,
+    output, trouble,
     unified_diff::unified_diff,
 };
 use crate::{
@@ -23,13 +23,13 @@ pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let is_json = args.format.format == AnswerFormat::Json;
     if args.fix && is_json && args.scenes.iter().any(|path| is_standard(path)) {
         let hint = "the text of `-` goes to standard output itself";
-        return Err(Trouble(format!(
+        return Err(trouble(format!(
             "--fix and --format json do not go together here: {hint}"
         )));
     }
     if args.diff && is_json {
         let hint = "both go to standard output";
-        return Err(Trouble(format!(
+        return Err(trouble(format!(
             "--diff and --format json do not go together: {hint}"
         )));
     }

@@ -14,7 +14,7 @@ use super::{
     },
     interrupt::Interrupt,
     judge::{self, quoted},
-    output, progress,
+    output, progress, trouble,
 };
 use crate::{
     diagnostic::{visible, visible_line},
@@ -22,14 +22,13 @@ use crate::{
     film::{self, CHANNELS, Comparison, Film, HEAT_LEGEND, Jpeg, Picture, SizesDiffer, Tolerance},
     grading::{Kind, ObjectVerdict, Reference, Verdict},
     numbers::{grouped, short, significant},
-    render::RenderError,
 };
 
 /// Compares the files of the arguments A and B. The status is [`Status::Done`] if they agree.
 pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.a) && is_standard(&args.b) {
         let message = "standard input can be read once only, and `-` is given twice";
-        return Err(Trouble(message.to_owned()));
+        return Err(trouble(message));
     }
     if let Some(path) = &args.output {
         check_heat_map(path, args)?;
@@ -38,14 +37,11 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let a = match a.map_err(|error| unreadable(&args.a, &error))? {
         FileBytes::Other(_) if is_scene(&args.a) && is_scene(&args.b) => {
             let cancel = interrupt.watch();
-            return match exact_pictures::of_scenes(args, cancel)? {
-                None => Ok(Status::SceneErrors),
-                Some(Err(error)) => ended(error),
-                Some(Ok([a, b])) => compare(args, [&a, &b], EXACT_STEPS, cancel),
-            };
+            let [a, b] = exact_pictures::of_scenes(args, cancel)?;
+            return compare(args, [&a, &b], EXACT_STEPS, cancel);
         }
         FileBytes::Other(_) if is_scene(&args.a) => {
-            return Err(Trouble(format!(
+            return Err(trouble(format!(
                 "{} is a scene: the picture comes first, `pinhole diff PICTURE SCENE`; `pinhole render` makes one",
                 shown(&args.a)
             )));
@@ -75,7 +71,7 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 "`--set` changes a scene, and {} is a picture",
                 shown(&args.b)
             );
-            return Err(Trouble(message));
+            return Err(trouble(message));
         }
         let b = read(&args.b, &b, &args.large)?;
         let steps = a.rounding.steps() + b.rounding.steps();
@@ -83,27 +79,18 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     }
 
     let input = SceneInput::of(&args.b, b, &args.overrides);
-    let Some(scene) = input.scene().scene else {
-        return Ok(Status::SceneErrors);
-    };
+    let scene = input.scene()?;
     let part = judge::part(&a, &scene, args.crop)
-        .map_err(|misfit| Trouble(format!("{} {misfit}", shown(&args.a))))?;
+        .map_err(|misfit| trouble(format!("{} {misfit}", shown(&args.a))))?;
     let reference = progress::rendering(part.pixels(), None, cancel, |control| {
         let reference = Reference::new(&scene, part, a.rounding, control);
         reference.map(|reference| reference.with_effort(args.effort.effort))
-    });
-    let reference = match reference {
-        Ok(reference) => reference,
-        Err(error) => return ended(error),
-    };
+    })?;
     let steps = args.tolerance.unwrap_or_else(|| a.rounding.steps());
     let comparison = reference
         .compare(&a.film, steps)
-        .map_err(|error| Trouble(error.to_string()))?;
-    let verdict = match reference.judge(&a, jpeg, &comparison, cancel) {
-        Ok(verdict) => verdict,
-        Err(error) => return ended(error),
-    };
+        .map_err(|error| trouble(error.to_string()))?;
+    let verdict = reference.judge(&a, jpeg, &comparison, cancel)?;
     let is_equal = comparison.is_equal();
     let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
     let report = DiffReport {
@@ -163,13 +150,6 @@ fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble
     Ok(picture)
 }
 
-fn ended(error: RenderError) -> Result<Status, Trouble> {
-    match error {
-        RenderError::Cancelled => Ok(Status::Interrupted),
-        error => Err(Trouble(error.to_string())),
-    }
-}
-
 /// Checks before the comparison that the heat map can be written.
 fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     if !path
@@ -177,7 +157,7 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
         .to_ascii_lowercase()
         .ends_with(".png")
     {
-        return Err(Trouble(format!(
+        return Err(trouble(format!(
             "the ending of {} is not .png, and a heat map is a PNG",
             shown(path)
         )));
@@ -190,22 +170,13 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
 fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     for other in [&args.a, &args.b] {
         if input::is_same_file(path, other) {
-            return Err(Trouble(format!(
+            return Err(trouble(format!(
                 "{} is compared: say with `-o HEATMAP` where else the heat map goes",
                 shown(path)
             )));
         }
     }
     Ok(())
-}
-
-/// Returns what a heat map's colours mean, or that it is all black because the pictures are equal.
-fn legend(is_equal: bool) -> &'static str {
-    if is_equal {
-        "black all over: nothing differs by more than the tolerance"
-    } else {
-        HEAT_LEGEND
-    }
 }
 
 fn write_heat_map(
@@ -222,14 +193,18 @@ fn write_heat_map(
         output::warning(&"pictures of different sizes have no heat map");
         return Ok(());
     }
-    let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
+    let map = film::heat_map(a, b, tolerance).map_err(|error| trouble(error.to_string()))?;
     // Since the last check, the path may have become a link to one of the compared files.
     check_is_not_compared(path, args)?;
     files::write(path, Purpose::Named, cancel, |out| {
         film::write_png(&map, None, out)
     })
     .map_err(|error| unwritable(path, &error))?;
-    let legend = legend(is_equal);
+    let legend = if is_equal {
+        "black all over: nothing differs by more than the tolerance"
+    } else {
+        HEAT_LEGEND
+    };
     output::to_people(&format!("{}: {legend}\n", shown(path)));
     Ok(())
 }

@@ -6,7 +6,9 @@
 
 use std::{borrow::Cow, fmt::Write};
 
-use super::{Status, Trouble, args::ExplainArgs, output};
+use textwrap::WordSplitter;
+
+use super::{Status, Trouble, args::ExplainArgs, output, trouble};
 use crate::{
     diagnostic::Style,
     explain::{self, GROUPS},
@@ -66,7 +68,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let trimmed = word.trim();
     if trimmed.is_empty() {
         let hint = "`pinhole explain` lists all codes";
-        return Err(Trouble(format!("the code is empty: {hint}")));
+        return Err(trouble(format!("the code is empty: {hint}")));
     }
     if trimmed == "language" {
         return Ok(explain::LANGUAGE.into());
@@ -81,9 +83,9 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
         .rsplit_once('.')
         .filter(|(block, axis)| schema::block(block).is_none() && matches!(*axis, "x" | "y" | "z"));
     let asked = of_vector.map_or(trimmed, |_| "ball.x");
-    let mut others = explain::OTHER_NAMES.iter();
+    let mut others = explain::other_names();
     let other = others.find(|(name, _)| name.eq_ignore_ascii_case(asked));
-    let meant = other.map_or(trimmed, |(_, meant)| *meant);
+    let meant = other.map_or(trimmed, |(_, meant)| meant);
     if meant == "left_handed" {
         return Ok(explain::LEFT_HANDED.into());
     }
@@ -105,7 +107,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let codes = explain::pages().map(|page| page.code);
     let pages = ["language", "left_handed"].into_iter();
     let words = codes.chain(describe::words()).chain(pages);
-    let others = explain::OTHER_NAMES.iter().map(|(name, _)| *name);
+    let others = explain::other_names().map(|(name, _)| name);
     let words = words.chain(explain::headings()).chain(others);
     let near = suggest::nearest(explain::short(trimmed), words);
     let of_block = trimmed
@@ -114,7 +116,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let hint = match (near, of_block) {
         (_, Some((row, field))) => {
             let fields = suggest::list(row.field_names());
-            return Err(Trouble(format!(
+            return Err(trouble(format!(
                 "{} has no field `{field}`: it takes {fields}",
                 row.noun
             )));
@@ -125,7 +127,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
                 .to_owned()
         }
     };
-    Err(Trouble(format!("nothing is known about `{word}`: {hint}")))
+    Err(trouble(format!("nothing is known about `{word}`: {hint}")))
 }
 
 /// Appends to `page` the reasons why a sampling method works well, if `word` is the name of one.
@@ -268,32 +270,16 @@ fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
 /// Appends a wrapped paragraph to `text`. The further lines of a list item are indented to the
 /// item's first word.
 fn push_wrapped(text: &mut String, paragraph: &str, width: usize) {
-    let indent = if paragraph.starts_with("- ") {
-        "  "
-    } else {
-        ""
-    };
-    let mut used = 0;
-    for word in paragraph.split_whitespace() {
-        let length = word.chars().count();
-        match used {
-            0 => {}
-            _ if used + 1 + length > width => {
-                text.push('\n');
-                text.push_str(indent);
-                used = indent.len();
-            }
-            _ => {
-                text.push(' ');
-                used += 1;
-            }
-        }
-        text.push_str(word);
-        used += length;
+    let words: Vec<&str> = paragraph.split_whitespace().collect();
+    if words.is_empty() {
+        return;
     }
-    if used > 0 {
-        text.push('\n');
-    }
+    let indent = if words[0] == "-" { "  " } else { "" };
+    let options = textwrap::Options::new(width).subsequent_indent(indent);
+    let options = options
+        .break_words(false)
+        .word_splitter(WordSplitter::NoHyphenation);
+    let _ = writeln!(text, "{}", textwrap::fill(&words.join(" "), options));
 }
 
 #[cfg(test)]
@@ -341,7 +327,7 @@ mod tests {
     #[test]
     fn what_others_call_things_is_explained() {
         let headings = explain::headings();
-        let others = explain::OTHER_NAMES.iter().map(|(name, _)| *name);
+        let others = explain::other_names().map(|(name, _)| name);
         for word in
             headings
                 .chain(others)
@@ -366,7 +352,7 @@ mod tests {
         }
         // A word of the language explains itself, even if it is also another program's name for
         // something else.
-        for (name, meant) in explain::OTHER_NAMES {
+        for (name, meant) in explain::other_names() {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),
                 // `page` shows only the lines that answer, not the whole page.
@@ -396,7 +382,7 @@ mod tests {
             let Err(trouble) = page(word) else {
                 panic!("{word}")
             };
-            assert!(trouble.0.starts_with(said), "{}", trouble.0);
+            assert!(trouble.to_string().starts_with(said), "{trouble}");
         }
         assert!(page("box.radius").is_err());
     }

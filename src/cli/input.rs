@@ -10,14 +10,14 @@ use super::{
     Trouble,
     args::{LargeArgs, Overrides},
     interrupt::Interrupt,
-    output,
+    output, trouble,
 };
 use crate::{
     area::Area,
     diagnostic::{Diagnostic, Report, visible_line},
     files::{self, NotWritten, Original, Purpose},
     film::{self, Recipe, SIGNATURE, read_recipe},
-    scene::{self, Reading},
+    scene::{self, Reading, Scene},
     source::{Source, Sources},
 };
 
@@ -52,8 +52,8 @@ pub fn is_standard(path: &Path) -> bool {
 pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
     match paths.iter().filter(|path| is_standard(path)).count() {
         0 | 1 => Ok(()),
-        _ => Err(Trouble(
-            "standard input can be read once only, and `-` is given twice".to_owned(),
+        _ => Err(trouble(
+            "standard input can be read once only, and `-` is given twice",
         )),
     }
 }
@@ -89,7 +89,7 @@ impl SceneInput {
             (Self::of_bytes(path, bytes, overrides)?, Some(original))
         };
         if input.is_picture {
-            return Err(Trouble(format!(
+            return Err(trouble(format!(
                 "{} is a picture; {command} takes the scene's text",
                 shown(path)
             )));
@@ -145,15 +145,15 @@ impl SceneInput {
         }
     }
 
-    /// Reads the scene, and reports its problems to the user. Objects outside of the picture are
-    /// not reported, since they may be intended, for example in one frame of an animation. The
-    /// commands that check the text itself report them.
-    pub fn scene(&self) -> Reading {
+    /// Reads the scene, and reports its problems to people. Objects outside of the picture are not
+    /// reported, since they may be intended, for example in one frame of an animation. The commands
+    /// that check the text itself report them.
+    pub fn scene(&self) -> Result<Scene, Trouble> {
         let mut reading = scene::read(&self.sources);
         let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
         reading.diagnostics.retain(|it| !is_of_text(it));
         output::to_people(&self.report(&reading));
-        reading
+        reading.scene.ok_or(Trouble::SceneErrors)
     }
 
     /// Returns the report about the scene's problems as readable text.
@@ -190,12 +190,12 @@ pub fn name_copies(path: &Path) {
 
 /// Makes the error message that a path cannot be read.
 pub fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
-    Trouble(format!("cannot read {}: {error}", shown(path)))
+    trouble(format!("cannot read {}: {error}", shown(path)))
 }
 
 /// Makes the error message that a path cannot be written to.
 pub fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
-    Trouble(format!("cannot write to {}: {error}", shown(path)))
+    trouble(format!("cannot write to {}: {error}", shown(path)))
 }
 
 /// Makes the error message that files cannot be written into an output folder.

@@ -11,9 +11,7 @@ use crate::inspect;
 /// Prints the properties of a scene, as readable text or as JSON.
 pub fn run(args: &InspectArgs) -> Result<Status, Trouble> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
-    let Some(scene) = input.scene().scene else {
-        return Ok(Status::SceneErrors);
-    };
+    let scene = input.scene()?;
     let inspection = inspect::inspect(&scene, &input.sources.file);
     match args.format.format {
         AnswerFormat::Human => output::answer(&inspection.to_string())?,

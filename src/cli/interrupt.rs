@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use super::{Status, Trouble};
+use super::{Status, Trouble, trouble};
 
 /// Whether the user has pressed Ctrl-C, or the system has asked the process to end.
 ///
@@ -46,7 +46,7 @@ impl Interrupt {
                 process::exit(Status::Interrupted as i32);
             }
         })
-        .map_err(|error| Trouble(format!("cannot listen for Ctrl-C: {error}")))?;
+        .map_err(|error| trouble(format!("cannot listen for Ctrl-C: {error}")))?;
         Ok(interrupt)
     }
 
@@ -73,5 +73,14 @@ impl Interrupt {
     /// Returns whether Ctrl-C was pressed.
     pub fn pressed(&self) -> bool {
         self.0.pressed.load(Ordering::SeqCst)
+    }
+
+    /// Returns why a command ended: the trouble, unless Ctrl-C made it.
+    pub fn or(&self, trouble: Trouble) -> Trouble {
+        if self.pressed() {
+            Trouble::Interrupted
+        } else {
+            trouble
+        }
     }
 }

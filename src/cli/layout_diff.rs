@@ -4,124 +4,91 @@
 //! the line's place in the other text. One pass over both texts finds the unchanged lines, without
 //! a search for a shortest edit.
 
-use std::{fmt::Write, ops::Range};
-
-use super::output;
+use super::{
+    output,
+    unified_diff::{ReplacedLines, hunks, lines},
+};
 use crate::{
     diagnostic::{visible, visible_line},
     source::Source,
 };
 
-/// Number of unchanged lines that are shown around a change, as is usual in diffs.
-const CONTEXT: usize = 3;
-
 /// Returns a unified diff from the source to the formatted text. If the source has both kinds of
 /// line ends, carriage returns are shown, since lines may differ only in them.
 pub fn layout_diff(source: &Source, formatted: &str) -> String {
     let text = source.text();
-    let printer = Printer {
-        color: output::style().color,
-        is_mixed: text.matches('\n').count() != text.matches("\r\n").count(),
+    let has_color = output::style().color;
+    let is_mixed = text.matches('\n').count() != text.matches("\r\n").count();
+    let shown = |sign: char, line: &str| {
+        let (paint, end) = match sign {
+            '-' if has_color => ("\x1b[31m", "\x1b[0m"),
+            '+' if has_color => ("\x1b[32m", "\x1b[0m"),
+            _ => ("", ""),
+        };
+        let mark = if is_mixed && line.ends_with('\r') {
+            "␍"
+        } else {
+            ""
+        };
+        let line = visible(line.trim_end_matches(['\n', '\r']));
+        format!("{paint}{sign}{line}{mark}{end}")
     };
     let name = visible_line(source.name());
-    let mut out = format!("--- {name}\n+++ {name}, formatted\n");
-    let mut hunk: Vec<LineChange> = Vec::new();
-    for change in LineChanges::of(text, formatted) {
-        let is_near = |last: &LineChange| change.before.first - last.before.end() <= 2 * CONTEXT;
-        if !hunk.last().is_none_or(is_near) {
-            printer.hunk(&mut out, &hunk, text, formatted);
-            hunk.clear();
-        }
-        hunk.push(change);
-    }
-    printer.hunk(&mut out, &hunk, text, formatted);
-    out
-}
-
-/// Consecutive lines of a text: the index of the first, their count, and their bytes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct LineSpan {
-    first: usize,
-    count: usize,
-    bytes: Range<usize>,
-}
-
-impl LineSpan {
-    fn end(&self) -> usize {
-        self.first + self.count
-    }
-}
-
-/// Lines of the old text and the lines that replace them.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct LineChange {
-    before: LineSpan,
-    after: LineSpan,
+    let (old, new) = (lines(text), lines(formatted));
+    let hunks = hunks(&changes(&old, &new), &old, &new, shown);
+    format!("--- {name}\n+++ {name}, formatted\n{hunks}")
 }
 
 /// A position in a text that is read line by line.
 struct LineCursor<'t> {
-    text: &'t str,
+    lines: &'t [&'t str],
     /// Index of the next line.
     next: usize,
-    /// Offset of the byte at which the next line starts.
-    at: usize,
     /// Number of characters before the next line, except white space.
     solid_before: usize,
 }
 
 impl<'t> LineCursor<'t> {
-    fn new(text: &'t str) -> Self {
+    fn new(lines: &'t [&'t str]) -> Self {
         Self {
-            text,
+            lines,
             next: 0,
-            at: 0,
             solid_before: 0,
         }
     }
 
     /// Returns the next line with its line end; `None` at the end of the text.
     fn line(&self) -> Option<&'t str> {
-        self.text[self.at..].split_inclusive('\n').next()
+        self.lines.get(self.next).copied()
     }
 
-    /// Moves to the end of `line`, which must be the next line.
-    fn pass(&mut self, line: &str) {
-        self.next += 1;
-        self.at += line.len();
+    /// Moves to the end of the next line, if there is one.
+    fn pass(&mut self) {
+        let line = self.line().unwrap_or_default();
+        self.next += usize::from(self.next < self.lines.len());
         self.solid_before += line.chars().filter(|c| !c.is_whitespace()).count();
     }
-}
 
-/// Iterator over the changes from one text to the other.
-struct LineChanges<'t> {
-    before: LineCursor<'t>,
-    after: LineCursor<'t>,
-}
-
-impl<'t> LineChanges<'t> {
-    fn of(before: &'t str, after: &'t str) -> Self {
-        let [before, after] = [before, after].map(LineCursor::new);
-        Self { before, after }
+    /// Whether the next line of both texts is the same, or both are at their ends.
+    fn is_same(&self, other: &Self) -> bool {
+        match (self.line(), other.line()) {
+            (None, None) => true,
+            (line, other_line) => self.solid_before == other.solid_before && line == other_line,
+        }
     }
 }
 
-impl Iterator for LineChanges<'_> {
-    type Item = LineChange;
-
-    fn next(&mut self) -> Option<LineChange> {
-        let Self { before, after } = self;
-        let is_same =
-            |before: &LineCursor<'_>, after: &LineCursor<'_>| match (before.line(), after.line()) {
-                (None, None) => true,
-                (old, new) => before.solid_before == after.solid_before && old == new,
-            };
-        while let Some(line) = before.line().filter(|_| is_same(before, after)) {
-            before.pass(line);
-            after.pass(line);
+/// Returns the changes from the old to the new lines.
+fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
+    let (mut before, mut after) = (LineCursor::new(old), LineCursor::new(new));
+    let mut changes = Vec::new();
+    loop {
+        while before.line().is_some() && before.is_same(&after) {
+            before.pass();
+            after.pass();
         }
-        let start = [(before.next, before.at), (after.next, after.at)];
-        while !is_same(before, after) {
+        let start = (before.next, after.next);
+        while !before.is_same(&after) {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
@@ -135,91 +102,20 @@ impl Iterator for LineChanges<'_> {
                 ];
                 (is_removed, is_added) = (old <= new, new <= old);
             }
-            for (reader, is_passed) in [(&mut *before, is_removed), (&mut *after, is_added)] {
-                if let Some(line) = reader.line().filter(|_| is_passed) {
-                    reader.pass(line);
-                }
+            if is_removed {
+                before.pass();
+            }
+            if is_added {
+                after.pass();
             }
         }
-        let lines = |(first, at): (usize, usize), reader: &LineCursor<'_>| LineSpan {
-            first,
-            count: reader.next - first,
-            bytes: at..reader.at,
-        };
-        let change = LineChange {
-            before: lines(start[0], before),
-            after: lines(start[1], after),
-        };
-        (change.before.count + change.after.count > 0).then_some(change)
-    }
-}
-
-/// Options for printing lines.
-struct Printer {
-    color: bool,
-    /// Whether the text has both kinds of line ends, LF and CRLF.
-    is_mixed: bool,
-}
-
-impl Printer {
-    /// Prints a hunk: changes that are close together, with the unchanged lines around them.
-    fn hunk(&self, out: &mut String, changes: &[LineChange], before: &str, after: &str) {
-        let (Some(first), Some(last)) = (changes.first(), changes.last()) else {
-            return;
-        };
-        let lead = first.before.first.min(CONTEXT);
-        let start = lines_back(before, first.before.bytes.start, lead);
-        let context = before[last.before.bytes.end..].split_inclusive('\n');
-        let context: Vec<&str> = context.take(CONTEXT).collect();
-        let trail = context.len();
-        let old = range(first.before.first - lead..last.before.end() + trail);
-        let new = range(first.after.first - lead..last.after.end() + trail);
-        let _ = writeln!(out, "@@ -{old} +{new} @@");
-        let mut at = start;
-        for change in changes {
-            self.lines(out, ' ', &before[at..change.before.bytes.start]);
-            self.lines(out, '-', &before[change.before.bytes.clone()]);
-            self.lines(out, '+', &after[change.after.bytes.clone()]);
-            at = change.before.bytes.end;
+        if start == (before.next, after.next) {
+            return changes;
         }
-        self.lines(out, ' ', &context.concat());
-    }
-
-    fn lines(&self, out: &mut String, sign: char, lines: &str) {
-        let (paint, end) = match sign {
-            '-' if self.color => ("\x1b[31m", "\x1b[0m"),
-            '+' if self.color => ("\x1b[32m", "\x1b[0m"),
-            _ => ("", ""),
-        };
-        for line in lines.split_inclusive('\n') {
-            let shown = visible(line.trim_end_matches(['\n', '\r']));
-            let is_marked = self.is_mixed && line.trim_end_matches('\n').ends_with('\r');
-            let mark = if is_marked { "␍" } else { "" };
-            let _ = writeln!(out, "{paint}{sign}{shown}{mark}{end}");
-            if !line.ends_with('\n') {
-                out.push_str("\\ No newline at end of file\n");
-            }
-        }
-    }
-}
-
-/// Returns the byte offset at which the line starts that is `lines` lines before the line at
-/// `start`.
-fn lines_back(text: &str, start: usize, lines: usize) -> usize {
-    (0..lines).fold(start, |start, _| {
-        let before = &text[..start];
-        let before = before.strip_suffix('\n').unwrap_or(before);
-        before.rfind('\n').map_or(0, |at| at + 1)
-    })
-}
-
-/// Formats a range of lines as in a hunk's head: the number of the first line, from 1, and the
-/// count unless it is 1. An empty range has the number of the line before it.
-fn range(lines: Range<usize>) -> String {
-    match lines.len() {
-        0 => format!("{},0", lines.start),
-        1 => format!("{}", lines.start + 1),
-        length => format!("{},{length}", lines.start + 1),
+        changes.push(ReplacedLines {
+            old: start.0..before.next,
+            new: start.1..after.next,
+        });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::{Status, Trouble, output};
+use super::{Status, Trouble, output, trouble};
 use crate::{
     diagnostic::visible_line,
     lsp::{Server, stdio},
@@ -16,6 +16,6 @@ pub fn run() -> Result<Status, Trouble> {
         Ok(true) => Ok(Status::Done),
         // The protocol requires the status 1 if `exit` comes without `shutdown`.
         Ok(false) => Ok(Status::SceneErrors),
-        Err(error) => Err(Trouble(format!("cannot write to standard output: {error}"))),
+        Err(error) => Err(trouble(format!("cannot write to standard output: {error}"))),
     }
 }

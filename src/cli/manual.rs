@@ -7,7 +7,7 @@ use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use super::{Status, Trouble, args::Args, output};
+use super::{Status, Trouble, args::Args, output, trouble};
 
 /// Prints the completion script for a shell.
 pub fn completions(shell: Shell) -> Result<Status, Trouble> {
@@ -20,7 +20,7 @@ pub fn completions(shell: Shell) -> Result<Status, Trouble> {
 /// Prints the manual page of `pinhole`, with a section for each command.
 pub fn man() -> Result<Status, Trouble> {
     let mut page = Vec::new();
-    write(&mut page).map_err(|error| Trouble(format!("cannot write the manual: {error}")))?;
+    write(&mut page).map_err(|error| trouble(format!("cannot write the manual: {error}")))?;
     output::to_programs(&page)?;
     Ok(Status::Done)
 }

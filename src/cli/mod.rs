@@ -44,7 +44,6 @@ mod watch;
 use std::{
     env,
     ffi::OsString,
-    fmt::{Display, Formatter},
     io,
     path::{Path, PathBuf},
     process::ExitCode,
@@ -56,7 +55,7 @@ use self::{
     args::{Args, Command},
     interrupt::Interrupt,
 };
-use crate::{diagnostic::visible_line, threads};
+use crate::{diagnostic::visible_line, render::RenderError, threads};
 
 /// Runs the command that the arguments name.
 pub fn run() -> ExitCode {
@@ -89,13 +88,7 @@ pub fn run() -> ExitCode {
         Command::Completions { shell } => manual::completions(shell),
         Command::Man => manual::man(),
     });
-    match done {
-        Ok(status) => status.into(),
-        Err(trouble) => {
-            output::error(&trouble);
-            Status::Trouble.into()
-        }
-    }
+    status_of(done).into()
 }
 
 /// Returns clap's answer to the arguments after their control characters were made visible, since
@@ -129,11 +122,7 @@ fn each(
 ) -> Status {
     let mut status = Status::Done;
     for path in scenes {
-        let found = one(path).unwrap_or_else(|trouble| {
-            output::error(&trouble);
-            Status::Trouble
-        });
-        status = status.max(found);
+        status = status.max(status_of(one(path)));
         if interrupt.pressed() {
             return Status::Interrupted;
         }
@@ -161,12 +150,43 @@ impl From<Status> for ExitCode {
     }
 }
 
-/// Error that ended a command, as a sentence for the user.
-#[derive(Debug)]
-struct Trouble(String);
+/// Returns the status of a command that ended, and prints what went wrong.
+fn status_of(done: Result<Status, Trouble>) -> Status {
+    match done {
+        Ok(status) => status,
+        Err(Trouble::SceneErrors) => Status::SceneErrors,
+        Err(Trouble::Interrupted) => Status::Interrupted,
+        Err(trouble) => {
+            output::error(&trouble);
+            Status::Trouble
+        }
+    }
+}
 
-impl Display for Trouble {
-    fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
+/// Why a command ended early.
+#[derive(Debug, thiserror::Error)]
+enum Trouble {
+    /// Something went wrong: what, in words for people.
+    #[error("{0}")]
+    Message(String),
+    /// The scene has errors, which have been printed.
+    #[error("the scene has errors")]
+    SceneErrors,
+    /// Ctrl-C was pressed.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Returns what went wrong, in words for people.
+fn trouble(message: impl Into<String>) -> Trouble {
+    Trouble::Message(message.into())
+}
+
+impl From<RenderError> for Trouble {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Cancelled => Self::Interrupted,
+            error => trouble(error.to_string()),
+        }
     }
 }

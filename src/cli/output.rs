@@ -8,7 +8,7 @@ use std::{
 
 use terminal_size::{Width, terminal_size_of};
 
-use super::Trouble;
+use super::{Trouble, trouble};
 use crate::diagnostic::{Drawing, Style, visible, visible_line};
 
 /// Writes a text to standard output. If that is a terminal, control characters are made visible, so
@@ -50,7 +50,7 @@ fn write(bytes: &[u8]) -> Result<(), Trouble> {
 }
 
 fn stdout_error(error: io::Error) -> Trouble {
-    Trouble(format!("cannot write to standard output: {error}"))
+    trouble(format!("cannot write to standard output: {error}"))
 }
 
 /// Standard output. If the reader has closed the pipe, as `head` does, the rest is dropped without
@@ -95,7 +95,7 @@ pub fn answer(text: &str) -> Result<(), Trouble> {
     };
     match io::stderr().lock().write_all(text.as_bytes()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Trouble(format!("cannot write to standard error: {error}")))
+            Err(trouble(format!("cannot write to standard error: {error}")))
         }
         _ => Ok(()),
     }

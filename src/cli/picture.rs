@@ -9,7 +9,7 @@ use std::{
 use super::{
     Trouble,
     input::{self, shown},
-    output, progress,
+    output, progress, trouble,
 };
 use crate::{
     area::Area,
@@ -33,15 +33,6 @@ pub enum RenderedPicture {
 }
 
 impl RenderedPicture {
-    /// Returns the picture's width and height in pixels.
-    pub fn size(&self) -> (u32, u32) {
-        match self {
-            Self::Light(light) => (light.film().width(), light.film().height()),
-            Self::Floats(floats) => (floats.film().width(), floats.film().height()),
-            Self::Bytes(bytes) => (bytes.film().width(), bytes.film().height()),
-        }
-    }
-
     /// Returns the film of 64-bit means; `None` if the means were rounded.
     #[cfg(feature = "preview")]
     pub fn into_film(self) -> Option<film::Film> {
@@ -95,6 +86,20 @@ pub fn picture(
     keep: KeptPixels,
     cancel: &AtomicBool,
 ) -> Result<RenderedPicture, RenderError> {
+    Ok(match keep {
+        KeptPixels::Light => RenderedPicture::Light(render_part(scene, world, part, cancel)?),
+        KeptPixels::Floats => RenderedPicture::Floats(render_part(scene, world, part, cancel)?),
+        KeptPixels::Bytes => RenderedPicture::Bytes(render_part(scene, world, part, cancel)?),
+    })
+}
+
+/// Renders as [`picture`] does, to pixels of a type.
+pub fn render_part<P: film::Pixel>(
+    scene: &Scene,
+    world: &World,
+    part: Area,
+    cancel: &AtomicBool,
+) -> Result<Rendered<P>, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let sampling = Sampling::new(&scene.sampler, whole.width, whole.height);
     let expected = if sampling.is_exact() {
@@ -106,17 +111,7 @@ pub fn picture(
         (sampling.total() as f64 * share) as u64
     };
     progress::rendering(expected, None, cancel, |control| {
-        Ok(match keep {
-            KeptPixels::Light => {
-                RenderedPicture::Light(render_as_asked(world, &sampling, part, control)?)
-            }
-            KeptPixels::Floats => {
-                RenderedPicture::Floats(render_as_asked(world, &sampling, part, control)?)
-            }
-            KeptPixels::Bytes => {
-                RenderedPicture::Bytes(render_as_asked(world, &sampling, part, control)?)
-            }
-        })
+        render_as_asked(world, &sampling, part, control)
     })
 }
 
@@ -216,9 +211,8 @@ impl PictureOutput {
             Some(path) if input::is_standard(path) => return Ok(Self::Standard),
             Some(path) => path,
             None if input::is_standard(scene) => {
-                return Err(Trouble(
-                    "the scene comes from standard input: say with `-o FILE` where the picture goes"
-                        .to_owned(),
+                return Err(trouble(
+                    "the scene comes from standard input: say with `-o FILE` where the picture goes",
                 ));
             }
             None => {
@@ -234,9 +228,8 @@ impl PictureOutput {
     /// that it would not replace the scene.
     pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
         match self {
-            Self::Standard if io::stdout().is_terminal() => Err(Trouble(
-                "standard output is a terminal, which shows no pictures: use `-o FILE`, or a pipe"
-                    .to_owned(),
+            Self::Standard if io::stdout().is_terminal() => Err(trouble(
+                "standard output is a terminal, which shows no pictures: use `-o FILE`, or a pipe",
             )),
             Self::Standard => Ok(()),
             Self::File(path, _, path_choice) => {
@@ -282,7 +275,7 @@ impl PictureOutput {
                 })
             }
         };
-        written.map_err(|error| Trouble(format!("cannot write to {self}: {error}")))
+        written.map_err(|error| trouble(format!("cannot write to {self}: {error}")))
     }
 
     /// Returns a warning if the picture should carry its scene but the scene is too long; otherwise
@@ -301,7 +294,7 @@ impl PictureOutput {
 /// Rejects a picture that would overwrite its scene.
 fn check_is_not(path: &Path, scene: &Path) -> Result<(), Trouble> {
     if input::is_same_file(path, scene) {
-        return Err(Trouble(format!(
+        return Err(trouble(format!(
             "{} is the scene itself: say with `-o FILE` where the picture goes",
             shown(path)
         )));
@@ -339,7 +332,7 @@ fn format(path: &Path) -> Result<FileFormat, Trouble> {
     } else if name.ends_with(".exr") {
         Ok(FileFormat::Exr)
     } else {
-        Err(Trouble(format!(
+        Err(trouble(format!(
             "the ending of {} stands for no format: a picture's file ends in .png or .exr",
             shown(path)
         )))

@@ -13,9 +13,7 @@ use crate::probe;
 /// Prints the surfaces that the ray through a point of the picture hits.
 pub fn run(args: &ProbeArgs) -> Result<Status, Trouble> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
-    let Some(scene) = input.scene().scene else {
-        return Ok(Status::SceneErrors);
-    };
+    let scene = input.scene()?;
     let probe = probe::probe(&scene, DVec2::new(args.x, args.y));
     match args.format.format {
         AnswerFormat::Human => output::answer(&probe.to_string())?,

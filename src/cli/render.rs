@@ -9,6 +9,7 @@ use super::{
     interrupt::Interrupt,
     output,
     picture::{PictureOutput, picture},
+    trouble,
 };
 use crate::{area::Area, render::RenderError, tracer::World};
 
@@ -16,13 +17,11 @@ use crate::{area::Area, render::RenderError, tracer::World};
 pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
-    let reading = input.scene();
+    let scene = input.scene();
     // The output is checked before rendering, which may take hours, and even if the scene has
     // errors: the exit status of an output that cannot be written is the worse one.
     output.check(&args.scene)?;
-    let Some(scene) = reading.scene else {
-        return Ok(Status::SceneErrors);
-    };
+    let scene = scene?;
     // A crop on the command line replaces the crop that a picture carries. Both are in pixels of
     // the whole picture.
     let crop = args.crop.or(input.crop);
@@ -33,31 +32,23 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
             Some(_) => String::new(),
             None => format!(", which {} carries,", shown(&args.scene)),
         };
-        return Err(Trouble(format!(
+        return Err(trouble(format!(
             "the crop {part}{carried} does not lie within the picture, which has {} × {} pixels",
             whole.width, whole.height
         )));
     }
     let cancel = interrupt.watch();
     let started = Instant::now();
-    let Ok(world) = World::new_unless(&scene, cancel) else {
-        return Ok(Status::Interrupted);
-    };
-    let picture = match picture(&scene, &world, part, output.keep(), cancel) {
-        Ok(picture) => picture,
-        Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
-        Err(error) => return Err(Trouble(error.to_string())),
-    };
+    let world = World::new_unless(&scene, cancel).map_err(RenderError::from)?;
+    let picture = picture(&scene, &world, part, output.keep(), cancel)?;
     let recipe = input.recipe(crop);
-    match output.write(&args.scene, &picture, &recipe, whole, cancel) {
-        Ok(()) => {}
-        Err(_) if interrupt.pressed() => return Ok(Status::Interrupted),
-        Err(trouble) => return Err(trouble),
-    }
+    output
+        .write(&args.scene, &picture, &recipe, whole, cancel)
+        .map_err(|trouble| interrupt.or(trouble))?;
     output::to_people(&output.note_of_length(&recipe));
     output::to_people(&picture.notes(part, &output));
     if output::is_watched() {
-        let (width, height) = picture.size();
+        let [width, height] = [part.width, part.height];
         let seconds = started.elapsed().as_secs_f64();
         output::to_people(&format!(
             "wrote {output}: {width} × {height} pixels in {seconds:.2} s\n"

@@ -19,9 +19,8 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     #[cfg(feature = "report")]
     return super::speed::run(args, interrupt);
     #[cfg(not(feature = "report"))]
-    Err(Trouble(
-        "this pinhole was built without the feature `report`: it can report on the arithmetic only, with `--numerics`"
-            .to_owned(),
+    Err(trouble(
+        "this pinhole was built without the feature `report`: it can report on the arithmetic only, with `--numerics`",
     ))
 }
 
@@ -34,7 +33,7 @@ fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble>
     let table = progress::rendering(total, None, cancel, |control| {
         numerics::run(inputs, control)
     });
-    let table = table.map_err(|error| Trouble(RenderError::from(error).to_string()))?;
+    let table = table.map_err(RenderError::from)?;
     match args.format.format {
         AnswerFormat::Human => output::answer(&table.to_string())?,
         AnswerFormat::Json => output::to_programs(format!("{}\n", table.to_json()).as_bytes())?,

@@ -14,7 +14,8 @@ use super::{
     input::{SceneInput, check_standard, is_standard, shown, unwritable},
     interrupt::Interrupt,
     output,
-    picture::{KeptPixels, PictureOutput, RenderedPicture, picture},
+    picture::{PictureOutput, render_part},
+    trouble,
 };
 use crate::{
     area::Area,
@@ -48,9 +49,10 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let mut status = Status::Done;
     let mut scenes = Vec::new();
     for path in &args.scenes {
-        match scenes_of(path, args)? {
-            Some(found) => scenes.extend(found),
-            None => status = Status::SceneErrors,
+        match scenes_of(path, args) {
+            Ok(found) => scenes.extend(found),
+            Err(Trouble::SceneErrors) => status = Status::SceneErrors,
+            Err(trouble) => return Err(trouble),
         }
     }
     if status != Status::Done {
@@ -61,11 +63,7 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         .into_iter()
         .map(|(scene, name)| (reduced(scene, args.width), name));
     let cells: Vec<SheetCell> = cells.collect();
-    let sheet = match sheet(&cells, args.columns, cancel) {
-        Ok(sheet) => sheet,
-        Err(RenderError::Cancelled) => return Ok(Status::Interrupted),
-        Err(error) => return Err(Trouble(error.to_string())),
-    };
+    let sheet = sheet(&cells, args.columns, cancel)?;
     let written = if is_standard(&args.output) {
         files::write_stream(output::StandardOutput::new(), cancel, |out| {
             film::write_png(&sheet, None, out)
@@ -75,11 +73,8 @@ pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             film::write_png(&sheet, None, out)
         })
     };
-    match written {
-        Err(_) if interrupt.pressed() => Ok(Status::Interrupted),
-        Err(error) => Err(unwritable(&args.output, &error)),
-        Ok(()) => Ok(Status::Done),
-    }
+    written.map_err(|error| interrupt.or(unwritable(&args.output, &error)))?;
+    Ok(Status::Done)
 }
 
 /// Rejects an output that is not a PNG, is one of the scenes, or cannot be written.
@@ -90,7 +85,7 @@ fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
         .is_some_and(|it| it.eq_ignore_ascii_case("png"));
     if !is_png && !is_standard(path) {
         let path = shown(path);
-        return Err(Trouble(format!(
+        return Err(trouble(format!(
             "a sheet is a PNG: {path} should end in .png"
         )));
     }
@@ -99,14 +94,11 @@ fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
 }
 
 /// Returns the scene of a file with its caption. With `--sweep`, returns all scenes of the sweep
-/// with their captions. Returns `None` if a scene has errors, which are reported.
-fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)>>, Trouble> {
+/// with their captions.
+fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trouble> {
     let input = SceneInput::read(path, &args.overrides)?;
     let Some(sweep) = &args.sweep else {
-        return Ok(input
-            .scene()
-            .scene
-            .map(|scene| vec![(scene, name(path, args))]));
+        return Ok(vec![(input.scene()?, name(path, args))]);
     };
     let with = |set: String| {
         let mut sources = input.sources.clone();
@@ -114,32 +106,28 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
         sources.sets.push(Source::from_text(name, set));
         SceneInput { sources, ..input }
     };
-    // The problems of the first scene are always reported; those of the last scene only if it has
+    // The problems of the first scene are always reported; those of another scene only if it has
     // errors.
+    let later = |input: &SceneInput| {
+        let reading = scene::read(&input.sources);
+        if reading.scene.is_none() {
+            output::to_people(&input.report(&reading));
+        }
+        reading.scene.ok_or(Trouble::SceneErrors)
+    };
     let [first, last] = sweep.ends().map(with);
-    if first.scene().scene.is_none() {
-        return Ok(None);
-    }
-    let reading = scene::read(&last.sources);
-    if reading.scene.is_none() {
-        output::to_people(&last.report(&reading));
-        return Ok(None);
-    }
+    first.scene()?;
+    later(&last)?;
     let mut scenes = Vec::new();
     for step in sweep.steps(&input.sources)? {
-        let input = with(step.set);
-        let reading = scene::read(&input.sources);
-        let Some(scene) = reading.scene else {
-            output::to_people(&input.report(&reading));
-            return Ok(None);
-        };
+        let scene = later(&with(step.set))?;
         let name = match args.scenes.len() {
             1 => step.label,
             _ => format!("{} {}", name(path, args), step.label),
         };
         scenes.push((scene, name));
     }
-    Ok(Some(scenes))
+    Ok(scenes)
 }
 
 /// Returns the caption of a scene's file: its name without folders and extension, or its path if
@@ -182,13 +170,8 @@ fn reduced(mut scene: Scene, side: u32) -> Scene {
 
 fn rendered(scene: &Scene, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderError> {
     let whole = Area::whole(scene.image.width, scene.image.height);
-    let world = World::new_unless(scene, cancel).map_err(|_| RenderError::Cancelled)?;
-    match picture(scene, &world, whole, KeptPixels::Bytes, cancel)? {
-        RenderedPicture::Bytes(bytes) => Ok(bytes.into_film()),
-        RenderedPicture::Light(_) | RenderedPicture::Floats(_) => {
-            unreachable!("bytes were asked for")
-        }
-    }
+    let world = World::new_unless(scene, cancel)?;
+    Ok(render_part(scene, &world, whole, cancel)?.into_film())
 }
 
 /// Renders the pictures and places them on white, row by row, in `columns` columns. If `columns` is

@@ -12,7 +12,7 @@ use std::{
 
 use terminal_size::{Height, Width, terminal_size_of};
 
-use super::{Trouble, output};
+use super::{Trouble, output, trouble};
 use crate::{area::Area, color::linear_to_srgb, film::Film};
 
 /// The screen that `watch` writes to, on standard error.
@@ -46,13 +46,13 @@ impl Screen {
     /// with colours.
     pub fn of_pictures() -> Result<Self, Trouble> {
         if !io::stderr().is_terminal() {
-            return Err(Trouble(
-                "`--show` draws in a terminal, and standard error is none".to_owned(),
+            return Err(trouble(
+                "`--show` draws in a terminal, and standard error is none",
             ));
         }
         if !output::has_color() {
-            return Err(Trouble(
-                "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`".to_owned(),
+            return Err(trouble(
+                "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`",
             ));
         }
         // The picture is drawn from the top of the screen. The previous content is scrolled up

@@ -15,7 +15,7 @@ use super::{
     args::{AnswerFormat, ReportArgs, methods},
     input::{SceneInput, check_standard, is_standard, not_written},
     interrupt::Interrupt,
-    output, progress,
+    output, progress, trouble,
 };
 use crate::{
     files::OutputFolder,
@@ -58,8 +58,8 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let mut status = Status::Done;
     for path in &args.scenes {
         let input = SceneInput::read(path, &args.overrides)?;
-        match input.scene().scene {
-            Some(scene) => {
+        match input.scene() {
+            Ok(scene) => {
                 check_samples(&scene, &request)?;
                 let subject = MeasuredScene {
                     name: path.display().to_string(),
@@ -67,7 +67,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
                 };
                 subjects.push((subject, scene));
             }
-            None => status = Status::SceneErrors,
+            Err(_) => status = Status::SceneErrors,
         }
     }
     if status != Status::Done {
@@ -147,9 +147,8 @@ fn errors(asked: &[f64]) -> Vec<f64> {
 fn check_methods(request: &Request) -> Result<(), Trouble> {
     let is_exact = |method: &Method| *method == Method::Exact;
     if !request.samples.is_empty() && request.methods.iter().all(is_exact) {
-        return Err(Trouble(
-            "`--samples` is for methods that take samples, and `--methods` names `exact` alone, which takes none"
-                .to_owned(),
+        return Err(trouble(
+            "`--samples` is for methods that take samples, and `--methods` names `exact` alone, which takes none",
         ));
     }
     Ok(())
@@ -161,7 +160,7 @@ fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     let most = request.samples.iter().copied().max().unwrap_or(0);
     match most.checked_mul(pixels) {
         Some(total) if total <= 1 << 53 => Ok(()),
-        _ => Err(Trouble(format!(
+        _ => Err(trouble(format!(
             "{most} samples in each of {pixels} pixels are more than 2^53"
         ))),
     }
@@ -187,7 +186,7 @@ fn measure(
         Ok(measured) if measured.runs() == 0 => Ok(None),
         Ok(measured) => Ok(Some(measured)),
         Err(RenderError::Cancelled) => Ok(None),
-        Err(error) => Err(Trouble(error.to_string())),
+        Err(error) => Err(error.into()),
     }
 }
 
@@ -226,7 +225,7 @@ fn page(measured: &[Measurement]) -> Result<String, Trouble> {
 }
 
 fn report_error(error: io::Error) -> Trouble {
-    Trouble(format!("cannot make the report: {error}"))
+    trouble(format!("cannot make the report: {error}"))
 }
 
 /// Returns the name of a scene's subfolder: the file's name without its extension, and with a

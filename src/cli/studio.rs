@@ -13,7 +13,7 @@ use super::{
     args::StudioArgs,
     input::{self, is_standard, shown},
     interrupt::Interrupt,
-    output, watch,
+    output, trouble, watch,
 };
 use crate::studio::{Host, SceneFile};
 
@@ -28,7 +28,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         let port = args
             .port
             .map_or(String::new(), |port| format!(" at port {port}"));
-        Trouble(format!("cannot serve a page{port}: {error}"))
+        trouble(format!("cannot serve a page{port}: {error}"))
     })?;
     let [address, address_once] = host.addresses();
     let end = Arc::new(Notify::new());
@@ -41,7 +41,7 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
         output::warning(&"no browser could be started: open the address in one");
     }
     host.serve(end.notified())
-        .map_err(|error| Trouble(format!("cannot serve a page: {error}")))?;
+        .map_err(|error| trouble(format!("cannot serve a page: {error}")))?;
     Ok(Status::Interrupted)
 }
 
@@ -49,17 +49,17 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
 fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
     let Some(scene) = &args.scene else {
         let folder = env::current_dir()
-            .map_err(|error| Trouble(format!("there is no current folder: {error}")))?;
+            .map_err(|error| trouble(format!("there is no current folder: {error}")))?;
         return Ok(SceneFile::new(folder, input::bytes));
     };
     if is_standard(scene) {
         let message = "standard input cannot be edited: it is read once; give a file";
-        return Err(Trouble(message.to_owned()));
+        return Err(trouble(message));
     }
     watch::check_scene(scene)?;
     input::name_copies(scene);
     SceneFile::open(scene, input::bytes)
-        .map_err(|error| Trouble(format!("cannot read {}: {error}", shown(scene))))
+        .map_err(|error| trouble(format!("cannot read {}: {error}", shown(scene))))
 }
 
 /// Asks the system to open an address in a browser. Returns whether the program that does so could

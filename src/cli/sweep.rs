@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::Trouble;
+use super::{Trouble, trouble};
 use crate::{
     numbers::{short, short_vector},
     scene::analyze,
@@ -133,7 +133,7 @@ impl Sweep {
 
     fn nothing_between(&self) -> Trouble {
         let (from, to) = (&self.from, &self.to);
-        Trouble(format!(
+        trouble(format!(
             "--sweep finds nothing between `{from}` and `{to}`: it goes between two numbers, angles or vectors with a finite difference"
         ))
     }

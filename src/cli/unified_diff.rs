@@ -1,4 +1,4 @@
-//! A unified diff in the format that `patch` reads.
+//! Unified diffs, in the format that `patch` reads.
 //!
 //! In: a text before and after changes. Out: the lines that differ, with three lines of context.
 
@@ -13,65 +13,75 @@ const AROUND: usize = 3;
 const MOST_STEPS: usize = 1000;
 
 /// Lines of the old text, and the lines of the new text that replace them.
-struct ReplacedLines {
-    old: Range<usize>,
-    new: Range<usize>,
+pub struct ReplacedLines {
+    pub old: Range<usize>,
+    pub new: Range<usize>,
 }
 
 /// Returns the changes of a file as a unified diff; empty if there are none.
 pub fn unified_diff(name: &str, old: &str, new: &str) -> String {
-    let lines = |text| str::split_inclusive(text, '\n').collect::<Vec<&str>>();
     let (old, new) = (lines(old), lines(new));
-    let changes = changes(&old, &new);
+    let shown = |sign: char, line: &str| format!("{sign}{line}");
+    match hunks(&changes(&old, &new), &old, &new, shown) {
+        hunks if hunks.is_empty() => hunks,
+        hunks => format!("--- {name}\n+++ {name}\n{hunks}"),
+    }
+}
+
+/// Returns the lines of a text with their ends.
+pub fn lines(text: &str) -> Vec<&str> {
+    text.split_inclusive('\n').collect()
+}
+
+/// Writes changes of a text below their places. `shown` writes a line, without its line feed,
+/// behind its sign.
+pub fn hunks(
+    changes: &[ReplacedLines],
+    old: &[&str],
+    new: &[&str],
+    shown: impl Fn(char, &str) -> String,
+) -> String {
     let mut text = String::new();
-    let mut rest = changes.as_slice();
-    while !rest.is_empty() {
-        // Changes belong to one hunk if the unchanged lines around them touch.
-        let near = |pair: &[ReplacedLines]| pair[1].old.start - pair[0].old.end <= 2 * AROUND;
-        let together = 1 + rest.windows(2).take_while(|pair| near(pair)).count();
-        let (hunk, behind) = rest.split_at(together);
-        if text.is_empty() {
-            text = format!("--- {name}\n+++ {name}\n");
+    let is_near = |a: &ReplacedLines, b: &ReplacedLines| b.old.start - a.old.end <= 2 * AROUND;
+    for hunk in changes.chunk_by(is_near) {
+        let (first, last) = (&hunk[0], &hunk[hunk.len() - 1]);
+        let before = first.old.start.min(AROUND);
+        let after = (old.len() - last.old.end).min(AROUND);
+        let [of_old, of_new] = [
+            first.old.start - before..last.old.end + after,
+            first.new.start - before..last.new.end + after,
+        ];
+        text += &format!("@@ -{} +{} @@\n", place(&of_old), place(&of_new));
+        let mut push = |sign, lines: &[&str]| {
+            for line in lines {
+                text += &shown(sign, line.strip_suffix('\n').unwrap_or(line));
+                text += if line.ends_with('\n') {
+                    "\n"
+                } else {
+                    "\n\\ No newline at end of file\n"
+                };
+            }
+        };
+        let mut at = of_old.start;
+        for change in hunk {
+            push(' ', &old[at..change.old.start]);
+            push('-', &old[change.old.clone()]);
+            push('+', &new[change.new.clone()]);
+            at = change.old.end;
         }
-        push_hunk(&mut text, hunk, &old, &new);
-        rest = behind;
+        push(' ', &old[at..of_old.end]);
     }
     text
 }
 
-fn push_hunk(text: &mut String, hunk: &[ReplacedLines], old: &[&str], new: &[&str]) {
-    let (Some(first), Some(last)) = (hunk.first(), hunk.last()) else {
-        return;
-    };
-    let before = first.old.start.min(AROUND);
-    let after = (old.len() - last.old.end).min(AROUND);
-    let place = |start: usize, end: usize| {
-        let (start, end) = (start - before, end + after);
-        // An empty range comes after the line whose number is given.
-        let first = if start == end { start } else { start + 1 };
-        format!("{first},{}", end - start)
-    };
-    let places = [
-        place(first.old.start, last.old.end),
-        place(first.new.start, last.new.end),
-    ];
-    *text += &format!("@@ -{} +{} @@\n", places[0], places[1]);
-    let mut push = |sign, lines: &[&str]| {
-        for line in lines {
-            *text += &format!("{sign}{line}");
-            if !line.ends_with('\n') {
-                *text += "\n\\ No newline at end of file\n";
-            }
-        }
-    };
-    let mut at = first.old.start - before;
-    for change in hunk {
-        push(' ', &old[at..change.old.start]);
-        push('-', &old[change.old.clone()]);
-        push('+', &new[change.new.clone()]);
-        at = change.old.end;
+/// Writes a range of lines as the diff format specifies: lines are counted from 1, a count of 1 is
+/// omitted, and an empty range is given by the line before it.
+fn place(lines: &Range<usize>) -> String {
+    match lines.len() {
+        0 => format!("{},0", lines.start),
+        1 => format!("{}", lines.start + 1),
+        length => format!("{},{length}", lines.start + 1),
     }
-    push(' ', &old[at..last.old.end + after]);
 }
 
 /// Returns the changes from `old` to `new`. Walks through both texts. After a difference, the walk

@@ -19,6 +19,7 @@ use super::{
     output,
     picture::{KeptPixels, PictureOutput, RenderedPicture, picture},
     show::Screen,
+    trouble,
 };
 use crate::{
     area::Area,
@@ -42,7 +43,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let scene = shown(&args.scene);
     let latest = preview::watch(&args.scene, input::bytes)
-        .map_err(|error| Trouble(format!("cannot watch the folder of {scene}: {error}")))?;
+        .map_err(|error| trouble(format!("cannot watch the folder of {scene}: {error}")))?;
     let ended = Arc::clone(&latest);
     interrupt.then(move || ended.end());
     screen.print(&format!("watching {scene}; Ctrl-C ends it\n"));
@@ -53,11 +54,10 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
         }
         let written = content
             .bytes
-            .map_err(|error| Trouble(format!("cannot read {scene}: {error}")))
+            .map_err(|error| trouble(format!("cannot read {scene}: {error}")))
             .and_then(|bytes| render_and_write(args, bytes, &output, latest.stale(), &mut screen));
         match written {
-            Ok(None) => {}
-            Ok(Some(done)) => {
+            Ok(done) => {
                 let (since, what) = if is_first {
                     (start, "after the start")
                 } else {
@@ -66,6 +66,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 let time = time(done.duration_since(since));
                 screen.print(&format!("wrote {output} {time} {what}\n"));
             }
+            Err(Trouble::SceneErrors | Trouble::Interrupted) => {}
             // Watching continues after any error, since the cause may be gone at the next save.
             Err(trouble) => screen.print(&output::worded_error(&trouble)),
         }
@@ -81,14 +82,13 @@ const REFIT: Duration = Duration::from_millis(200);
 /// Returns the file to which the picture is written.
 fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
     if input::is_standard(&args.scene) {
-        return Err(Trouble(
-            "standard input cannot be watched: it is read once; give a file".to_owned(),
+        return Err(trouble(
+            "standard input cannot be watched: it is read once; give a file",
         ));
     }
     match PictureOutput::of(&args.scene, args.output.as_deref())? {
-        PictureOutput::Standard => Err(Trouble(
-            "standard output holds one picture, and watch writes one after every save: give a file"
-                .to_owned(),
+        PictureOutput::Standard => Err(trouble(
+            "standard output holds one picture, and watch writes one after every save: give a file",
         )),
         file => Ok(file),
     }
@@ -103,7 +103,7 @@ pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
 
 fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
     if bytes.starts_with(&SIGNATURE) {
-        return Err(Trouble(format!(
+        return Err(trouble(format!(
             "{} is a picture, and what is watched is a text that somebody edits: `render` takes pictures",
             shown(scene)
         )));
@@ -112,33 +112,25 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
 }
 
 /// Renders the text `bytes` and writes its picture. Returns the time at which the picture was
-/// written. Returns `None` if the text has errors or a newer text has arrived.
+/// written. A newer text interrupts the work.
 fn render_and_write(
     args: &WatchArgs,
     bytes: Vec<u8>,
     output: &PictureOutput,
     is_stale: &AtomicBool,
     screen: &mut Screen,
-) -> Result<Option<Instant>, Trouble> {
+) -> Result<Instant, Trouble> {
     check_text(&args.scene, &bytes)?;
     let input = SceneInput::of(&args.scene, bytes, &args.overrides);
-    let Ok(reading) = scene::read_unless(&input.sources, is_stale) else {
-        return Ok(None);
-    };
+    let reading = scene::read_unless(&input.sources, is_stale).map_err(RenderError::from)?;
     screen.print(&input.report(&reading));
-    let Some(scene) = reading.scene else {
-        return Ok(None);
-    };
-    let picture = match with_sketch(&scene, output.keep(), is_stale, screen) {
-        Ok(picture) => picture,
-        Err(RenderError::Cancelled) => return Ok(None),
-        Err(error) => return Err(Trouble(error.to_string())),
-    };
+    let scene = reading.scene.ok_or(Trouble::SceneErrors)?;
+    let picture = with_sketch(&scene, output.keep(), is_stale, screen)?;
     let recipe = input.recipe(None);
     let whole = Area::whole(scene.image.width, scene.image.height);
     let written = output.write(&args.scene, &picture, &recipe, whole, is_stale);
     if written.is_err() && is_stale.load(Ordering::SeqCst) {
-        return Ok(None);
+        return Err(Trouble::Interrupted);
     }
     let done = Instant::now();
     let notes = picture.notes(whole, output);
@@ -149,7 +141,7 @@ fn render_and_write(
     written?;
     screen.print(&output.note_of_length(&recipe));
     screen.print(&notes);
-    Ok(Some(done))
+    Ok(done)
 }
 
 /// Time that a render may take before coarse pictures are shown meanwhile.

@@ -120,38 +120,28 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     };
     let rows = schema::BLOCKS.iter();
     let rows = rows.filter(|row| row.is_object || !is_there(row));
-    let mut completions: Vec<Completion> = rows
-        .map(|row| Completion {
-            label: row.name.to_owned(),
-            kind: CompletionKind::Block,
-            detail: row.help.to_owned(),
-            help: describe::about_block(row),
-            // If the rest of the block follows, only the keyword is inserted.
-            insert: if situation.goes_on {
-                vec![text(row.name)]
-            } else {
-                block_with_fields(row)
-            },
-            replaces: situation.word,
-            // The camera comes first, because a scene needs one.
-            rank: u8::from(row.kind != BlockKind::Camera),
-        })
-        .collect();
-    completions.push(Completion {
-        label: "let".to_owned(),
-        kind: CompletionKind::Keyword,
-        detail: "gives a value a name".to_owned(),
-        help: describe::ABOUT_LET.to_owned(),
+    let blocks = rows.map(|row| {
+        let about = [row.help.to_owned(), describe::about_block(row)];
+        // The camera comes first, because a scene needs one.
+        let rank = u8::from(row.kind != BlockKind::Camera);
+        let mut block = word(situation, row.name, CompletionKind::Block, about, rank);
+        // If the rest of the block follows, only the keyword is inserted.
+        if !situation.goes_on {
+            block.insert = block_with_fields(row);
+        }
+        block
+    });
+    let about = ["gives a value a name", describe::ABOUT_LET].map(str::to_owned);
+    let definition = Completion {
         insert: vec![
             text("let "),
             placeholder("name"),
             text(" = "),
             placeholder("1"),
         ],
-        replaces: situation.word,
-        rank: 2,
-    });
-    completions
+        ..word(situation, "let", CompletionKind::Keyword, about, 2)
+    };
+    blocks.chain([definition]).collect()
 }
 
 /// Returns the text of a block with the fields that it needs. A block with at most one such field
@@ -228,24 +218,20 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         !given.contains(&field.name) && !row.excludes(field.name).any(|name| given.contains(&name))
     };
     let fields = row.fields.iter().filter(is_open).map(|field| {
-        let mut insert = vec![text(field.name)];
+        let detail = describe::kind_and_preset(field).replace('`', "");
+        let about = [detail, describe::about_field(row, field)];
+        let rank = match field.preset {
+            Preset::Required => 0,
+            Preset::Alternative => 1,
+            Preset::Value(_) | Preset::Nothing => 2,
+        };
+        let mut completion = word(situation, field.name, CompletionKind::Field, about, rank);
         if !situation.goes_on {
-            insert = vec![text(format!("{} ", field.name))];
-            insert.extend(value_to_type_over(&example(analysis, situation, field)));
+            completion.insert = vec![text(format!("{} ", field.name))];
+            let example = example(analysis, situation, field);
+            completion.insert.extend(value_to_type_over(&example));
         }
-        Completion {
-            label: field.name.to_owned(),
-            kind: CompletionKind::Field,
-            detail: describe::kind_and_preset(field).replace('`', ""),
-            help: describe::about_field(row, field),
-            insert,
-            replaces: situation.word,
-            rank: match field.preset {
-                Preset::Required => 0,
-                Preset::Alternative => 1,
-                Preset::Value(_) | Preset::Nothing => 2,
-            },
-        }
+        completion
     });
     fields.collect()
 }
@@ -287,17 +273,14 @@ fn methods(situation: &Situation) -> Vec<Completion> {
 fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Completion> {
     let field = situation.field.filter(|_| situation.is_whole_value)?;
     let example = example(analysis, situation, field);
+    let detail = match field.preset {
+        Preset::Value(literal) if example == literal => "the default",
+        _ => field.takes.word(),
+    };
+    let about = [detail, field.help].map(str::to_owned);
     Some(Completion {
-        kind: CompletionKind::Value,
-        detail: match field.preset {
-            Preset::Value(literal) if example == literal => "the default".to_owned(),
-            _ => field.takes.word().to_owned(),
-        },
         insert: value_to_type_over(&example),
-        label: example,
-        help: field.help.to_owned(),
-        replaces: situation.word,
-        rank: 0,
+        ..word(situation, &example, CompletionKind::Value, about, 0)
     })
 }
 

@@ -65,9 +65,7 @@ pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
 ///
 /// Returns a sentence that says why the name cannot be renamed.
 pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
-    let Some(token) = analysis.token_at(at) else {
-        return Err("no name stands here".to_owned());
-    };
+    let token = analysis.token_at(at).ok_or("no name stands here")?;
     let word = analysis.slice(token.span);
     if !occurrences(analysis, at).is_empty() {
         return Ok(token.span);
@@ -92,9 +90,7 @@ pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
 pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>, String> {
     renamable(analysis, at)?;
     let occurrences = occurrences(analysis, at);
-    let Some((name, space)) = name_at(analysis, at) else {
-        return Err("no name stands here".to_owned());
-    };
+    let (name, space) = name_at(analysis, at).ok_or("no name stands here")?;
     let starts_well = new.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     let is_name = starts_well && new.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if !is_name {

@@ -8,8 +8,8 @@ use crate::{
     color::Color,
     math::Angle,
     scene::{
-        Camera, CenteredTriangle, Checkerboard, Count, Cuboid, Image, Lens, Method, Object,
-        Sampler, Scene, Shape, Sphere, Triangle, TriangleOutline, View,
+        Camera, CenteredTriangle, Checkerboard, Count, Cuboid, FieldOwner, Image, Lens, Method,
+        Object, Sampler, Scene, Shape, Sphere, Triangle, TriangleOutline, View,
     },
     schema::Value,
     source::{SourceId, Span},
@@ -97,9 +97,13 @@ pub fn color(object: usize, is_odd: bool) -> Color {
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     let objects = shapes.iter().enumerate().map(|(object, shape)| {
         let own = [false, true].map(|is_odd| color(object, is_odd));
-        let of_one_color = shape.with_field("color", Value::Color(own[0]));
-        let colored = of_one_color.or_else(|| shape.with_field("colors", Value::Colors(own)));
-        let shape = colored.unwrap_or(*shape);
+        let owner = FieldOwner::Shape(*shape);
+        let of_one_color = owner.with("color", Value::Color(own[0]));
+        let colored = of_one_color.or_else(|| owner.with("colors", Value::Colors(own)));
+        let shape = match colored {
+            Some(FieldOwner::Shape(shape)) => shape,
+            _ => *shape,
+        };
         Object {
             name: None,
             indices: Box::default(),

@@ -6,7 +6,7 @@
 use glam::{DVec2, DVec3};
 
 use super::formulas::{axes, by_vertices, crossings, radians};
-use crate::scene::{Checkerboard, Lens, Scene, Shape};
+use crate::scene::{Lens, Scene, Shape};
 
 /// A scene prepared for the textbook formulas.
 #[derive(Clone, Debug)]
@@ -87,10 +87,8 @@ impl Textbook {
         }
         let (object, t) = nearest?;
         let point = self.eye + t * direction;
-        let odd = match self.shapes[object] {
-            Shape::Checkerboard(Checkerboard { square, .. }) => is_odd(point, square),
-            Shape::Sphere(_) | Shape::Triangle(_) | Shape::Box(_) => false,
-        };
+        let board = self.shapes[object].checkerboard();
+        let odd = board.is_some_and(|board| is_odd(point, board.square));
         Some(TextbookHit {
             object,
             odd,

@@ -41,11 +41,8 @@ pub(super) fn render_as<P: film::Pixel>(
     control: &Control,
 ) -> Result<Film<P>, RenderError> {
     let film = Mutex::new(Film::new(part.width, part.height)?);
-    let colors: Vec<_> = world
-        .palette()
-        .iter()
-        .map(|color| color.to_linear())
-        .collect();
+    let colors = world.palette().iter();
+    let colors: Vec<_> = colors.map(|color| color.to_linear()).collect();
     let encoder = Encoder::default();
     let shown: Vec<_> = colors.iter().map(|&light| P::of(light, &encoder)).collect();
     let renderer = Renderer {

@@ -1,7 +1,7 @@
 //! Builders of diagnostics about the meaning of a scene.
 
 use crate::{
-    diagnostic::{Applicability, Diagnostic, Fix, Label, Severity},
+    diagnostic::{Applicability, Diagnostic, Fix, Label, Problems, Severity},
     source::Span,
 };
 
@@ -63,6 +63,11 @@ impl Diagnostic {
     ) -> Self {
         let texts = texts.into_iter();
         self.fixes(texts.map(|text| Fix::write(span, text).with_applicability(applicability)))
+    }
+
+    /// Adds the diagnostic to others.
+    pub(super) fn report(self, problems: &mut Problems) {
+        problems.push(self);
     }
 
     /// Returns whether the diagnostic's code is `pinhole::CODE`, where CODE is `code`.

@@ -3,13 +3,12 @@
 use std::cmp::Ordering;
 
 use super::{
-    field_ref::FieldRef,
     model::{Camera, Image, Lens, View},
     shape::Shape,
 };
 use crate::{
     math::compare_half_turns,
-    schema::{CAMERA, IMAGE, Value},
+    schema::{CAMERA, FieldValue, IMAGE, Value},
 };
 
 /// An image, a camera or a shape: the owner of fields.
@@ -27,27 +26,43 @@ impl FieldOwner {
     /// Returns the value of a field. Returns `None` if the owner does not use the field, such as
     /// `direction` of a camera that has a `lookat`. For a box, all of `min`, `max`, `center` and
     /// `size` are available.
-    pub fn value(self, field: &str) -> Option<Value> {
-        match self {
-            Self::Image(mut image) => Some(image_field(&mut image, field)?.get()),
-            Self::Camera(mut camera) => Some(camera_field(&mut camera, field)?.get()),
-            Self::Shape(shape) => shape.field(field),
+    pub fn value(mut self, field: &str) -> Option<Value> {
+        if let Self::Shape(Shape::Box(cuboid)) = &self
+            && let Some(value) = cuboid.center_or_size(field)
+        {
+            return Some(Value::Vector(value));
         }
+        Some(self.field_mut(field)?.value())
     }
 
     /// Returns a copy in which `field` has the value `value`. Returns `None` if the owner does not
     /// use the field, or if the value has another type. Does not check the language's conditions.
     pub fn with(mut self, field: &str, value: Value) -> Option<Self> {
-        match &mut self {
-            Self::Image(image) => image_field(image, field)?.set(value)?,
-            Self::Camera(camera) => camera_field(camera, field)?.set(value)?,
-            Self::Shape(shape) => *shape = shape.with_field(field, value)?,
+        if let (Self::Shape(Shape::Box(cuboid)), Value::Vector(to)) = (&mut self, value)
+            && cuboid.set_center_or_size(field, to)
+        {
+            return Some(self);
         }
+        self.field_mut(field)?.set(value)?;
         Some(self)
     }
 
-    /// Returns whether all fields meet the language's conditions. These are checked in `f64`, so a
-    /// value within rounding error of a limit may be misjudged.
+    /// Returns a field that is used, by its name. The width and the height of an image, which are
+    /// no `f64`s, and the derived fields of a box are not reached so.
+    fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        match self {
+            Self::Image(Image {
+                width: _,
+                height: _,
+                background,
+            }) => IMAGE.background.of(name, background),
+            Self::Camera(camera) => camera_field_mut(camera, name),
+            Self::Shape(shape) => shape.field_mut(name),
+        }
+    }
+
+    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
+    /// rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         match self {
             Self::Image(_) => true,
@@ -71,40 +86,31 @@ impl FieldOwner {
     }
 }
 
-/// Returns a reference to a field of an image. Returns `None` for `width` and `height`, which are
-/// not `f64`s.
-fn image_field<'a>(image: &'a mut Image, field: &str) -> Option<FieldRef<'a>> {
-    let Image {
-        width: _,
-        height: _,
-        background,
-    } = image;
-    (field == IMAGE.background.name).then_some(FieldRef::Color(background))
-}
-
-fn camera_field<'a>(camera: &'a mut Camera, field: &str) -> Option<FieldRef<'a>> {
+fn camera_field_mut<'a>(camera: &'a mut Camera, name: &str) -> Option<&'a mut dyn FieldValue> {
     let Camera {
         eye,
         view,
         up,
         roll,
-        lens,
         view_height,
+        lens,
         near,
         far,
     } = camera;
-    Some(match (view, lens) {
-        _ if field == CAMERA.eye.name => FieldRef::Vector(eye),
-        _ if field == CAMERA.up.name => FieldRef::Vector(up),
-        _ if field == CAMERA.roll.name => FieldRef::Angle(roll),
-        _ if field == CAMERA.near.name => FieldRef::Number(near),
-        _ if field == CAMERA.far.name => FieldRef::Number(far.as_mut()?),
-        (View::Lookat(point), _) if field == CAMERA.lookat.name => FieldRef::Vector(point),
-        (View::Direction(along), _) if field == CAMERA.direction.name => FieldRef::Vector(along),
-        (_, Lens::Distance(d)) if field == CAMERA.d.name => FieldRef::Number(d),
-        (_, Lens::Distance(_)) if field == CAMERA.view_height.name => FieldRef::Number(view_height),
-        (_, Lens::Fov(angle)) if field == CAMERA.fov.name => FieldRef::Angle(angle),
-        (_, Lens::HorizontalFov(angle)) if field == CAMERA.hfov.name => FieldRef::Angle(angle),
-        _ => return None,
+    let field = CAMERA.eye.of(name, eye).or(CAMERA.up.of(name, up));
+    let field = field.or(CAMERA.roll.of(name, roll));
+    let field = field.or(CAMERA.near.of(name, near));
+    let field = field.or(far.as_mut().and_then(|far| CAMERA.far.of(name, far)));
+    let field = field.or(match view {
+        View::Lookat(point) => CAMERA.lookat.of(name, point),
+        View::Direction(along) => CAMERA.direction.of(name, along),
+    });
+    field.or(match lens {
+        Lens::Distance(d) => {
+            let field = CAMERA.d.of(name, d);
+            field.or(CAMERA.view_height.of(name, view_height))
+        }
+        Lens::Fov(angle) => CAMERA.fov.of(name, angle),
+        Lens::HorizontalFov(angle) => CAMERA.hfov.of(name, angle),
     })
 }

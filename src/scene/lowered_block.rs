@@ -81,7 +81,7 @@ impl LoweredBlock<'_> {
 
     /// Returns the value of a field, or its default if the block does not have the field. Returns
     /// `None` if the value has errors, or if the field is missing and has no default.
-    pub fn value<T: FieldValue>(&self, field: FieldHandle<T>) -> Option<T> {
+    pub fn value<T: FieldValue + Copy>(&self, field: FieldHandle<T>) -> Option<T> {
         let value = match self.given(field) {
             Some(given) => given.value,
             None => *DEFAULTS.get(self.row.kind as usize)?.get(field.index)?,

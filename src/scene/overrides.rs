@@ -5,7 +5,7 @@
 
 use super::{
     error::error,
-    eval::{Evaluator, Names, suits},
+    eval::{Names, suits, value_of},
 };
 use crate::{
     diagnostic::{Applicability, Diagnostic, Problems},
@@ -209,28 +209,14 @@ impl<'s> Override<'s> {
         });
         let own = place.err();
         for (name, value) in definitions.take_while(|(name, _)| own != Some(name.text)) {
-            let known = value_of(value, sources, &names);
+            let known = value_of(value, None, sources, &names);
             names.define(name, known, value);
         }
         match place {
             Ok(field) => suits(field, &self.value, sources, &names),
-            Err(_) => value_of(&self.value, sources, &names).is_some(),
+            Err(_) => value_of(&self.value, None, sources, &names).is_some(),
         }
     }
-}
-
-/// Evaluates a value without reporting problems.
-fn value_of<'s>(
-    value: &Value<'s>,
-    sources: &'s Sources,
-    names: &Names<'s>,
-) -> Option<schema::Value> {
-    let mut evaluator = Evaluator {
-        sources,
-        names,
-        problems: &mut Problems::default(),
-    };
-    evaluator.value(value, None)
 }
 
 /// Returns the row of the field `name` of a block, which is given by its kind or by an object's

@@ -7,11 +7,11 @@
 use std::sync::Arc;
 
 use super::{
-    eval::{Evaluator, Names},
+    eval::{Names, value_of},
     model::{Camera, Image, Object, Sampler, Scene},
 };
 use crate::{
-    diagnostic::{Diagnostic, Problems},
+    diagnostic::Diagnostic,
     schema::{Type, Value},
     source::Sources,
     syntax::{
@@ -98,12 +98,6 @@ impl<'s> SemanticModel<'s> {
     /// is known. Returns `None` if the expression has errors, or has no value by itself, such as
     /// the name of a sampling method.
     pub fn value(&self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
-        let mut problems = Problems::default();
-        let mut evaluator = Evaluator {
-            sources: self.sources,
-            names: &self.names,
-            problems: &mut problems,
-        };
-        evaluator.value(value, wanted)
+        value_of(value, wanted, self.sources, &self.names)
     }
 }

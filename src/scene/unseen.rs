@@ -10,8 +10,7 @@
 use glam::DVec3;
 
 use super::{
-    model::{Camera, Image, Object},
-    pixel_size::pixel_size,
+    model::{Camera, Image, Object, pixel_size},
     shape::{Checkerboard, Shape},
 };
 use crate::{
@@ -43,26 +42,25 @@ pub enum WhyUnseen {
 /// Returns the reason why the camera sees no object. Returns `None` if it may see one, or if its
 /// axes are too inaccurate.
 pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<WhyUnseen> {
-    let frustum = Frustum::new(camera, image)?;
+    let sight = Sight::new(camera, image)?;
     let sees = |near: f64, far: f64| {
         let mut shapes = objects.iter().map(|object| &object.shape);
-        shapes.any(|shape| frustum.may_see(shape, near, far))
+        shapes.any(|shape| sight.may_see(shape, near, far))
     };
-    let far = camera.far.unwrap_or(f64::INFINITY);
-    if sees(camera.near, far) {
+    if sees(sight.near, sight.far) {
         return None;
     }
     // If an object would be visible without the near plane, or without the far plane, that plane is
     // the reason.
-    if sees(0.0, far) {
+    if sees(0.0, sight.far) {
         return Some(WhyUnseen::Clipped(CAMERA.near.name));
     }
-    if sees(camera.near, f64::INFINITY) {
+    if sees(sight.near, f64::INFINITY) {
         return Some(WhyUnseen::Clipped(CAMERA.far.name));
     }
     let is_behind = |object: &Object| {
         let around = object.shape.bounding_sphere();
-        around.is_some_and(|sphere| frustum.is_beyond(sphere, frustum.forward, 0.0))
+        around.is_some_and(|sphere| sight.is_beyond(sphere, sight.forward, 0.0))
     };
     Some(if objects.iter().all(is_behind) {
         WhyUnseen::Behind
@@ -96,48 +94,6 @@ impl Outside {
     }
 }
 
-/// The visible space of a camera, between its near and its far plane.
-pub struct Sight {
-    frustum: Frustum,
-    near: f64,
-    far: f64,
-}
-
-impl Sight {
-    /// Makes the visible space of a camera. Returns `None` if the camera's axes are too inaccurate;
-    /// see `LEAST_SINE`.
-    pub fn new(camera: &Camera, image: &Image) -> Option<Self> {
-        Some(Self {
-            frustum: Frustum::new(camera, image)?,
-            near: camera.near,
-            far: camera.far.unwrap_or(f64::INFINITY),
-        })
-    }
-
-    /// Returns where an object is if its bounding sphere shows that no part of it is in the
-    /// picture. Returns `None` if it may be visible.
-    pub fn outside(&self, shape: &Shape) -> Option<Outside> {
-        let frustum = &self.frustum;
-        let Some(sphere) = shape.bounding_sphere() else {
-            let sees = frustum.may_see(shape, self.near, self.far);
-            return (!sees).then_some(Outside::Beside("outside of the window"));
-        };
-        let forward = frustum.forward;
-        if frustum.is_beyond(sphere, forward, 0.0) {
-            return Some(Outside::Behind);
-        }
-        let mut sides = frustum.sides().into_iter();
-        if let Some((name, _)) = sides.find(|(_, side)| frustum.is_beyond(sphere, *side, 0.0)) {
-            return Some(Outside::Beside(name));
-        }
-        if frustum.is_beyond(sphere, forward, self.near) {
-            return Some(Outside::BeforeNear);
-        }
-        let is_far = frustum.is_beyond(sphere, -forward, -self.far);
-        is_far.then_some(Outside::BeyondFar)
-    }
-}
-
 /// Returns whether samples cannot tell the squares of a visible board apart, so that all squares
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
@@ -153,30 +109,28 @@ pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) ->
             roll,
             ..*camera
         };
-        along_y.then(|| Frustum::new(&level, image))?
+        along_y.then(|| Sight::new(&level, image))?
     };
-    let Some(frustum) = Frustum::new(camera, image).or_else(straight) else {
-        return false;
-    };
-    let far = camera.far.unwrap_or(f64::INFINITY);
-    frustum.may_see_plane(board.y, camera.near, far) && frustum.are_lost(board)
+    let sight = Sight::new(camera, image).or_else(straight);
+    sight.is_some_and(|it| it.may_see_plane(board.y, it.near, it.far) && it.are_lost(board))
 }
 
-/// Pyramid of everything that the camera would see without a near and a far plane: its apex is the
-/// eye, and its edges pass through the corners of the window.
-struct Frustum {
+/// The space that a camera sees: the pyramid of its window, between the near and the far plane.
+pub struct Sight {
     eye: DVec3,
     /// The view direction, of length 1.
     forward: DVec3,
     /// Vectors to the right and to the top of the picture, each as long as half of the window at
     /// depth 1.
     window: [DVec3; 2],
+    near: f64,
+    far: f64,
 }
 
-impl Frustum {
-    /// Makes the pyramid of a camera. Returns `None` if the camera's axes are too inaccurate; see
-    /// `LEAST_SINE`.
-    fn new(camera: &Camera, image: &Image) -> Option<Self> {
+impl Sight {
+    /// Makes the visible space of a camera. Returns `None` if the camera's axes are too inaccurate;
+    /// see `LEAST_SINE`.
+    pub fn new(camera: &Camera, image: &Image) -> Option<Self> {
         let (from, to) = camera.view.ends(camera.eye);
         let forward = (to - from).normalize();
         let right = forward.cross(camera.up.normalize());
@@ -201,7 +155,30 @@ impl Frustum {
             eye: camera.eye,
             forward,
             window,
+            near: camera.near,
+            far: camera.far.unwrap_or(f64::INFINITY),
         })
+    }
+
+    /// Returns where an object is if its bounding sphere shows that no part of it is in the
+    /// picture. Returns `None` if it may be visible.
+    pub fn outside(&self, shape: &Shape) -> Option<Outside> {
+        let Some(sphere) = shape.bounding_sphere() else {
+            let sees = self.may_see(shape, self.near, self.far);
+            return (!sees).then_some(Outside::Beside("outside of the window"));
+        };
+        if self.is_beyond(sphere, self.forward, 0.0) {
+            return Some(Outside::Behind);
+        }
+        let mut sides = self.sides().into_iter();
+        if let Some((name, _)) = sides.find(|(_, side)| self.is_beyond(sphere, *side, 0.0)) {
+            return Some(Outside::Beside(name));
+        }
+        if self.is_beyond(sphere, self.forward, self.near) {
+            return Some(Outside::BeforeNear);
+        }
+        let is_far = self.is_beyond(sphere, -self.forward, -self.far);
+        is_far.then_some(Outside::BeyondFar)
     }
 
     /// Returns whether a shape may be visible between the depths `near` and `far`.

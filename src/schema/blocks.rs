@@ -1,55 +1,146 @@
 //! The table of the kinds of blocks and their fields.
 
+use std::marker::PhantomData;
+
 use super::{
-    row_types::{BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset, Several},
-    types::{Type, contents},
+    row_types::{Choice, Condition, FieldRow, Preset},
+    types::{FieldValue, Type, contents},
 };
 use Condition::{
     AtLeast, AtMostTwoTo, EachMoreThanZero, LessThanHalfTurn, LessThanTwoTo, MoreThan,
 };
 use Condition::{NotZero, Whole};
 
-/// Defines the fields of a kind of block: for each field, a row of the table and a [`FieldHandle`].
-/// A line holds a field's name, type, preset and help, and then any other columns of its row.
-macro_rules! fields {
-    ($kind:ident $handles:ident $constant:ident {
-        $($name:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*
-    }) => {
-        #[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
+/// The table's row for a kind of block.
+#[derive(Debug)]
+pub struct BlockRow {
+    /// Kind of block.
+    pub kind: BlockKind,
+    /// The keyword that the block starts with.
+    pub name: &'static str,
+    /// The keyword with its article, for messages.
+    pub noun: &'static str,
+    /// Whether the block describes an object. A scene may have many objects, and each may have a
+    /// name.
+    pub is_object: bool,
+    /// One line of help.
+    pub help: &'static str,
+    /// Rows of the block's fields.
+    pub fields: &'static [FieldRow],
+    /// Groups of fields that express the same thing in different ways and exclude each other.
+    pub choices: &'static [Choice],
+    /// Conditions that relate several fields, as formulas with the fields' names.
+    pub together: &'static [&'static str],
+    /// Words that people use by mistake to give several fields at once, with a list of the values;
+    /// and these fields.
+    pub several: &'static [(&'static str, &'static [&'static str])],
+    /// Sets of words that people use together by mistake, such as three names for the three
+    /// coordinates of one field.
+    ///
+    /// The words of a set are separated by spaces, and sets by `|`. The second element names either
+    /// the one field whose parts the words stand for, or one field for each word.
+    pub parted: &'static [(&'static str, &'static [&'static str])],
+    /// Words that people use by mistake for the keyword, separated by spaces.
+    pub also_tried: &'static str,
+    /// Words of other programs that correspond to no field, each with the help, which says what to
+    /// write instead.
+    pub elsewhere: &'static [(&'static str, &'static str)],
+    /// Lists of fields that values without names stand for, at the start of the block.
+    pub nameless: &'static [&'static [&'static str]],
+    /// The fields that an editor writes for a new object. It replaces `{at}` by a free place,
+    /// `{across}` by the direction from there towards the camera, `{size}` by half the extent there
+    /// is room for, `{twice}` by the whole, and `{below}` by a height below everything.
+    pub added: &'static str,
+}
+
+/// Typed handle of a field, whose values have the Rust type `T`.
+///
+/// Code refers to a field by such a constant, so that a misspelt name does not compile.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldHandle<T> {
+    /// The field's name.
+    pub name: &'static str,
+    /// The kind of block that has the field.
+    pub kind: BlockKind,
+    /// Index of the field's row in [`BlockRow::fields`].
+    pub index: usize,
+    values: PhantomData<T>,
+}
+
+impl<T> FieldHandle<T> {
+    pub(super) const fn new(name: &'static str, kind: BlockKind, index: usize) -> Self {
+        Self {
+            name,
+            kind,
+            index,
+            values: PhantomData,
+        }
+    }
+}
+
+impl<T: FieldValue> FieldHandle<T> {
+    /// Returns a reference to the field's value if the name is the field's.
+    pub fn of<'a>(self, name: &str, value: &'a mut T) -> Option<&'a mut dyn FieldValue> {
+        (name == self.name).then_some(value)
+    }
+}
+
+/// Makes the kinds of blocks, their rows, and a handle for each field.
+///
+/// The head of a block gives its kind, and the type and the name of its handles. A line in the
+/// first braces gives a field's name, type, preset and help; then any other columns of its row. The
+/// second braces hold columns of the block's row.
+macro_rules! blocks {
+    ($($kind:ident $handles:ident $constant:ident {
+        $($field:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*
+    } {
+        $($column:ident: $content:expr,)*
+    })*) => {
+        /// A kind of block.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum BlockKind {
+            $(#[doc = concat!("The kind of [`", stringify!($constant), "`].")] $kind,)*
+        }
+
+        $(#[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
         #[derive(Clone, Copy, Debug)]
         pub struct $handles {
-            $(#[doc = $help] pub $name: FieldHandle<contents::$takes>,)*
+            $(#[doc = $help] pub $field: FieldHandle<contents::$takes>,)*
         }
 
         #[doc = concat!("Handles of the fields of `BlockKind::", stringify!($kind), "`.")]
         pub const $constant: $handles = {
             #[allow(non_camel_case_types, reason = "the variants are named as the fields are")]
-            enum Index { $($name),* }
+            enum Index { $($field),* }
             $handles {
-                $($name: FieldHandle::new(
-                    stringify!($name),
+                $($field: FieldHandle::new(
+                    stringify!($field),
                     BlockKind::$kind,
-                    Index::$name as usize,
+                    Index::$field as usize,
                 ),)*
             }
-        };
+        };)*
 
-        impl $handles {
-            const ROWS: &[FieldRow] = &[$(FieldRow {
+        /// The rows of all kinds of blocks, in the order of [`BlockKind`].
+        #[allow(clippy::needless_update, reason = "a row may have all columns")]
+        pub const BLOCKS: &[BlockRow] = &[$(BlockRow {
+            kind: BlockKind::$kind,
+            fields: &[$(FieldRow {
                 $($more: $value,)*
                 ..FieldRow::new(
-                    stringify!($name),
+                    stringify!($field),
                     Type::$takes,
                     Preset::$preset $(($default))?,
                     $help,
                 )
-            }),*];
-        }
+            }),*],
+            $($column: $content,)*
+            ..BLOCK
+        }),*];
     };
 }
 
-/// Template of a row of [`BLOCKS`], without choices or additional words. A row states the columns
-/// in which it differs.
+/// Template of a row, without fields or additional words. The table's rows override parts of it.
 const BLOCK: BlockRow = BlockRow {
     kind: BlockKind::Image,
     name: "",
@@ -63,53 +154,30 @@ const BLOCK: BlockRow = BlockRow {
     parted: &[],
     also_tried: "",
     elsewhere: &[],
+    nameless: &[],
+    added: "",
 };
 
-/// The rows of all kinds of blocks, in the order of [`BlockKind`].
-pub const BLOCKS: &[BlockRow] = &[
-    IMAGE_ROW,
-    CAMERA_ROW,
-    SAMPLER_ROW,
-    SPHERE_ROW,
-    TRIANGLE_ROW,
-    BOX_ROW,
-    CHECKERBOARD_ROW,
-];
+/// Returns the names of fields of a block, by their handles.
+macro_rules! names {
+    ($handles:ident $($field:ident)*) => {
+        &[$($handles.$field.name),*]
+    };
+}
 
-const _: () = {
-    let mut at = 0;
-    while at < BLOCKS.len() {
-        assert!(
-            BLOCKS[at].kind as usize == at,
-            "rows stand in the order of their kinds"
-        );
-        at += 1;
-    }
-};
-
-fields! {
+blocks! {
     Image ImageFields IMAGE {
         width Number Value("800") "the columns of pixels" must(PIXELS) also_tried("columns w");
         height Number Value("450") "the rows of pixels" must(PIXELS) also_tried("rows h");
         background Color Value("black") "the colour where nothing is hit" also_tried("bg color colour sky");
+    } {
+        name: "image",
+        noun: "an image",
+        help: "the picture's size, and what is seen where nothing is hit",
+        several: &[("resolution size dimensions", names!(IMAGE width height))],
+        also_tried: "picture window film output",
     }
-}
 
-const IMAGE_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Image,
-    name: "image",
-    noun: "an image",
-    help: "the picture's size, and what is seen where nothing is hit",
-    fields: ImageFields::ROWS,
-    several: &[Several {
-        words: "resolution size dimensions",
-        fields: &[IMAGE.width.name, IMAGE.height.name],
-    }],
-    also_tried: "picture window film output",
-    ..BLOCK
-};
-
-fields! {
     Camera CameraFields CAMERA {
         eye Vector Required "the point that all rays pass through" example("(0, 2, 8)")
             also_tried("position pos from center centre origin location look_from");
@@ -127,49 +195,34 @@ fields! {
             example("60deg") also_tried("xfov horizontal_fov") perhaps("angle");
         near Number Value("0") "nothing at this depth or nearer is seen" must(&[AtLeast(0.0)]);
         far Number Nothing "nothing at this depth or farther is seen" example("100");
+    } {
+        name: "camera",
+        noun: "a camera",
+        help: "the pinhole camera: where it stands, where it looks, how much it sees",
+        choices: &[
+            Choice {
+                ways: &[names!(CAMERA lookat), names!(CAMERA direction)],
+                why: "either a point or a direction says where the camera looks",
+            },
+            Choice {
+                ways: &[names!(CAMERA d), names!(CAMERA fov), names!(CAMERA hfov)],
+                why: "one of d, fov and hfov says how much the camera sees",
+            },
+        ],
+        together: &["lookat ≠ eye", "near < far"],
+        also_tried: "cam view viewer eye",
+        elsewhere: &[
+            ("aspect aspect_ratio ratio right",
+             "write the size of the picture, `image { width 1280  height 720 }`: aspect = width / height, here 16 / 9"),
+            ("width height resolution size dimensions image_width image_height",
+             "write the picture's size in pixels as `image { width 640  height 480 }`; `view_height` is the height of the window in metres"),
+            ("zoom zoom_factor scale",
+             "write `d`, the distance of the view plane: d = zoom * 2 as `view_height` is 2, and the picture is twice as large for twice the `d`"),
+            ("focal_length focal_distance focal lens sensor_width sensor_height film_height film_width",
+             "write `d`: d = view_height * focal length / height of the film, such as `d 2 * 35 / 24` for 35 mm and a film of 36 by 24 mm"),
+        ],
     }
-}
 
-const CAMERA_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Camera,
-    name: "camera",
-    noun: "a camera",
-    help: "the pinhole camera: where it stands, where it looks, how much it sees",
-    fields: CameraFields::ROWS,
-    choices: &[
-        Choice {
-            ways: &[&[CAMERA.lookat.name], &[CAMERA.direction.name]],
-            why: "either a point or a direction says where the camera looks",
-        },
-        Choice {
-            ways: &[&[CAMERA.d.name], &[CAMERA.fov.name], &[CAMERA.hfov.name]],
-            why: "one of d, fov and hfov says how much the camera sees",
-        },
-    ],
-    together: &["lookat ≠ eye", "near < far"],
-    also_tried: "cam view viewer eye",
-    elsewhere: &[
-        (
-            "aspect aspect_ratio ratio right",
-            "write the size of the picture, `image { width 1280  height 720 }`: aspect = width / height, here 16 / 9",
-        ),
-        (
-            "width height resolution size dimensions image_width image_height",
-            "write the picture's size in pixels as `image { width 640  height 480 }`; `view_height` is the height of the window in metres",
-        ),
-        (
-            "zoom zoom_factor scale",
-            "write `d`, the distance of the view plane: d = zoom * 2 as `view_height` is 2, and the picture is twice as large for twice the `d`",
-        ),
-        (
-            "focal_length focal_distance focal lens sensor_width sensor_height film_height film_width",
-            "write `d`: d = view_height * focal length / height of the film, such as `d 2 * 35 / 24` for 35 mm and a film of 36 by 24 mm",
-        ),
-    ],
-    ..BLOCK
-};
-
-fields! {
     Sampler SamplerFields SAMPLER {
         method Method Value("multi_jittered") "the sampling technique" also_tried("technique type kind pattern");
         per_pixel Number Value("16") "the samples in each pixel" must(&[Whole, AtLeast(1.0)])
@@ -177,45 +230,33 @@ fields! {
         total Number Nothing "the samples in the whole picture, instead of per_pixel"
             must(&[Whole, AtLeast(1.0), AtMostTwoTo(53)]) example("1_000_000");
         seed Number Value("0") "another seed gives other random samples" must(&[Whole, AtLeast(0.0), LessThanTwoTo(53)]);
+    } {
+        name: "sampler",
+        noun: "a sampler",
+        help: "where in a pixel samples are taken, and how many",
+        choices: &[Choice {
+            ways: &[names!(SAMPLER per_pixel), names!(SAMPLER total)],
+            why: "either one says how many samples there are",
+        }],
+        together: &["per_pixel times the number of pixels is at most 2^53"],
+        also_tried: "sampling samples antialiasing",
     }
-}
 
-const SAMPLER_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Sampler,
-    name: "sampler",
-    noun: "a sampler",
-    help: "where in a pixel samples are taken, and how many",
-    fields: SamplerFields::ROWS,
-    choices: &[Choice {
-        ways: &[&[SAMPLER.per_pixel.name], &[SAMPLER.total.name]],
-        why: "either one says how many samples there are",
-    }],
-    together: &["per_pixel times the number of pixels is at most 2^53"],
-    also_tried: "sampling samples antialiasing",
-    ..BLOCK
-};
-
-fields! {
     Sphere SphereFields SPHERE {
         center Vector Required "its centre" example("(0, 1, 0)") also_tried(POSITION);
         radius Number Value("1") "its radius" must(POSITIVE) also_tried("r") perhaps("size") doubled("diameter");
         color Color Value("olive") "its colour" also_tried(COLOR);
+    } {
+        name: "sphere",
+        noun: "a sphere",
+        is_object: true,
+        help: "a sphere",
+        parted: &[("x y z|cx cy cz", names!(SPHERE center))],
+        nameless: &[names!(SPHERE center), names!(SPHERE center radius)],
+        added: "center {at}  radius {size}",
+        also_tried: "ball circle globe",
     }
-}
 
-const SPHERE_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Sphere,
-    name: "sphere",
-    noun: "a sphere",
-    is_object: true,
-    help: "a sphere",
-    fields: SphereFields::ROWS,
-    parted: &[("x y z|cx cy cz", &[SPHERE.center.name])],
-    also_tried: "ball circle globe",
-    ..BLOCK
-};
-
-fields! {
     Triangle TriangleFields TRIANGLE {
         centroid Vector Alternative "the mean of its vertices" example("(0, 1, 0)")
             also_tried("center centre position pos at middle location");
@@ -229,48 +270,26 @@ fields! {
         v1 Vector Alternative "one of its vertices, together with the two others" example("(1, 0, 0)") also_tried("b p1 vertex1");
         v2 Vector Alternative "one of its vertices, together with the two others" example("(0, 1, 0)") also_tried("c p2 vertex2");
         color Color Value("teal") "its colour" also_tried(COLOR);
-    }
-}
-
-const TRIANGLE_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Triangle,
-    name: "triangle",
-    noun: "a triangle",
-    is_object: true,
-    help: "a triangle, by centroid, normal and the lengths of its sides or by its vertices",
-    fields: TriangleFields::ROWS,
-    choices: &[Choice {
-        ways: &[
-            &[
-                TRIANGLE.centroid.name,
-                TRIANGLE.normal.name,
-                TRIANGLE.sides.name,
-                TRIANGLE.spin.name,
-            ],
-            &[TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name],
+    } {
+        name: "triangle",
+        noun: "a triangle",
+        is_object: true,
+        help: "a triangle, by centroid, normal and the lengths of its sides or by its vertices",
+        choices: &[Choice {
+            ways: &[names!(TRIANGLE centroid normal sides spin), names!(TRIANGLE v0 v1 v2)],
+            why: "a triangle is given by centroid, normal and sides, or by v0, v1 and v2",
+        }],
+        several: &[("vertices points corners vertex", names!(TRIANGLE v0 v1 v2))],
+        added: "centroid {at}  normal {across}  sides ({twice}, {twice}, {size})",
+        parted: &[("v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3", names!(TRIANGLE v0 v1 v2))],
+        together: &[
+            "the sides form a triangle: each is shorter than the two others together",
+            "v0, v1 and v2 do not lie on one line",
         ],
-        why: "a triangle is given by centroid, normal and sides, or by v0, v1 and v2",
-    }],
-    several: &[Several {
-        words: "vertices points corners vertex",
-        fields: &[TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name],
-    }],
-    parted: &[(
-        "v1 v2 v3|p1 p2 p3|vertex1 vertex2 vertex3|point1 point2 point3|corner1 corner2 corner3",
-        &[TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name],
-    )],
-    together: &[
-        "the sides form a triangle: each is shorter than the two others together",
-        "v0, v1 and v2 do not lie on one line",
-    ],
-    also_tried: "tri sail polygon",
-    elsewhere: &[(
-        "v3 v4 v5 p3 d",
-        "a triangle has three vertices; a second one with v0, v2 and this makes a quadrilateral of it",
-    )],
-};
+        also_tried: "tri sail polygon",
+        elsewhere: &[("v3 v4 v5 p3 d", "a triangle has three vertices; a second one with v0, v2 and this makes a quadrilateral of it")],
+    }
 
-fields! {
     Box BoxFields BOX {
         center Vector Alternative "its centre" example("(0, 1, 0)") also_tried(POSITION);
         size Vector Value("(0.5, 1.5, 2)") "its extents along x, y and z" must(&[EachMoreThanZero])
@@ -280,87 +299,58 @@ fields! {
         color Color Value("orange") "its colour" also_tried(COLOR);
         colors FaceColors Nothing "the colours of its faces across x, y and z, instead of color" example("(tan, wheat, peru)")
             also_tried("faces colours");
+    } {
+        name: "box",
+        noun: "a box",
+        is_object: true,
+        help: "a box along the axes, by centre and size or by two corners",
+        choices: &[
+            Choice {
+                ways: &[names!(BOX center size), names!(BOX min max)],
+                why: "a box is given by center and size, or by min and max",
+            },
+            Choice {
+                ways: &[names!(BOX color), names!(BOX colors)],
+                why: "a box has one colour, or one for its faces across each axis",
+            },
+        ],
+        parted: &[
+            ("corner1 corner2|p1 p2|p0 p1|from to|lower upper|a b", names!(BOX min max)),
+            ("width height depth|w h d|size_x size_y size_z", names!(BOX size)),
+            ("x y z|cx cy cz", names!(BOX center)),
+            ("color1 color2 color3|colour1 colour2 colour3|color_x color_y color_z", names!(BOX colors)),
+        ],
+        nameless: &[names!(BOX min max)],
+        added: "center {at}  size ({twice}, {twice}, {twice})",
+        together: &["min < max on every axis"],
+        also_tried: "cube cuboid block crate brick wall slab",
+        elsewhere: &[
+            ("width height depth x y z", "write `size (WIDTH, HEIGHT, DEPTH)`, its extents along x, y and z"),
+            ("turn rotate rotation rotated roll spin angle tilt yaw pitch",
+             "boxes stand along the axes; a shape that is turned is made of triangles, by v0, v1 and v2"),
+        ],
     }
-}
 
-const BOX_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Box,
-    name: "box",
-    noun: "a box",
-    is_object: true,
-    help: "a box along the axes, by centre and size or by two corners",
-    fields: BoxFields::ROWS,
-    choices: &[
-        Choice {
-            ways: &[
-                &[BOX.center.name, BOX.size.name],
-                &[BOX.min.name, BOX.max.name],
-            ],
-            why: "a box is given by center and size, or by min and max",
-        },
-        Choice {
-            ways: &[&[BOX.color.name], &[BOX.colors.name]],
-            why: "a box has one colour, or one for its faces across each axis",
-        },
-    ],
-    parted: &[
-        (
-            "corner1 corner2|p1 p2|p0 p1|from to|lower upper|a b",
-            &[BOX.min.name, BOX.max.name],
-        ),
-        (
-            "width height depth|w h d|size_x size_y size_z",
-            &[BOX.size.name],
-        ),
-        ("x y z|cx cy cz", &[BOX.center.name]),
-        (
-            "color1 color2 color3|colour1 colour2 colour3|color_x color_y color_z",
-            &[BOX.colors.name],
-        ),
-    ],
-    together: &["min < max on every axis"],
-    also_tried: "cube cuboid block crate brick wall slab",
-    elsewhere: &[
-        (
-            "width height depth x y z",
-            "write `size (WIDTH, HEIGHT, DEPTH)`, its extents along x, y and z",
-        ),
-        (
-            "turn rotate rotation rotated roll spin angle tilt yaw pitch",
-            "boxes stand along the axes; a shape that is turned is made of triangles, by v0, v1 and v2",
-        ),
-    ],
-    ..BLOCK
-};
-
-fields! {
     Checkerboard CheckerboardFields CHECKERBOARD {
         y Number Value("0") "the height of its plane" also_tried("height level");
         square Number Value("1") "the side of a square" must(POSITIVE) also_tried("side squares");
         colors Colors Value("(gray, white)") "the colours of the even and of the odd squares" also_tried("color colour colours");
+    } {
+        name: "checkerboard",
+        noun: "a checkerboard",
+        is_object: true,
+        help: "the infinite checkered floor in a horizontal plane",
+        added: "y {below}",
+        parted: &[("color1 color2|colour1 colour2|color_a color_b|even odd", names!(CHECKERBOARD colors))],
+        also_tried: "plane floor ground checker chessboard board",
+        elsewhere: &[(
+            "size width depth length extent extents rows columns",
+            "a checkerboard has no end, and `square` is the side of a square; a board that ends is made of boxes, such as `box for i < 8, j < 8 { center (i, 0, j)  size (1, 0.1, 1)  color (gray, white) }`",
+        )],
     }
 }
 
-const CHECKERBOARD_ROW: BlockRow = BlockRow {
-    kind: BlockKind::Checkerboard,
-    name: "checkerboard",
-    noun: "a checkerboard",
-    is_object: true,
-    help: "the infinite checkered floor in a horizontal plane",
-    fields: CheckerboardFields::ROWS,
-    parted: &[(
-        "color1 color2|colour1 colour2|color_a color_b|even odd",
-        &[CHECKERBOARD.colors.name],
-    )],
-    also_tried: "plane floor ground checker chessboard board",
-    elsewhere: &[(
-        "size width depth length extent extents rows columns",
-        "a checkerboard has no end, and `square` is the side of a square; a board that ends is made of boxes, such as `box for i < 8, j < 8 { center (i, 0, j)  size (1, 0.1, 1)  color (gray, white) }`",
-    )],
-    ..BLOCK
-};
-
-/// Conditions on the `width` and the `height` of the picture, which are in pixels.
+/// Conditions on the width or height of the picture in pixels.
 const PIXELS: &[Condition] = &[Whole, AtLeast(1.0), AtMostTwoTo(20)];
 
 /// Condition on a length, which must be positive.
@@ -371,3 +361,7 @@ const POSITION: &str = "position pos at centroid middle location";
 
 /// Words that people use by mistake for the colour of an object.
 const COLOR: &str = "fill material";
+
+/// Shapes of other programs, separated by spaces. The help says that such shapes can be made of
+/// triangles.
+pub const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";

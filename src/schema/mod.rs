@@ -4,10 +4,11 @@
 //! Each fact about the language stands here once. Lowering fills the scene from these tables,
 //! suggestions are chosen from them, and the language's reference is tested against them.
 //!
-//! `types` defines the language's types and `row_types` the columns of the tables. The rows are in
-//! `blocks`, `methods` and `builtins`, and the names of colours in `css`. This file has the
-//! lookups.
+//! `types` defines the language's types and `row_types` most columns of the table. The rows are in
+//! `blocks`, `methods` and `builtins`, and the names of colours in `css`. Lookups are in this file
+//! and in `block_row`.
 
+mod block_row;
 mod blocks;
 mod builtins;
 pub mod css;
@@ -18,9 +19,7 @@ mod types;
 pub use blocks::*;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
 pub use methods::{METHODS, Method, is_sure_method, method, method_names, nearest_method};
-pub use row_types::{
-    BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset, Several,
-};
+pub use row_types::{Choice, Condition, FieldRow, Preset};
 pub use types::{FieldValue, Type, Value};
 
 use crate::suggest::{self, is_among};

@@ -2,71 +2,105 @@
 
 use std::fmt;
 
-use glam::DVec3;
+use crate::{math::Angle, numbers};
 
-use super::methods::Method;
-use crate::{color::Color, math::Angle, numbers};
+/// Makes the language's types and their values, each with a Rust type.
+///
+/// A line gives the variant with its Rust type, the type with its article, the plural, and the help
+/// that says what to write for a value of the type.
+macro_rules! types {
+    ($($variant:ident($contents:ty) noun $noun:literal plural $plural:literal such_as $such_as:literal;)*) => {
+        /// A type of the language.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Type {
+            $(#[doc = concat!("The type of ", $plural, ".")] $variant,)*
+        }
 
-/// A type of the language.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Type {
-    /// A number.
-    Number,
-    /// An angle: a number with a unit.
-    Angle,
-    /// A list of three numbers.
-    Vector,
-    /// An sRGB colour.
-    Color,
-    /// A pair of colours.
-    Colors,
-    /// A list of three colours, for the faces of a box across x, y and z.
-    FaceColors,
-    /// The name of a sampling technique.
-    Method,
+        impl Type {
+            /// Returns the type with its article, such as `a number`.
+            pub fn noun(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $noun,)*
+                }
+            }
+
+            /// Returns the plural of the type, such as `numbers`.
+            pub fn plural(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $plural,)*
+                }
+            }
+
+            /// Returns a help text with an example value of the type.
+            pub fn such_as(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $such_as,)*
+                }
+            }
+        }
+
+        /// A value of the language.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Value {
+            $(#[doc = concat!("The value is ", $noun, ".")] $variant(contents::$variant),)*
+        }
+
+        impl Value {
+            /// Returns the value's type.
+            pub fn kind(&self) -> Type {
+                match self {
+                    $(Self::$variant(_) => Type::$variant,)*
+                }
+            }
+        }
+
+        /// The Rust types of values, under the names of the language's types.
+        pub(super) mod contents {
+            $(pub type $variant = $contents;)*
+        }
+
+        $(impl FieldValue for contents::$variant {
+            fn from_value(value: Value) -> Option<Self> {
+                match value {
+                    Value::$variant(contents) => Some(contents),
+                    _ => None,
+                }
+            }
+
+            fn value(&self) -> Value {
+                Value::$variant(*self)
+            }
+
+            fn set(&mut self, value: Value) -> Option<()> {
+                *self = Self::from_value(value)?;
+                Some(())
+            }
+        })*
+    };
+}
+
+types! {
+    Number(f64) noun "a number" plural "numbers"
+        such_as "write a number, such as `2`";
+    Angle(crate::math::Angle) noun "an angle" plural "angles"
+        such_as "write an angle, such as `30deg`";
+    Vector(glam::DVec3) noun "a vector" plural "vectors"
+        such_as "write three numbers, such as `(0, 1, 0)`";
+    Color(crate::color::Color) noun "a colour" plural "colours"
+        such_as "write a colour, such as `olive` or `rgb(255, 165, 0)`";
+    Colors([crate::color::Color; 2]) noun "a pair of colours" plural "pairs of colours"
+        such_as "write two colours, such as `(gray, white)`";
+    FaceColors([crate::color::Color; 3]) noun "a list of three colours" plural "lists of three colours"
+        such_as "write three colours, such as `(tan, wheat, peru)`";
+    Method(crate::schema::Method) noun "a method" plural "methods"
+        such_as "write a method, such as `jittered`";
 }
 
 impl Type {
-    /// Returns the type with its article, such as `a number`.
-    pub fn noun(self) -> &'static str {
-        match self {
-            Self::Number => "a number",
-            Self::Angle => "an angle",
-            Self::Vector => "a vector",
-            Self::Color => "a colour",
-            Self::Colors => "a pair of colours",
-            Self::FaceColors => "a list of three colours",
-            Self::Method => "a method",
-        }
-    }
-
     /// Returns the type without an article, such as `number`.
     pub fn word(self) -> &'static str {
         let noun = self.noun();
         noun.split_once(' ').map_or(noun, |(_, word)| word)
-    }
-
-    /// Returns the plural of the type, such as `numbers`.
-    pub fn plural(self) -> String {
-        match self {
-            Self::Colors => "pairs of colours".to_owned(),
-            Self::FaceColors => "lists of three colours".to_owned(),
-            _ => format!("{}s", self.word()),
-        }
-    }
-
-    /// Returns the help for a missing or wrong value of the type, with an example, such as "write a
-    /// number, such as `2`".
-    pub fn such_as(self) -> &'static str {
-        match self {
-            Self::Number => "write a number, such as `2`",
-            Self::Angle => "write an angle, such as `30deg`",
-            Self::Vector => "write three numbers, such as `(0, 1, 0)`",
-            Self::Color => "write a colour, such as `olive` or `rgb(255, 165, 0)`",
-            Self::Colors => "write two colours, such as `(gray, white)`",
-            Self::FaceColors => "write three colours, such as `(tan, wheat, peru)`",
-            Self::Method => "write a method, such as `jittered`",
-        }
     }
 
     /// Returns the type and the number of a list's elements: three numbers for a vector, two
@@ -81,39 +115,7 @@ impl Type {
     }
 }
 
-/// A value of the language.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Value {
-    /// A number.
-    Number(f64),
-    /// An angle.
-    Angle(Angle),
-    /// A vector.
-    Vector(DVec3),
-    /// A colour.
-    Color(Color),
-    /// A pair of colours.
-    Colors([Color; 2]),
-    /// Three colours.
-    FaceColors([Color; 3]),
-    /// A sampling technique.
-    Method(Method),
-}
-
 impl Value {
-    /// Returns the value's type.
-    pub fn kind(&self) -> Type {
-        match self {
-            Self::Number(_) => Type::Number,
-            Self::Angle(_) => Type::Angle,
-            Self::Vector(_) => Type::Vector,
-            Self::Color(_) => Type::Color,
-            Self::Colors(_) => Type::Colors,
-            Self::FaceColors(_) => Type::FaceColors,
-            Self::Method(_) => Type::Method,
-        }
-    }
-
     /// Returns whether all numbers in the value are finite.
     pub fn is_finite(&self) -> bool {
         match self {
@@ -145,37 +147,15 @@ impl fmt::Display for Value {
 }
 
 /// Rust type for the values of one of the language's types.
-pub trait FieldValue: Copy {
+pub trait FieldValue {
     /// Returns the contents of a value, or `None` if the value has another type.
-    fn from_value(value: Value) -> Option<Self>;
-}
+    fn from_value(value: Value) -> Option<Self>
+    where
+        Self: Sized;
 
-/// Defines the Rust type of each of the language's types, and its conversion from [`Value`].
-macro_rules! contents {
-    ($($variant:ident $contents:ty;)*) => {
-        /// The Rust types of values, under the names of the language's types.
-        pub(super) mod contents {
-            $(pub type $variant = $contents;)*
-        }
+    /// Returns the contents as a value.
+    fn value(&self) -> Value;
 
-        $(#[allow(unused_qualifications, reason = "the paths must be right in `contents`, too")]
-        impl FieldValue for $contents {
-            fn from_value(value: Value) -> Option<Self> {
-                match value {
-                    Value::$variant(contents) => Some(contents),
-                    _ => None,
-                }
-            }
-        })*
-    };
-}
-
-contents! {
-    Number f64;
-    Angle crate::math::Angle;
-    Vector glam::DVec3;
-    Color crate::color::Color;
-    Colors [crate::color::Color; 2];
-    FaceColors [crate::color::Color; 3];
-    Method crate::schema::Method;
+    /// Changes the contents. Returns `None` if the new value is of another type.
+    fn set(&mut self, value: Value) -> Option<()>;
 }

@@ -45,18 +45,13 @@ pub fn refusal(
         // Browsers leave out the port 80, the default, in the header `Host`.
         host == format!("{name}:{port}") || (port == 80 && host == *name)
     });
+    let forbidden = |why| Some((StatusCode::FORBIDDEN, why));
     if !is_own || uri.authority().is_some() {
-        Some((
-            StatusCode::FORBIDDEN,
-            "This is not the address of this page.",
-        ))
+        forbidden("This is not the address of this page.")
     } else if origin.is_some_and(|origin| origin != format!("http://{host}")) {
-        Some((StatusCode::FORBIDDEN, "Another page asks for this."))
+        forbidden("Another page asks for this.")
     } else if uri.path() == SOCKET && origin.is_none() {
-        Some((
-            StatusCode::FORBIDDEN,
-            "A web socket says which page asks for it.",
-        ))
+        forbidden("A web socket says which page asks for it.")
     } else if method != Method::GET {
         Some((StatusCode::METHOD_NOT_ALLOWED, "Use GET."))
     } else {
@@ -89,17 +84,11 @@ struct Started {
     /// Time until which the token in the command line is valid.
     until: Instant,
     /// Session of the page that has shown the token; `None` before that.
-    session: Option<BrowserSession>,
+    session: Option<Pass>,
 }
 
-#[derive(Debug)]
-struct BrowserSession {
-    token: String,
-    is_over: Arc<AtomicBool>,
-}
-
-/// Permission for a page to use a WebSocket connection.
-#[derive(Debug)]
+/// Permission for a page to use WebSocket connections.
+#[derive(Clone, Debug)]
 pub struct Pass {
     /// Token that the page shows when it connects again.
     pub token: String,
@@ -107,8 +96,15 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// Returns whether the connection must end because a second page has shown the same token,
-    /// which was valid once.
+    fn new(token: String) -> Self {
+        Self {
+            token,
+            is_over: Arc::default(),
+        }
+    }
+
+    /// Returns whether the connection must end, because a second page has used the address with
+    /// which this one began.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::SeqCst)
     }
@@ -158,10 +154,7 @@ impl Access {
     pub fn admit(&self, token: &str, now: Instant) -> Result<Pass, NotAdmitted> {
         let mut started = lock(&self.started);
         if is_equal(token, &self.printed) {
-            return Ok(Pass {
-                token: self.printed.clone(),
-                is_over: Arc::default(),
-            });
+            return Ok(Pass::new(self.printed.clone()));
         }
         if is_equal(token, &started.once) {
             return match &started.session {
@@ -174,31 +167,18 @@ impl Access {
                 None if now > started.until => Err(NotAdmitted::Late),
                 None => {
                     let token = secret().map_err(|_| NotAdmitted::Unknown)?;
-                    let session = started.session.insert(BrowserSession {
-                        token,
-                        is_over: Arc::default(),
-                    });
-                    Ok(session.pass())
+                    Ok(started.session.insert(Pass::new(token)).clone())
                 }
             };
         }
         match &started.session {
             Some(session) if is_equal(token, &session.token) => {
-                if session.is_over.load(Ordering::SeqCst) {
+                if session.is_over() {
                     return Err(NotAdmitted::Twice);
                 }
-                Ok(session.pass())
+                Ok(session.clone())
             }
             _ => Err(NotAdmitted::Unknown),
-        }
-    }
-}
-
-impl BrowserSession {
-    fn pass(&self) -> Pass {
-        Pass {
-            token: self.token.clone(),
-            is_over: Arc::clone(&self.is_over),
         }
     }
 }

@@ -22,10 +22,11 @@ use super::{
     access::{NotAdmitted, Pass},
     download,
     draft::Unsaved,
-    scene_file::{NotSaved, SceneFile, lock},
+    scene_file::{NotSaved, SceneFile},
     threaded_download::{self, Watch},
 };
 use crate::{
+    lock::lock,
     lsp::{
         Refusal, Server,
         messages::{self, Malformed},
@@ -111,9 +112,7 @@ struct Download {
 impl Conversation<'_> {
     fn run(&mut self) -> Result<Infallible, Closing> {
         let params = json!({ "token": self.pass.token });
-        self.send_all(vec![
-            Notification::new("studio/session".to_owned(), params).into(),
-        ])?;
+        self.notify("studio/session", params)?;
         while self.server.ended().is_none() {
             if let Some(code) = over(self.pass, self.ending) {
                 return Err(Closing(Some(code)));
@@ -199,6 +198,10 @@ impl Conversation<'_> {
             .block_on(async { timeout(FAREWELL, rest).await });
     }
 
+    fn notify(&mut self, method: &str, params: Value) -> Result<(), Closing> {
+        self.send_all(vec![Notification::new(method.to_owned(), params).into()])
+    }
+
     fn send_all(&mut self, messages: Vec<Message>) -> Result<(), Closing> {
         let mut texts = messages.iter().map(messages::to_text);
         texts.try_for_each(|text| self.send(SocketMessage::text(text)))
@@ -232,9 +235,7 @@ impl Conversation<'_> {
             params["drafts"] = json!(drafts);
         }
         drop(file);
-        self.send_all(vec![
-            Notification::new("studio/file".to_owned(), params).into(),
-        ])
+        self.notify("studio/file", params)
     }
 
     /// Sends the progress of the download, at most once per [`PROGRESS`] interval.

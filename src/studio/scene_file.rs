@@ -4,7 +4,7 @@
 use std::{
     io,
     path::{Path, PathBuf},
-    sync::{Arc, Mutex, MutexGuard, atomic::AtomicBool},
+    sync::{Arc, atomic::AtomicBool},
 };
 
 use super::draft::{Drafts, Read, Unsaved};
@@ -35,12 +35,6 @@ pub struct SceneFile {
     drafts: Drafts,
     /// New scenes in the same folder that pages have saved, and may save again.
     beside: Vec<PathBuf>,
-}
-
-/// Locks the file that pages share. Also returns a lock that was poisoned by a panic, since a panic
-/// leaves no change half done.
-pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
-    crate::lock::lock(file)
 }
 
 /// Error: a text was not saved.

@@ -45,27 +45,26 @@ impl Object<f64> {
         shape: &Shape,
         face: Option<u8>,
     ) -> (Self, Option<Extent>) {
-        let mut corners = None;
-        let object = match shape {
-            Shape::Triangle(shape) => {
-                let (triangle, of_triangle) = triangle::prepare(double, shape).unzip();
-                corners = of_triangle;
-                Object::Convex(triangle.unwrap_or_else(Convex::nothing))
-            }
-            Shape::Box(cuboid) => Object::Convex(cuboid::prepare(double, cuboid, face)),
-            Shape::Sphere(_) | Shape::Checkerboard(_) => Object::new(double, shape),
+        let (object, corners) = if let Shape::Triangle(shape) = shape {
+            // A triangle's corners are at hand when it is prepared.
+            let (triangle, corners) = triangle::prepare(double, shape).unzip();
+            (
+                Object::Convex(triangle.unwrap_or_else(Convex::nothing)),
+                corners,
+            )
+        } else {
+            (Object::new(double, shape, face), None)
         };
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
-        let hull = match (&object, shape) {
-            // In a view so wide that Z (`ahead`) is below this limit, products with Z may underflow
-            // and lose digits.
+        let hull = match (&object, shape.cuboid(), corners) {
+            // In such a wide view, products with Z (`ahead`) may underflow and lose digits.
             _ if ahead < SMALLEST => Hull::Unbounded,
-            (Self::Sphere(sphere), _) => of_sphere(sphere, ahead),
-            (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), ahead),
-            (_, Shape::Sphere(_) | Shape::Triangle(_) | Shape::Checkerboard(_)) => {
-                corners.map_or(Hull::Unbounded, |corners| of_corners(&corners, ahead))
-            }
+            (Self::Sphere(sphere), ..) => of_sphere(sphere, ahead),
+            (_, Some(cuboid), _) => of_corners(&cuboid::corners(fast, cuboid), ahead),
+            (_, None, Some(corners)) => of_corners(&corners, ahead),
+            // What covers the window is near enough for any other kind.
+            (_, None, None) => Hull::Unbounded,
         };
         let extent = match hull {
             Hull::Behind => None,

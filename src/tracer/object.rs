@@ -19,8 +19,8 @@ use super::{
     triangle,
 };
 use crate::{
-    math::{Double, Doubt, Real},
-    scene::{self, Shape},
+    math::{Double, Doubt, Real, predicates::Plane},
+    scene::{self, Shape, TriangleOutline},
 };
 
 /// The geometry of an object's surface. Each `match` on this type names every kind of surface, so
@@ -45,8 +45,8 @@ pub enum Object<T: Real> {
 }
 
 impl<T: Real> Object<T> {
-    /// Prepares an object of the scene in the precision `T`.
-    pub fn new(camera: &Camera<T>, shape: &Shape) -> Self {
+    /// Prepares an object of the scene, or only the face `face` of a box, in the precision `T`.
+    pub fn new(camera: &Camera<T>, shape: &Shape, face: Option<u8>) -> Self {
         match shape {
             Shape::Sphere(scene::Sphere { center, radius, .. }) => {
                 Self::Sphere(Sphere::new(camera, *center, *radius))
@@ -55,7 +55,7 @@ impl<T: Real> Object<T> {
                 triangle::prepare(camera, triangle)
                     .map_or_else(Convex::nothing, |(triangle, _)| triangle),
             ),
-            Shape::Box(cuboid) => Self::Convex(cuboid::prepare(camera, cuboid, None)),
+            Shape::Box(cuboid) => Self::Convex(cuboid::prepare(camera, cuboid, face)),
             Shape::Checkerboard(board) => match Checkerboard::new(camera, board) {
                 Some(board) => Self::Checkerboard(Box::new(board)),
                 None => Self::Convex(Convex::nothing()),
@@ -169,4 +169,23 @@ impl Object<Double> {
             Self::Checkerboard(board) => Object::Checkerboard(Box::new(board.narrowed(window))),
         }
     }
+}
+
+/// Returns the exact plane of a flat part of a shape. Returns `None` for a shape that is not flat.
+pub fn exact_plane(shape: &Shape, part: u8) -> Option<Plane> {
+    Some(match *shape {
+        Shape::Sphere(_) => return None,
+        Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
+            TriangleOutline::Vertices(vertices) => Plane::through(vertices),
+            TriangleOutline::Centered(triangle) => {
+                Plane::across(triangle.normal, triangle.centroid)
+            }
+        },
+        Shape::Box(scene::Cuboid { min, max, .. }) => {
+            let (axis, corner) = (usize::from(part / 2), [min, max][usize::from(part % 2)]);
+            let at = corner[axis];
+            Plane::Axial { axis, at }
+        }
+        Shape::Checkerboard(scene::Checkerboard { y, .. }) => Plane::Axial { axis: 1, at: y },
+    })
 }

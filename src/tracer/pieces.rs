@@ -30,18 +30,22 @@ impl Pieces {
     /// `scene` itself if it has no such box, and the index of the original object for each new
     /// object.
     pub fn of(scene: &Scene, which: Faces) -> (Cow<'_, Scene>, Self) {
-        let faces = |object: &Object| match object.shape {
-            Shape::Box(cuboid) => cuboid.faces,
-            Shape::Sphere(_) | Shape::Triangle(_) | Shape::Checkerboard(_) => None,
+        let box_with_faces = |object: &Object| {
+            let cuboid = object.shape.cuboid()?;
+            Some((*cuboid, cuboid.faces?))
         };
-        if scene.objects.iter().all(|object| faces(object).is_none()) {
+        if scene
+            .objects
+            .iter()
+            .all(|object| box_with_faces(object).is_none())
+        {
             return (Cow::Borrowed(scene), Self::default());
         }
         // The near plane may cut off front faces, so that the faces behind them are seen.
         let only_fronts = which == Faces::Seen && scene.camera.near == 0.0;
         let (mut objects, mut pieces) = (Vec::new(), Vec::new());
         for (owner, object) in scene.objects.iter().enumerate() {
-            let (Some(colors), Shape::Box(mut cuboid)) = (faces(object), object.shape) else {
+            let Some((mut cuboid, colors)) = box_with_faces(object) else {
                 objects.push(object.clone());
                 pieces.push((owner, None));
                 continue;

@@ -24,7 +24,7 @@ use crate::{
     cli::{
         Trouble,
         input::{is_standard, shown, unreadable},
-        judge,
+        judge, trouble,
     },
     files,
 };
@@ -351,7 +351,7 @@ fn tell_apart(students: &mut [Student]) {
 /// Makes the error that the arguments contain no pictures of students.
 pub fn no_students(paths: &[PathBuf]) -> Trouble {
     let names: Vec<_> = paths.iter().map(|path| shown(path)).collect();
-    Trouble(format!(
+    trouble(format!(
         "there are no pictures in what is named: {}",
         names.join(", ")
     ))

@@ -3,10 +3,9 @@
 
 use std::collections::BTreeSet;
 
-use super::graded::Finding;
 use crate::{
-    grading,
-    scene::{Scene, Shape},
+    grading::{self, NamedMistake},
+    scene::Scene,
     schema,
 };
 
@@ -27,89 +26,63 @@ pub enum Criterion {
     Hits,
 }
 
-/// Criterion of each mistake, by the first prefix in this list with which the mistake's id begins.
-/// An id with none of these prefixes is about a field of the camera or of an object, or its
-/// criterion is [`Criterion::Hits`].
-const BEGINNINGS: &[(&str, Criterion)] = &[
-    ("board_", Criterion::Board),
-    ("half_pixel", Criterion::Sampling),
-    ("averaged_", Criterion::Sampling),
-    ("wider_", Criterion::Sampling),
-    ("sharpened", Criterion::Sampling),
-    ("sample", Criterion::Sampling),
-    ("window_", Criterion::Camera),
-    ("u_not_normalised", Criterion::Camera),
-    ("fisheye", Criterion::Camera),
-    ("colors_exchanged", Criterion::Colours),
-    ("video_range", Criterion::Colours),
-    ("bytes_wrap", Criterion::Colours),
-    ("channels", Criterion::Colours),
-    ("gray", Criterion::Colours),
-    ("not_encoded", Criterion::Colours),
-    ("encoded_", Criterion::Colours),
-    ("gamma_", Criterion::Colours),
-    ("cut_off", Criterion::Colours),
-    ("not_decoded", Criterion::Colours),
-    ("decoded_twice", Criterion::Colours),
-    ("inverted", Criterion::Colours),
-    ("not_divided", Criterion::Colours),
-    ("black", Criterion::Colours),
-    ("one_colour", Criterion::Colours),
-    ("transparent", Criterion::Colours),
-    ("alpha", Criterion::Colours),
-    ("background", Criterion::Colours),
-    ("mirrored", Criterion::Camera),
-    ("upside_down", Criterion::Camera),
-    ("turned_", Criterion::Camera),
-    ("transposed", Criterion::Camera),
-    ("squeezed", Criterion::Camera),
-    ("aspect", Criterion::Camera),
-    ("looks_back", Criterion::Camera),
-    ("w_not_normalised", Criterion::Camera),
-    ("parallel_rays", Criterion::Camera),
-    ("nothing_seen", Criterion::Camera),
-    ("eye_and_lookat", Criterion::Camera),
-    ("behind_seen", Criterion::Hits),
-    ("depth_ignored", Criterion::Hits),
-    ("sphere_", Criterion::Hits),
-    // The message of a mistake with one of the prefixes below may name an object. Then this object
-    // is the criterion instead.
-    ("object_", Criterion::Hits),
-    ("box_", Criterion::Hits),
-    ("faces_", Criterion::Hits),
-    ("triangle_", Criterion::Hits),
+/// Criteria of mistakes, by prefixes of the mistakes' ids. If an id has none of these prefixes, the
+/// mistake is about a field of the camera or about hits.
+const BEGINNINGS: &[(Criterion, &str)] = &[
+    (Criterion::Board, "board_"),
+    (
+        Criterion::Sampling,
+        "half_pixel averaged_ wider_ sharpened sample",
+    ),
+    (
+        Criterion::Camera,
+        "window_ u_not_normalised fisheye mirrored upside_down turned_ transposed squeezed \
+         aspect looks_back w_not_normalised parallel_rays nothing_seen eye_and_lookat",
+    ),
+    (
+        Criterion::Colours,
+        "colors_exchanged video_range bytes_wrap channels gray not_encoded encoded_ gamma_ \
+         cut_off not_decoded decoded_twice inverted not_divided black one_colour transparent \
+         alpha background",
+    ),
+    (
+        Criterion::Hits,
+        "behind_seen depth_ignored sphere_ object_ box_ faces_ triangle_",
+    ),
 ];
 
 /// Returns the criterion that a mistake belongs to.
-pub fn criterion(finding: &Finding, scene: &Scene) -> Criterion {
-    if let Some(index) = object(finding, scene) {
-        return match scene.objects[index].shape {
-            Shape::Checkerboard(_) => Criterion::Board,
-            Shape::Sphere(_) | Shape::Triangle(_) | Shape::Box(_) => Criterion::Object(index),
+pub fn criterion(mistake: &NamedMistake, scene: &Scene) -> Criterion {
+    if let Some(index) = object(mistake, scene) {
+        return match scene.objects[index].shape.checkerboard() {
+            Some(_) => Criterion::Board,
+            None => Criterion::Object(index),
         };
     }
-    of_id(finding.id).unwrap_or(Criterion::Hits)
+    of_id(mistake.id).unwrap_or(Criterion::Hits)
 }
 
 /// Returns the criterion of a mistake's id, without regard to the object that the mistake is about.
 /// Returns `None` for the field of an object.
 fn of_id(id: &str) -> Option<Criterion> {
-    let mut beginnings = BEGINNINGS.iter();
-    let found = beginnings.find(|(beginning, _)| id.starts_with(beginning));
+    let is_among = |beginnings: &str| beginnings.split(' ').any(|it| id.starts_with(it));
+    let found = BEGINNINGS
+        .iter()
+        .find(|(_, beginnings)| is_among(beginnings));
     let camera = schema::block("camera").map_or(&[][..], |block| block.fields);
     let is_of = |field: &str| {
         let rest = id.strip_prefix(field);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
     match found {
-        Some((_, criterion)) => Some(*criterion),
+        Some((criterion, _)) => Some(*criterion),
         None => (camera.iter().any(|field| is_of(field.name))).then_some(Criterion::Camera),
     }
 }
 
 /// Returns the index of the object that a mistake is about: the object with whose title the message
 /// begins. Returns `None` if there is no such object.
-pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
+pub fn object(mistake: &NamedMistake, scene: &Scene) -> Option<usize> {
     let title = |index: usize| {
         let object = &scene.objects[index];
         match &object.name {
@@ -117,7 +90,7 @@ pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
             None => format!("the {} with the index {index} ", object.shape.kind()),
         }
     };
-    (0..scene.objects.len()).find(|&index| finding.message.starts_with(&title(index)))
+    (0..scene.objects.len()).find(|&index| mistake.message.starts_with(&title(index)))
 }
 
 /// Returns the ids of all mistakes in alphabetical order: the ids in the table of mistakes, and the

@@ -1,12 +1,14 @@
 //! The result of grading a student's submission.
 //!
-//! The verdict is stored as the JSON that programs get. All other formats take their values from
-//! it, so that all formats agree.
+//! All formats take their values from here, so that they agree.
 
 use serde_json::{Map, Value, json};
 
 use super::thumbnails::Pictures;
-use crate::cli::Status;
+use crate::{
+    cli::Status,
+    grading::{Kind, NamedMistake, Verdict},
+};
 
 /// A student, with the results of the submitted pictures.
 pub struct GradedStudent {
@@ -39,6 +41,11 @@ pub struct ComparedPicture {
 
 /// The result of judging a picture.
 pub struct JudgedPicture {
+    pub verdict: Verdict,
+    /// Root mean square of the differences, in linear light.
+    pub rmse: f64,
+    /// Whether the picture carries the text that Pinhole writes into its own.
+    pub is_ours: bool,
     /// Fields of the verdict in the JSON output.
     pub fields: Map<String, Value>,
     /// A warning if the file's format changes colours.
@@ -49,97 +56,21 @@ pub struct JudgedPicture {
     pub pictures: Option<Pictures>,
 }
 
-/// A mistake that explains differences, or a guess at one.
-pub struct Finding<'j> {
-    pub id: &'j str,
-    pub message: &'j str,
-    pub help: &'j str,
-    pub set: Vec<&'j str>,
-    /// Share of the difference that the mistake explains: the squared difference from the exact
-    /// picture, without the part that noise explains.
-    pub explains: f64,
-}
-
 impl JudgedPicture {
-    fn text(&self, key: &str) -> &str {
-        self.fields
-            .get(key)
-            .and_then(Value::as_str)
-            .unwrap_or_default()
-    }
-
     /// Returns the verdict as a word: `right`, `noise`, `wrong` or `unknown`.
-    pub fn word(&self) -> &str {
-        self.text("verdict")
+    pub fn word(&self) -> &'static str {
+        self.verdict.kind.word()
     }
 
-    /// Returns the verdict as a sentence.
-    pub fn line(&self) -> &str {
-        self.text("line")
-    }
-
-    /// Returns whether the picture is right, except for sampling noise.
+    /// Whether the picture is right, except for sampling noise.
     pub fn is_right(&self) -> bool {
-        matches!(self.word(), "right" | "noise")
-    }
-
-    pub fn rmse(&self) -> f64 {
-        let rmse = self.fields.get("rmse").and_then(Value::as_f64);
-        rmse.unwrap_or_default()
+        matches!(self.verdict.kind, Kind::Right | Kind::Noise)
     }
 
     /// Returns the number of independent samples per pixel with which a picture is as noisy as this
     /// one. Returns `None` if this picture is wrong, because its mistakes would count as noise.
     pub fn samples(&self) -> Option<f64> {
-        let samples = self.fields.get("samples_per_pixel")?.as_f64();
-        samples.filter(|_| self.is_right())
-    }
-
-    /// Returns the share of the difference that neither the mistakes nor the guesses explain.
-    pub fn rest(&self) -> Option<f64> {
-        self.fields.get("rest")?.as_f64()
-    }
-
-    /// Returns whether the picture carries a scene's text, as the pictures that Pinhole writes do.
-    pub fn is_ours(&self) -> bool {
-        self.fields.get("rendered_by_pinhole") == Some(&Value::Bool(true))
-    }
-
-    /// Returns whether the search for mistakes ended at its limit of work.
-    pub fn is_limited(&self) -> bool {
-        self.fields.get("limited") == Some(&Value::Bool(true))
-    }
-
-    pub fn mistakes(&self) -> Vec<Finding<'_>> {
-        self.findings("mistakes")
-    }
-
-    pub fn guesses(&self) -> Vec<Finding<'_>> {
-        self.findings("guesses")
-    }
-
-    fn findings(&self, key: &str) -> Vec<Finding<'_>> {
-        let findings = self.fields.get(key).and_then(Value::as_array);
-        findings.into_iter().flatten().map(finding).collect()
-    }
-}
-
-fn finding(one: &Value) -> Finding<'_> {
-    let text = |key| one.get(key).and_then(Value::as_str).unwrap_or_default();
-    let set = one.get("set").and_then(Value::as_array);
-    Finding {
-        id: text("id"),
-        message: text("message"),
-        help: text("help"),
-        set: set
-            .into_iter()
-            .flatten()
-            .filter_map(Value::as_str)
-            .collect(),
-        explains: one
-            .get("explains")
-            .and_then(Value::as_f64)
-            .unwrap_or_default(),
+        self.verdict.samples.filter(|_| self.is_right())
     }
 }
 
@@ -150,13 +81,13 @@ impl ComparedPicture {
         let Ok(judged) = &self.result else {
             return (4, 0.0);
         };
-        let rank = match judged.word() {
-            "right" => 0,
-            "noise" => 1,
-            "wrong" => 2,
-            _ => 3,
+        let rank = match judged.verdict.kind {
+            Kind::Right => 0,
+            Kind::Noise => 1,
+            Kind::Wrong => 2,
+            Kind::Unknown => 3,
         };
-        (rank, judged.rmse())
+        (rank, judged.rmse)
     }
 }
 
@@ -190,7 +121,7 @@ impl GradedStudent {
     /// Returns the verdict as a sentence.
     pub fn line(&self) -> String {
         let line = match self.best() {
-            Ok(judged) => judged.line().to_owned(),
+            Ok(judged) => judged.verdict.line(),
             Err(error) => format!("not compared: {error}"),
         };
         line + &self.note()
@@ -239,7 +170,7 @@ impl GradedStudent {
         if self.compared.len() > 1 {
             let pictures = self.compared.iter().map(|one| match &one.result {
                 Ok(judged) => {
-                    json!({ "file": one.shown, "verdict": judged.word(), "line": judged.line() })
+                    json!({ "file": one.shown, "verdict": judged.word(), "line": judged.verdict.line() })
                 }
                 Err(error) => json!({ "file": one.shown, "error": error }),
             });
@@ -263,32 +194,36 @@ impl GradedStudent {
             Ok(judged) => judged,
             Err(error) => return format!("Your picture could not be compared: {error}."),
         };
-        let mut text = match judged.word() {
-            "right" => "Your picture is right: it is equal to the exact one.".to_owned(),
-            "noise" => {
+        let verdict = &judged.verdict;
+        let mut text = match verdict.kind {
+            Kind::Right => "Your picture is right: it is equal to the exact one.".to_owned(),
+            Kind::Noise => {
                 "Your picture is right; it differs from the exact one by sampling noise alone."
                     .to_owned()
             }
-            "wrong" => "Your picture differs from the exact one, and this explains it:".to_owned(),
-            _ => "Your picture differs from the exact one, and it is not known why.".to_owned(),
+            Kind::Wrong => {
+                "Your picture differs from the exact one, and this explains it:".to_owned()
+            }
+            Kind::Unknown => {
+                "Your picture differs from the exact one, and it is not known why.".to_owned()
+            }
         };
-        let listed = |finding: &Finding| format!("\n- {}\n  {}", finding.message, finding.help);
-        text.extend(judged.mistakes().iter().map(listed));
-        let guesses = judged.guesses();
-        if !guesses.is_empty() {
+        let listed = |one: &NamedMistake| format!("\n- {}\n  {}", one.message, one.help);
+        text.extend(verdict.mistakes.iter().map(listed));
+        if !verdict.guesses.is_empty() {
             text.push_str("\nThis comes nearest, but is only a guess");
-            if let Some(rest) = judged.rest() {
+            if let Some(rest) = verdict.rest {
                 text += &format!(
                     ": it leaves {} of the difference unexplained",
                     percent(rest)
                 );
             }
             text.push('.');
-            text.extend(guesses.iter().map(listed));
-        } else if let Some(rest) = judged.rest().filter(|_| judged.word() == "wrong") {
+            text.extend(verdict.guesses.iter().map(listed));
+        } else if let Some(rest) = verdict.rest.filter(|_| verdict.kind == Kind::Wrong) {
             text += &format!("\n{} of the difference is something else.", percent(rest));
         }
-        if judged.is_limited() {
+        if verdict.is_cut {
             text.push_str("\nNot all mistakes were tried.");
         }
         text

@@ -5,11 +5,12 @@ use serde_json::{Value, json};
 
 use super::{
     criteria::{Criterion, criterion},
-    graded::{Finding, GradedStudent},
+    graded::GradedStudent,
     points::PointScheme,
 };
 use crate::{
     diagnostic::visible,
+    grading::{Kind, NamedMistake},
     scene::{Scene, Shape},
 };
 
@@ -19,11 +20,11 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
     };
-    let is_known = judged.is_right() || judged.word() == "wrong";
+    let is_known = judged.verdict.kind != Kind::Unknown;
     let criteria = criteria(scene);
     let shares = shares(&criteria, points);
     let mut scores = shares.clone();
-    let mistakes = judged.mistakes();
+    let mistakes = &judged.verdict.mistakes;
     let off = points.map(|points| points.taken_off(judged, scene));
     for (at, mistake) in mistakes.iter().enumerate() {
         let of = criterion(mistake, scene);
@@ -34,8 +35,8 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
         }
     }
     let tests = criteria.iter().enumerate().map(|(at, (of, name))| {
-        let is_about = |mistake: &&Finding| criterion(mistake, scene) == *of;
-        let about: Vec<&Finding> = mistakes.iter().filter(is_about).collect();
+        let is_about = |mistake: &&NamedMistake| criterion(mistake, scene) == *of;
+        let about: Vec<&NamedMistake> = mistakes.iter().filter(is_about).collect();
         let output = about
             .iter()
             .map(|one| format!("{}\n{}\n", one.message, one.help));

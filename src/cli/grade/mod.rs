@@ -50,7 +50,7 @@ use super::{
     diff,
     input::{SceneInput, check_standard, not_written, shown},
     interrupt::Interrupt,
-    judge, output, progress,
+    judge, output, progress, trouble,
 };
 use crate::{
     area::Area,
@@ -68,9 +68,7 @@ const FILES: [&str; 3] = ["index.html", "grade.csv", "grade.jsonl"];
 /// Grades the submissions that the arguments name, and writes the results.
 pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
-    let Some(scene) = input.scene().scene else {
-        return Ok(Status::SceneErrors);
-    };
+    let scene = input.scene()?;
     let points = args.points.as_deref().map(PointScheme::read).transpose()?;
     let class = class(args)?;
     let names = output_names(args, &class);
@@ -78,12 +76,7 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let folder = folder.map(|folder| OutputFolder::open(folder, names.iter().map(String::as_str)));
     let folder = folder.transpose().map_err(not_written)?;
     let cancel = interrupt.watch();
-    let (mut graded, exact) = match graded(args, &scene, &class, cancel) {
-        Ok(Ok(graded)) => graded,
-        Ok(Err(RenderError::Cancelled)) => return Ok(Status::Interrupted),
-        Ok(Err(error)) => return Err(Trouble(error.to_string())),
-        Err(error) => return Err(Trouble(format!("cannot start threads: {error}"))),
-    };
+    let (mut graded, exact) = graded(args, &scene, &class, cancel)?;
     mark_equal(&mut graded);
     for one in &mut graded {
         let judged = one.best().ok();
@@ -129,15 +122,14 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     }
     let needs_one = args.format == GradeFormat::Gradescope && args.output.is_none();
     if needs_one && class.students.len() > 1 {
-        return Err(Trouble(format!(
+        return Err(trouble(format!(
             "there are {} students, and each has a results.json: say with `-o DIR` where they go",
             class.students.len()
         )));
     }
     if args.format == GradeFormat::Moodle && args.worksheet.is_none() {
-        return Err(Trouble(
-            "Moodle takes back the worksheet of grades that it gave: name it with `--worksheet FILE`"
-                .to_owned(),
+        return Err(trouble(
+            "Moodle takes back the worksheet of grades that it gave: name it with `--worksheet FILE`",
         ));
     }
     Ok(class)
@@ -264,25 +256,20 @@ fn mark_equal(graded: &mut [GradedStudent]) {
 /// is written.
 type Answers = (Vec<GradedStudent>, Vec<u8>);
 
-/// Grades the students in parallel, by default on as many threads as there are processors. The
-/// outer error is about starting threads, the inner one about rendering.
+/// Grades the students in parallel, by default on as many threads as there are processors.
 fn graded(
     args: &GradeArgs,
     scene: &Scene,
     class: &Class,
     cancel: &AtomicBool,
-) -> Result<Result<Answers, RenderError>, rayon::ThreadPoolBuildError> {
+) -> Result<Answers, Trouble> {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let threads = args.threads.count();
     let threads = threads.or_else(|| thread::available_parallelism().ok());
     let reference = progress::rendering(whole.pixels(), threads, cancel, |control| {
         let reference = Reference::new(scene, whole, Rounding::Byte, control);
         reference.map(|reference| reference.with_effort(args.effort.effort))
-    });
-    let reference = match reference {
-        Ok(reference) => reference,
-        Err(error) => return Ok(Err(error)),
-    };
+    })?;
     let exact = match args.output {
         // Writing into memory does not fail.
         Some(_) => thumbnails::png(&reference.exact.film).unwrap_or_default(),
@@ -291,7 +278,8 @@ fn graded(
     let students = &class.students;
     let pool = ThreadPoolBuilder::new()
         .num_threads(threads.map_or(1, NonZero::get).min(students.len()).max(1))
-        .build()?;
+        .build()
+        .map_err(|error| trouble(format!("cannot start threads: {error}")))?;
     let chosen = args.picture.as_deref().map(Glob::new);
     let graded = progress::watched(students.len() as u64, |done| {
         let grade = |student: &Student| {
@@ -326,10 +314,10 @@ fn graded(
             students
                 .par_iter()
                 .map(grade)
-                .collect::<Result<Vec<_>, _>>()
+                .collect::<Result<Vec<_>, RenderError>>()
         })
     });
-    Ok(graded.map(|graded| (graded, exact)))
+    Ok((graded?, exact))
 }
 
 /// Judges a picture. The inner error says why the picture cannot be judged; the outer one is an
@@ -397,6 +385,9 @@ fn grade(
     let is_ours = film::read_recipe(&bytes).is_ok();
     fields.insert("rendered_by_pinhole".to_owned(), json!(is_ours));
     Ok(Ok(JudgedPicture {
+        verdict,
+        rmse: comparison.rmse,
+        is_ours,
         fields,
         warning: picture.coding.warning(),
         hash: hash(&picture.film),

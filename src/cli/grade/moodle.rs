@@ -14,7 +14,7 @@ use crate::{
     cli::{
         Trouble,
         input::{shown, unreadable},
-        output,
+        output, trouble,
     },
     diagnostic::visible,
     files,
@@ -162,7 +162,7 @@ fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
     let mut headings = HEADINGS.into_iter();
     match headings.find(|own| own.eq_ignore_ascii_case(name)) {
         Some(name) if !heading.is_empty() => Ok((name, heading)),
-        _ => Err(Trouble(format!(
+        _ => Err(trouble(format!(
             "`--columns {text}` is not COLUMN=HEADING, where COLUMN is {}",
             choice(HEADINGS)
         ))),

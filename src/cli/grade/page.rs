@@ -4,10 +4,13 @@
 use std::collections::BTreeMap;
 
 use super::{
-    graded::{Finding, GradedStudent, JudgedPicture, percent},
+    graded::{GradedStudent, JudgedPicture, percent},
     table::figures,
 };
-use crate::{cli::judge::quoted, diagnostic::escaped, film::HEAT_LEGEND, numbers::short};
+use crate::{
+    cli::judge::quoted, diagnostic::escaped, film::HEAT_LEGEND, grading::NamedMistake,
+    numbers::short,
+};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
@@ -71,7 +74,11 @@ fn students(count: usize) -> String {
 fn mistakes(graded: &[GradedStudent]) -> String {
     let mut by_id = BTreeMap::<String, Vec<usize>>::new();
     for (index, one) in graded.iter().enumerate() {
-        for mistake in one.best().iter().flat_map(|judged| judged.mistakes()) {
+        for mistake in one
+            .best()
+            .iter()
+            .flat_map(|judged| &judged.verdict.mistakes)
+        {
             let all = by_id.entry(mistake.id.replace('_', " ")).or_default();
             if all.last() != Some(&index) {
                 all.push(index);
@@ -184,7 +191,9 @@ fn thumbnail(index: usize, name: &str, judged: &JudgedPicture) -> String {
 
 /// Returns the verdict on a student's submission with all details, as HTML.
 fn verdict(one: &GradedStudent) -> String {
-    let is_explained = one.best().is_ok_and(|judged| !judged.mistakes().is_empty());
+    let is_explained = one
+        .best()
+        .is_ok_and(|judged| !judged.verdict.mistakes.is_empty());
     let line = if is_explained {
         // The page lists the mistakes with their help below, so the line does not name them.
         format!("{}{}", one.word(), one.note())
@@ -193,15 +202,15 @@ fn verdict(one: &GradedStudent) -> String {
     };
     let mut html = format!("<p class=\"line\">{}</p>", escaped(&line));
     if let Ok(judged) = one.best() {
-        html += &findings("", &judged.mistakes());
-        html += &findings("a guess: ", &judged.guesses());
-        if let Some(rest) = judged.rest() {
+        html += &findings("", &judged.verdict.mistakes);
+        html += &findings("a guess: ", &judged.verdict.guesses);
+        if let Some(rest) = judged.verdict.rest {
             html += &format!(
                 "<p>{} of the difference is not explained.</p>",
                 percent(rest)
             );
         }
-        if judged.is_limited() {
+        if judged.verdict.is_cut {
             html += "<p>The search came to its bound before all mistakes were tried: --effort 4 tries more.</p>";
         }
         if !judged.is_right() {
@@ -210,7 +219,7 @@ fn verdict(one: &GradedStudent) -> String {
         if let Some(warning) = judged.warning {
             html += &format!("<p>Of the file: {}.</p>", escaped(warning));
         }
-        if judged.is_ours() {
+        if judged.is_ours {
             html +=
                 "<p class=\"mark\">It carries the text that Pinhole writes into its pictures.</p>";
         }
@@ -241,20 +250,20 @@ fn verdict(one: &GradedStudent) -> String {
     )
 }
 
-fn findings(before: &str, all: &[Finding]) -> String {
+fn findings(before: &str, all: &[NamedMistake]) -> String {
     if all.is_empty() {
         return String::new();
     }
-    let item = |one: &Finding| {
+    let item = |one: &NamedMistake| {
         let sets = one
             .set
             .iter()
             .map(|set| format!(" <code>--set {}</code>", escaped(&quoted(set))));
         format!(
             "<li>{before}{} <small>(explains {})</small><br><span class=\"help\">{}</span>{}</li>",
-            escaped(one.message),
+            escaped(&one.message),
             percent(one.explains),
-            escaped(one.help),
+            escaped(&one.help),
             sets.collect::<String>()
         )
     };
@@ -263,16 +272,14 @@ fn findings(before: &str, all: &[Finding]) -> String {
 
 /// Returns the objects that are not right, and the number of right ones, as HTML.
 fn objects(judged: &JudgedPicture) -> String {
-    let all = judged.fields.get("objects").and_then(|all| all.as_array());
-    let all: Vec<_> = all.into_iter().flatten().collect();
-    let is_right = |one: &&&serde_json::Value| one["right"] == true;
-    let right = all.iter().filter(is_right).count();
-    let wrong = all.iter().filter(|one| one["right"] != true).map(|one| {
-        let name = match one["name"].as_str() {
+    let all = judged.verdict.objects.iter();
+    let right = all.clone().filter(|one| one.is_right).count();
+    let wrong = all.filter(|one| !one.is_right).map(|one| {
+        let name = match &one.name {
             Some(name) => escaped(name),
-            None => format!("the one with the index {}", one["index"]),
+            None => format!("the one with the index {}", one.index),
         };
-        match one["off"].as_f64().unwrap_or_default().round() {
+        match one.off.round() {
             0.0 => name,
             off => format!("{name} (off by {off} pixels)"),
         }

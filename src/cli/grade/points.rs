@@ -8,6 +8,7 @@ use super::{criteria, graded::JudgedPicture};
 use crate::{
     cli::{Trouble, input::unreadable},
     files,
+    grading::Kind,
     scene::Scene,
 };
 
@@ -94,20 +95,20 @@ impl PointScheme {
 
     /// Returns the points of a picture; `None` if the picture is wrong for unknown reasons.
     pub fn score(&self, judged: &JudgedPicture, scene: &Scene) -> Option<f64> {
-        match judged.word() {
-            "right" | "noise" => Some(self.total),
-            "wrong" => {
+        match judged.verdict.kind {
+            Kind::Right | Kind::Noise => Some(self.total),
+            Kind::Wrong => {
                 let off: f64 = self.taken_off(judged, scene).iter().sum();
                 Some((self.total - off).max(0.0))
             }
-            _ => None,
+            Kind::Unknown => None,
         }
     }
 
     /// Returns the deduction for each mistake, in the order of the mistakes.
     pub fn taken_off(&self, judged: &JudgedPicture, scene: &Scene) -> Vec<f64> {
         let mut objects = Vec::new();
-        let mistakes = judged.mistakes();
+        let mistakes = &judged.verdict.mistakes;
         let points = mistakes.iter().map(|mistake| {
             let listed = self.mistakes.get(mistake.id).copied();
             let object = criteria::object(mistake, scene);

@@ -2,8 +2,8 @@
 
 use std::iter;
 
-use super::graded::{Finding, GradedStudent, JudgedPicture, percent};
-use crate::{cli::judge::quoted, diagnostic::visible_line, numbers::short};
+use super::graded::{GradedStudent, percent};
+use crate::{cli::judge::quoted, diagnostic::visible_line, grading::NamedMistake, numbers::short};
 
 /// Returns the RMSE and the samples per pixel as cells of a table. Both are empty if no picture was
 /// judged.
@@ -11,7 +11,7 @@ pub fn figures(one: &GradedStudent) -> [String; 2] {
     match one.best() {
         Err(_) => [String::new(), String::new()],
         Ok(judged) => [
-            format!("{:.5}", judged.rmse()),
+            format!("{:.5}", judged.rmse),
             judged.samples().map_or_else(String::new, |samples| {
                 short((10.0 * samples).round() / 10.0)
             }),
@@ -33,7 +33,7 @@ pub fn table(graded: &[GradedStudent]) -> String {
     let row = |one: &GradedStudent| {
         let [error, samples] = figures(one);
         let mut verdict = one.line();
-        if one.best().is_ok_and(JudgedPicture::is_ours) {
+        if one.best().is_ok_and(|judged| judged.is_ours) {
             verdict += " (rendered by Pinhole)";
         }
         if let Some(score) = one.score {
@@ -41,15 +41,15 @@ pub fn table(graded: &[GradedStudent]) -> String {
         }
         let mut text = line([&one.name, &error, &samples, &verdict]);
         if let Ok(judged) = one.best() {
-            let guess = |guess: &Finding| more(&format!("a guess: {}", guess.message));
-            text.extend(judged.guesses().iter().map(guess));
-            if let Some(rest) = judged.rest() {
+            let guess = |guess: &NamedMistake| more(&format!("a guess: {}", guess.message));
+            text.extend(judged.verdict.guesses.iter().map(guess));
+            if let Some(rest) = judged.verdict.rest {
                 text += &more(&format!(
                     "{} of the difference is not explained",
                     percent(rest)
                 ));
             }
-            if judged.is_limited() {
+            if judged.verdict.is_cut {
                 text += &more(
                     "the search came to its bound before all mistakes were tried: --effort 4 tries more",
                 );
@@ -88,19 +88,20 @@ pub fn csv(graded: &[GradedStudent]) -> String {
         let (mistakes, guesses, rest, limited) = match one.best() {
             Err(_) => Default::default(),
             Ok(judged) => (
-                judged.mistakes(),
-                judged.guesses(),
+                &judged.verdict.mistakes[..],
+                &judged.verdict.guesses[..],
                 judged
-                    .rest()
+                    .verdict
+                    .rest
                     .map_or_else(String::new, |rest| format!("{rest:.4}")),
-                judged.is_limited().to_string(),
+                judged.verdict.is_cut.to_string(),
             ),
         };
         let line = match one.best() {
             Err(error) => error,
             Ok(_) => one.line(),
         };
-        let joined = |findings: &[Finding], text: fn(&Finding) -> String| {
+        let joined = |findings: &[NamedMistake], text: fn(&NamedMistake) -> String| {
             let texts: Vec<_> = findings
                 .iter()
                 .map(text)
@@ -125,10 +126,10 @@ pub fn csv(graded: &[GradedStudent]) -> String {
             text_cell(&sets.join(" ")),
             text_cell(&one.name),
             text_cell(one.number.as_deref().unwrap_or_default()),
-            text_cell(&joined(&mistakes, |one| one.id.to_owned())),
+            text_cell(&joined(mistakes, |one| one.id.to_owned())),
             explains,
-            text_cell(&joined(&mistakes, |one| one.help.to_owned())),
-            text_cell(&joined(&guesses, |one| one.message.to_owned())),
+            text_cell(&joined(mistakes, |one| one.help.to_owned())),
+            text_cell(&joined(guesses, |one| one.message.to_owned())),
             rest,
             limited,
             text_cell(&one.not_compared.join("; ")),

@@ -16,7 +16,7 @@ use crate::{
     numbers::{rounded, short, short_vector, significant},
     projection::Projection,
     scene::{FieldOwner, Parts, SMALLEST, Scene},
-    schema::{self, BlockKind, Preset, Type, css},
+    schema::{self, Preset, Type, css},
     source::{Source, SourceId, Sources, sort_by_span},
     tracer::vertices,
 };
@@ -74,23 +74,26 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     };
     let (at, across, size) = (short_vector(place), short_vector(across), short(size));
     let twice = short(2.0 * size.parse().unwrap_or(1.0));
-    let fields = match row.kind {
-        BlockKind::Sphere => format!("center {at}  radius {size}"),
-        BlockKind::Triangle => {
-            format!("centroid {at}  normal {across}  sides ({twice}, {twice}, {size})")
-        }
-        BlockKind::Box => format!("center {at}  size ({twice}, {twice}, {twice})"),
-        BlockKind::Checkerboard => format!("y {}", short(free_height(&scene))),
-        BlockKind::Image | BlockKind::Camera | BlockKind::Sampler => return None,
-    };
-    // The colour is written even if it is the default, so that it can be changed by a click in the
-    // editor.
+    let below = short(free_height(&scene));
+    let words = [
+        ("{at}", at),
+        ("{across}", across),
+        ("{size}", size),
+        ("{twice}", twice),
+        ("{below}", below),
+    ];
+    let mut fields = row.added.to_owned();
+    for (word, value) in words {
+        fields = fields.replace(word, &value);
+    }
+    // A different colour distinguishes the object from others. Written out, it can be changed by a
+    // click.
     let color = row.fields.iter().find(|field| field.takes == Type::Color);
     let color = color.and_then(|field| match field.preset {
         Preset::Value(own) => Some(format!("  {} {}", field.name, free_color(&scene, own))),
         Preset::Required | Preset::Alternative | Preset::Nothing => None,
     });
-    let fields = fields + color.as_deref().unwrap_or_default();
+    fields += color.as_deref().unwrap_or_default();
     let name = free_name(analysis, kind);
     let text = analysis.text();
     let end = text.trim_end().len();

@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 use super::{
     camera,
     edits::{FieldChange, changes, edits, rounded, together},
-    handles::{self, Along, TOLERANCE, TOO_FAR, handles},
+    handles::{self, Along, TOLERANCE, TOO_FAR, handles, side_held},
 };
 use crate::{
     diagnostic::{Diagnostic, Edit, Fix, apply},
@@ -21,7 +21,7 @@ use crate::{
     numbers::short,
     projection::Projection,
     scene::{self, FieldOwner, Image, Scene, Shape},
-    schema::{CAMERA, SPHERE},
+    schema::CAMERA,
     source::{Source, SourceId, Sources, Span},
     syntax::tree::Block,
 };
@@ -446,13 +446,7 @@ impl DragView<'_> {
             }
             FieldOwner::Shape(shape) => {
                 let Drag { handle, to, .. } = *self.drag;
-                // The handle of a sphere's radius is the point of the silhouette nearest to the
-                // pointer.
-                let towards = if handle == SPHERE.radius.name {
-                    self.projection.ray(to)
-                } else {
-                    self.projection.right
-                };
+                let towards = side_held(&shape, handle, to, &self.projection);
                 let seen = |at: Option<DVec3>| self.projection.point(at?);
                 let handles = handles(&shape, &self.projection, towards).into_iter();
                 handles

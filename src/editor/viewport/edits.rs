@@ -32,7 +32,7 @@ impl FieldChange {
     pub fn size(&self) -> f64 {
         match self.by {
             Value::Vector(vector) => vector.abs().max_element(),
-            by => amount(by, None).abs(),
+            by => amount(by, Unit::Degrees).abs(),
         }
     }
 
@@ -134,9 +134,23 @@ fn along(change: &mut FieldChange, axis: usize) -> Option<&mut f64> {
 }
 
 impl DecimalRounding {
-    /// Returns the new number after a change of `from` by `by`, rounded. Returns `from` itself if
-    /// the change is rounded to 0.
-    fn sum(&self, from: f64, by: f64) -> f64 {
+    /// Returns the rounded sum of a value and an amount; an angle is rounded in a unit.
+    fn sum(&self, from: Value, by: Value, unit: Unit) -> Value {
+        match (from, by) {
+            (Value::Vector(from), Value::Vector(by)) => {
+                let number = |axis| self.number(from[axis], by[axis]);
+                Value::Vector([0, 1, 2].map(number).into())
+            }
+            (Value::Angle(_), _) => {
+                Value::Angle(unit.of(self.number(amount(from, unit), amount(by, unit))))
+            }
+            _ => Value::Number(self.number(amount(from, unit), amount(by, unit))),
+        }
+    }
+
+    /// Returns the rounded sum of a number and an amount. Returns the number itself if the amount
+    /// is rounded to 0.
+    fn number(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
             // If the ratio is 1/2, half of a rounded amount may have one more decimal.
@@ -165,19 +179,8 @@ pub fn rounded(
     changes: &[FieldChange],
     rounding: &DecimalRounding,
 ) -> Option<FieldOwner> {
-    let number = |from: f64, by: f64| rounding.sum(from, by);
     changes.iter().try_fold(owner, |owner, change| {
-        let value = match (change.from, change.by) {
-            (Value::Vector(from), Value::Vector(by)) => {
-                let number = |axis| number(from[axis], by[axis]);
-                Value::Vector([0, 1, 2].map(number).into())
-            }
-            (Value::Angle(_), _) => {
-                let degrees = number(amount(change.from, None), amount(change.by, None));
-                Value::Angle(Angle::from_degrees(degrees))
-            }
-            _ => Value::Number(number(amount(change.from, None), amount(change.by, None))),
-        };
+        let value = rounding.sum(change.from, change.by, Unit::Degrees);
         owner.with(change.name, value)
     })
 }
@@ -199,7 +202,7 @@ pub fn edits<'s>(
     for &FieldChange { name, from, by } in changes {
         match block.fields.iter().find(|field| field.name.text == name) {
             Some(field) => writer.change(&field.value, by)?,
-            None => added.push(format!("{name} {}", writer.sum(from, by, None))),
+            None => added.push(format!("{name} {}", writer.sum(from, by, Unit::Degrees))),
         }
     }
     let mut edits = writer.edits;
@@ -232,7 +235,7 @@ impl<'s> NumberWriter<'_, 's> {
         if let Some(unit) = literal_unit(tree) {
             let old = model.value(tree, None)?;
             let text = self.sum(old, by, unit);
-            if text != spelled(amount(old, unit), unit) {
+            if text != written(old, unit) {
                 self.edits.push(Edit::new(tree.span, text));
             }
             return Some(());
@@ -282,8 +285,8 @@ impl<'s> NumberWriter<'_, 's> {
     /// Adds an edit that appends an offset, such as `+ 0.5`, to an expression.
     fn offset(&mut self, behind: Span, by: Value) -> Option<()> {
         let zero = operate(Operator::Multiply, Value::Number(0.0), by)?;
-        let text = self.sum(zero, by, None);
-        if text != self.sum(zero, zero, None) {
+        let text = self.sum(zero, by, Unit::Degrees);
+        if text != self.sum(zero, zero, Unit::Degrees) {
             let text = match text.strip_prefix('-') {
                 Some(digits) => format!(" - {digits}"),
                 None => format!(" + {text}"),
@@ -295,28 +298,18 @@ impl<'s> NumberWriter<'_, 's> {
     }
 
     /// Formats `from` + `by` with the decimals of the rounding. If the amount is rounded to 0,
-    /// formats the old number. An angle without a unit is written in degrees.
-    fn sum(&self, from: Value, by: Value, unit: Option<Unit>) -> String {
-        if let (Value::Vector(from), Value::Vector(by)) = (from, by) {
-            let number = |axis| {
-                let [from, by] = [from, by].map(|vector| Value::Number(vector[axis]));
-                self.sum(from, by, None)
-            };
-            let [x, y, z] = [0, 1, 2].map(number);
-            return format!("({x}, {y}, {z})");
-        }
-        let unit = unit.or(matches!(from, Value::Angle(_)).then_some(Unit::Degrees));
-        let new = self.rounding.sum(amount(from, unit), amount(by, unit));
-        spelled(new, unit)
+    /// formats the old number. An angle is written in a unit.
+    fn sum(&self, from: Value, by: Value, unit: Unit) -> String {
+        written(self.rounding.sum(from, by, unit), unit)
     }
 }
 
-/// Returns the unit of a number or angle literal; the inner `None` stands for no unit. Returns the
-/// outer `None` for any other expression.
-fn literal_unit(tree: &tree::Value<'_>) -> Option<Option<Unit>> {
+/// Returns the unit of a number or angle literal, degrees if it has none; `None` for any other
+/// value.
+fn literal_unit(tree: &tree::Value<'_>) -> Option<Unit> {
     match &tree.kind {
-        ValueKind::Number(_) => Some(None),
-        ValueKind::Angle { unit, .. } => Some(Some(*unit)),
+        ValueKind::Number(_) => Some(Unit::Degrees),
+        ValueKind::Angle { unit, .. } => Some(*unit),
         ValueKind::Negation { operand, .. } => literal_unit(operand),
         _ => None,
     }
@@ -328,24 +321,35 @@ fn is_literal(tree: &tree::Value<'_>) -> bool {
 }
 
 /// Returns a number, or an angle in `unit` (in degrees if `unit` is `None`).
-fn amount(value: Value, unit: Option<Unit>) -> f64 {
+fn amount(value: Value, unit: Unit) -> f64 {
     match (value, unit) {
         (Value::Number(number), _) => number,
-        (Value::Angle(angle), Some(Unit::Radians)) => angle.in_radians(),
-        (Value::Angle(angle), _) => angle.in_degrees(),
+        (Value::Angle(angle), Unit::Radians) => angle.in_radians(),
+        (Value::Angle(angle), Unit::Degrees) => angle.in_degrees(),
         _ => 0.0,
     }
 }
 
+/// Writes a number, an angle or a vector with all digits.
+fn written(value: Value, unit: Unit) -> String {
+    match value {
+        Value::Vector(vector) => {
+            let [x, y, z] = vector.to_array().map(spelled);
+            format!("({x}, {y}, {z})")
+        }
+        Value::Angle(_) => spelled(amount(value, unit)) + unit.name(),
+        _ => spelled(amount(value, unit)),
+    }
+}
+
 /// Formats a number with all its digits, and its unit.
-fn spelled(number: f64, unit: Option<Unit>) -> String {
+fn spelled(number: f64) -> String {
     let number = number + 0.0;
-    let text = if number == 0.0 || (1e-4..1e9).contains(&number.abs()) {
+    if number == 0.0 || (1e-4..1e9).contains(&number.abs()) {
         format!("{number}")
     } else {
         format!("{number:e}")
-    };
-    text + unit.map_or("", Unit::name)
+    }
 }
 
 /// Rounds a number to `decimals` decimals, which may be negative.
@@ -396,7 +400,7 @@ mod tests {
             (1.5e-7, "1.5e-7"),
             (-1e300, "-1e300"),
         ] {
-            assert_eq!(spelled(x, None), text);
+            assert_eq!(spelled(x), text);
         }
     }
 }

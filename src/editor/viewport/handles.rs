@@ -112,12 +112,22 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
     }
 }
 
+/// Returns the direction on whose side the handles of an object are while one of them is dragged to
+/// a point of the picture: a sphere's radius is held on the side of the pointer.
+pub fn side_held(shape: &Shape, handle: &str, to: DVec2, projection: &Projection) -> DVec3 {
+    match shape {
+        Shape::Sphere(_) if handle == SPHERE.radius.name => projection.ray(to),
+        Shape::Sphere(_) | Shape::Triangle(_) | Shape::Box(_) | Shape::Checkerboard(_) => {
+            projection.right
+        }
+    }
+}
+
 /// Returns the four edges of a box that are parallel to an axis. Returns an empty list for any
 /// other shape.
 pub fn edges_along(shape: &Shape, axis: usize) -> Vec<[DVec3; 2]> {
-    let (min, max) = match *shape {
-        Shape::Box(Cuboid { min, max, .. }) => (min, max),
-        Shape::Sphere(_) | Shape::Triangle(_) | Shape::Checkerboard(_) => return Vec::new(),
+    let Some(&Cuboid { min, max, .. }) = shape.cuboid() else {
+        return Vec::new();
     };
     let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
     let edges = [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(j, k)| {

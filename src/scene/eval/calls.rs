@@ -163,12 +163,11 @@ impl<'s> Evaluator<'_, 's> {
             Some(near) => ("not a function", format!("did you mean `{near}`?")),
             None => ("not a function", all),
         };
-        self.problems.push(
-            error("unknown_function", format!("there is no function `{name}`"))
-                .at(function.span, label)
-                .help(help)
-                .writing(function.span, Applicability::safe_if(is_sure), near),
-        );
+        error("unknown_function", format!("there is no function `{name}`"))
+            .at(function.span, label)
+            .help(help)
+            .writing(function.span, Applicability::safe_if(is_sure), near)
+            .report(self.problems);
     }
 
     /// Reports a call with a wrong number of arguments.
@@ -218,25 +217,24 @@ impl<'s> Evaluator<'_, 's> {
         let is_safe = Applicability::safe_if(
             !is_rgb || meant.as_ref().is_some_and(|it| it.contains('(')) && !is_opaque,
         );
-        self.problems.push(
-            error("argument_count", message)
-                .at(span, format!("{found} given"))
-                .help(match arguments {
-                    [only] if row.more => format!(
-                        "write `{}` alone, or give `{}` another number",
-                        shorten(&text(only)),
-                        row.name
-                    ),
-                    _ if is_opaque => {
-                        format!("write `{}`: there is no transparency", shorten(&shown))
-                    }
-                    _ if found > takes && meant.is_none() => {
-                        format!("give it {takes} value{plural} alone")
-                    }
-                    _ => format!("write `{}`", shorten(&shown)),
-                })
-                .writing(span, is_safe, meant),
-        );
+        error("argument_count", message)
+            .at(span, format!("{found} given"))
+            .help(match arguments {
+                [only] if row.more => format!(
+                    "write `{}` alone, or give `{}` another number",
+                    shorten(&text(only)),
+                    row.name
+                ),
+                _ if is_opaque => {
+                    format!("write `{}`: there is no transparency", shorten(&shown))
+                }
+                _ if found > takes && meant.is_none() => {
+                    format!("give it {takes} value{plural} alone")
+                }
+                _ => format!("write `{}`", shorten(&shown)),
+            })
+            .writing(span, is_safe, meant)
+            .report(self.problems);
     }
 
     /// Reports an argument of a type that the function does not take.
@@ -286,12 +284,11 @@ impl<'s> Evaluator<'_, 's> {
             };
             let found = numbers::beside(channel, &[0.0, 255.0]);
             let message = format!("the {name} of a colour is from 0 to 255, and this is {found}");
-            self.problems.push(
-                error("color_range", message)
-                    .at(argument.value.span, label)
-                    .help(format!("write `{bound}`, or a number that lies between"))
-                    .writing(argument.value.span, Applicability::Unsafe, [bound]),
-            );
+            error("color_range", message)
+                .at(argument.value.span, label)
+                .help(format!("write `{bound}`, or a number that lies between"))
+                .writing(argument.value.span, Applicability::Unsafe, [bound])
+                .report(self.problems);
         }
         fits
     }
@@ -307,15 +304,14 @@ impl<'s> Evaluator<'_, 's> {
         let meant = format!("rgb({})", parts.map(in_bytes).join(", "));
         let meant = arguments.iter().all(is_number).then_some(meant);
         let message = "the parts of a colour go from 0 to 255, and none of these is more than 1";
-        self.problems.push(
-            warning("unit_color", message)
-                .at(span, "almost black")
-                .help(match &meant {
-                    Some(meant) => format!("write `{meant}`, if 1 is to be full light"),
-                    None => "multiply each by 255, if 1 is to be full light".to_owned(),
-                })
-                .writing(span, Applicability::Unsafe, meant),
-        );
+        warning("unit_color", message)
+            .at(span, "almost black")
+            .help(match &meant {
+                Some(meant) => format!("write `{meant}`, if 1 is to be full light"),
+                None => "multiply each by 255, if 1 is to be full light".to_owned(),
+            })
+            .writing(span, Applicability::Unsafe, meant)
+            .report(self.problems);
     }
 
     /// Reports a call whose result is infinite or NaN.

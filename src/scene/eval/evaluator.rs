@@ -33,12 +33,24 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     }
     let sources = Sources::new(Source::from_text("", written));
     let (tree, _) = syntax::parse_value(&sources.file, SourceId::File, 0);
+    value_of(&tree, Some(takes), &sources, &Names::default())
+}
+
+/// Returns the value of an expression without reports; `wanted` is the type that would fit, if it is
+/// known.
+pub fn value_of<'s>(
+    tree: &tree::Value<'s>,
+    wanted: Option<Type>,
+    sources: &'s Sources,
+    names: &Names<'s>,
+) -> Option<Value> {
+    let problems = &mut Problems::default();
     let mut evaluator = Evaluator {
-        sources: &sources,
-        names: &Names::default(),
-        problems: &mut Problems::default(),
+        sources,
+        names,
+        problems,
     };
-    evaluator.value(&tree, Some(takes))
+    evaluator.value(tree, wanted)
 }
 
 /// Returns whether the value of `tree` has the type of `field` and meets its conditions.
@@ -51,12 +63,7 @@ pub fn suits<'s>(
     if let (Type::Method, ValueKind::Name(word)) = (field.takes, &tree.kind) {
         return schema::method(word).is_some();
     }
-    let mut evaluator = Evaluator {
-        sources,
-        names,
-        problems: &mut Problems::default(),
-    };
-    let value = evaluator.value(tree, Some(field.takes));
+    let value = value_of(tree, Some(field.takes), sources, names);
     value.is_some_and(|value| value.kind() == field.takes && field.allows(value))
 }
 
@@ -91,11 +98,10 @@ impl<'s> Evaluator<'_, 's> {
         };
         if number.is_infinite() {
             let message = format!("the number {} is too large", shorten(written));
-            self.problems.push(
-                error("number_too_large", message)
-                    .at(span, "too large")
-                    .help(LARGEST),
-            );
+            error("number_too_large", message)
+                .at(span, "too large")
+                .help(LARGEST)
+                .report(self.problems);
             return None;
         }
         let mantissa = written.split(['e', 'E']).next().unwrap_or_default();
@@ -104,12 +110,11 @@ impl<'s> Evaluator<'_, 's> {
                 "the number {} is too small, and becomes 0",
                 shorten(written)
             );
-            self.problems.push(
-                warning("number_underflow", message)
-                    .at(span, "becomes 0")
-                    .help("write 0 if that is meant; the least number above 0 is 5e-324")
-                    .writing(span, Applicability::Unsafe, ["0"]),
-            );
+            warning("number_underflow", message)
+                .at(span, "becomes 0")
+                .help("write 0 if that is meant; the least number above 0 is 5e-324")
+                .writing(span, Applicability::Unsafe, ["0"])
+                .report(self.problems);
         }
         Some(number)
     }

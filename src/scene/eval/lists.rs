@@ -79,14 +79,13 @@ impl<'s> Evaluator<'_, 's> {
             "the parts of {} are {parts}, and {written} is {noun}",
             list.noun()
         );
-        self.problems.push(
-            error("part_type", message)
-                .at(part.span, self.described(part, found))
-                .help(match (list, found) {
-                    (Type::Vector, Type::Angle) => "an angle divided by `1deg` is a number",
-                    _ => list.such_as(),
-                }),
-        );
+        error("part_type", message)
+            .at(part.span, self.described(part, found))
+            .help(match (list, found) {
+                (Type::Vector, Type::Angle) => "an angle divided by `1deg` is a number",
+                _ => list.such_as(),
+            })
+            .report(self.problems);
     }
 
     /// Reports a list with a wrong number of parts.
@@ -114,19 +113,22 @@ impl<'s> Evaluator<'_, 's> {
         };
         let (noun, count) = (list.noun(), elements.len());
         let message = format!("{noun} has {most} parts, and this has {count}");
-        self.problems.push(
-            error("part_count", message)
-                .at(span, format!("{count} {}", part.plural()))
-                .help(match &meant {
-                    Some(meant) if count == 4 => {
-                        format!("write `{}`: a decimal point is a point", shorten(meant))
-                    }
-                    Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
-                    None if count > 4 => format!("{}; the language has no other lists: a block stands for each value, or `for` in its head computes them", list.such_as()),
-                    None => list.such_as().to_owned(),
-                })
-                .writing(span, applicability, meant),
-        );
+        let help = match &meant {
+            Some(meant) if count == 4 => {
+                format!("write `{}`: a decimal point is a point", shorten(meant))
+            }
+            Some(meant) => format!("write a third number, such as `{}`", shorten(meant)),
+            None if count > 4 => format!(
+                "{}; the language has no other lists: a block stands for each value, or `for` in its head computes them",
+                list.such_as()
+            ),
+            None => list.such_as().to_owned(),
+        };
+        error("part_count", message)
+            .at(span, format!("{count} {}", part.plural()))
+            .help(help)
+            .writing(span, applicability, meant)
+            .report(self.problems);
     }
 }
 

@@ -46,12 +46,11 @@ impl<'s> Evaluator<'_, 's> {
                 });
                 let message =
                     format!("`{name}` is a function, and stands here without its arguments");
-                self.problems.push(
-                    error("function_without_arguments", message)
-                        .at(span, "a function")
-                        .help(format!("write `{call}`"))
-                        .writing(span, Applicability::Placeholder, [call]),
-                );
+                error("function_without_arguments", message)
+                    .at(span, "a function")
+                    .help(format!("write `{call}`"))
+                    .writing(span, Applicability::Placeholder, [call])
+                    .report(self.problems);
                 return None;
             }
             None if self.names.parts.contains(name) => return None,

@@ -15,6 +15,6 @@ mod operators;
 mod origin;
 mod suggestion;
 
-pub use evaluator::{Evaluator, literal, suits};
+pub use evaluator::{Evaluator, literal, suits, value_of};
 pub use names::Names;
 pub use suggestion::Suggestion;

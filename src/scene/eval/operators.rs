@@ -24,13 +24,12 @@ impl<'s> Evaluator<'_, 's> {
         let negative = value::negate(value);
         if negative.is_none() {
             let message = format!("{} has no negative", value.kind().noun());
-            self.problems.push(
-                error("operand_types", message)
-                    .at(sign, "here")
-                    .at(operand.span, self.described(operand, value.kind()))
-                    .help("take the `-` away; only numbers, angles and vectors have a sign")
-                    .fixes([Fix::remove("take the `-` away", sign, self.sources).safe()]),
-            );
+            error("operand_types", message)
+                .at(sign, "here")
+                .at(operand.span, self.described(operand, value.kind()))
+                .help("take the `-` away; only numbers, angles and vectors have a sign")
+                .fixes([Fix::remove("take the `-` away", sign, self.sources).safe()])
+                .report(self.problems);
         }
         negative
     }
@@ -181,14 +180,13 @@ impl<'s> Evaluator<'_, 's> {
             Some(tree) => self.described(tree, left),
             None => left.noun().to_owned(),
         };
-        self.problems.push(
-            error("operand_types", cannot(step.operator, left, right))
-                .at(step.sign, "here")
-                .at(left_span, left_label)
-                .at(right_span, self.described(&step.operand, right))
-                .help(help)
-                .fixes(fixes),
-        );
+        error("operand_types", cannot(step.operator, left, right))
+            .at(step.sign, "here")
+            .at(left_span, left_label)
+            .at(right_span, self.described(&step.operand, right))
+            .help(help)
+            .fixes(fixes)
+            .report(self.problems);
     }
 }
 

@@ -1,4 +1,4 @@
-//! Builds the image, camera and sampler of a scene from blocks whose fields have values.
+//! Builds the objects, image, camera and sampler of a scene from blocks whose fields have values.
 
 use super::{
     fixes,
@@ -9,10 +9,11 @@ use crate::{
     scene::{
         error::{error, warning},
         lowered_block::LoweredBlock,
-        model::{Count, Image, SMALLEST, Sampler},
+        model::{Count, Image, Object, SMALLEST, Sampler},
         semantic_model::Parts,
+        shape::Shape,
     },
-    schema::{self, BlockKind, IMAGE, ImageFields, Method, SAMPLER, SamplerFields},
+    schema::{self, BlockKind, CHECKERBOARD, IMAGE, ImageFields, Method, SAMPLER, SamplerFields},
     source::{SourceId, Span},
     suggest,
     syntax::shorten,
@@ -88,12 +89,11 @@ impl<'s> Lowering<'s> {
         } else {
             fixes::at_end("write the smallest scene", SMALLEST, self.sources)
         };
-        self.problems.push(
-            error("missing_camera", "the scene has no camera")
-                .at(START, "no `camera` in this text")
-                .help(format!("add one, such as `{example}`"))
-                .fixes([fix]),
-        );
+        error("missing_camera", "the scene has no camera")
+            .at(START, "no `camera` in this text")
+            .help(format!("add one, such as `{example}`"))
+            .fixes([fix])
+            .report(&mut self.problems);
     }
 
     fn no_objects(&mut self) {
@@ -101,12 +101,11 @@ impl<'s> Lowering<'s> {
         let objects = schema::BLOCKS.iter().filter(|row| row.is_object);
         let kinds = suggest::choice(objects.map(|row| row.name));
         let help = format!("the picture shows the background only; add one, such as `{example}`");
-        self.problems.push(
-            warning("no_objects", "the scene has no objects")
-                .at(START, format!("no {kinds} in this text"))
-                .help(help)
-                .fixes([add]),
-        );
+        warning("no_objects", "the scene has no objects")
+            .at(START, format!("no {kinds} in this text"))
+            .help(help)
+            .fixes([add])
+            .report(&mut self.problems);
     }
 
     /// Returns the text of a block with the fields that it needs, and a fix that adds it to the
@@ -116,6 +115,31 @@ impl<'s> Lowering<'s> {
         let (example, title) = (row.example(), format!("add {}", row.noun));
         let fix = fixes::at_end(title, &format!("{example}\n"), self.sources);
         (example, fix)
+    }
+
+    /// Builds the object of a block for the values `indices` of its indices. Returns `false`, and
+    /// builds nothing, if a value is missing or wrong.
+    pub(super) fn object(&mut self, block: &LoweredBlock<'s>, indices: &[u32]) -> bool {
+        let Some(shape) = Shape::lower(block, &mut self.problems) else {
+            return false;
+        };
+        if let Shape::Checkerboard(board) = shape {
+            self.boards.push((board, block.place(CHECKERBOARD.square)));
+        }
+        let name = block.name.map(|name| match indices {
+            [] => name.text.to_owned(),
+            _ => {
+                let indices: Vec<String> = indices.iter().map(u32::to_string).collect();
+                format!("{}[{}]", name.text, indices.join(", "))
+            }
+        });
+        self.objects.push(Object {
+            name,
+            indices: indices.into(),
+            shape,
+            span: block.span,
+        });
+        true
     }
 
     /// Builds the image. Returns `None` if a value is missing or wrong.
@@ -160,12 +184,11 @@ impl<'s> Lowering<'s> {
                 let help = format!(
                     "a pixel without a sample shows the background; give a `total` of at least {pixels}"
                 );
-                self.problems.push(
-                    warning("few_samples", message)
-                        .at(given.span, "fewer than there are pixels")
-                        .help(help)
-                        .writing(given.span, Applicability::Placeholder, [pixels.to_string()]),
-                );
+                warning("few_samples", message)
+                    .at(given.span, "fewer than there are pixels")
+                    .help(help)
+                    .writing(given.span, Applicability::Placeholder, [pixels.to_string()])
+                    .report(&mut self.problems);
             }
             (Count::PerPixel(count), Some(pixels), Some(given))
                 if count > MOST_SAMPLES / pixels =>
@@ -175,12 +198,11 @@ impl<'s> Lowering<'s> {
                 let message = format!("{written} samples in each of {pixels} pixels are too many");
                 let help =
                     format!("at most {most} samples per pixel keep the whole count within 2^53");
-                self.problems.push(
-                    error("too_many_samples", message)
-                        .at(given.span, "too many")
-                        .help(help)
-                        .writing(given.span, Applicability::Placeholder, [most.to_string()]),
-                );
+                error("too_many_samples", message)
+                    .at(given.span, "too many")
+                    .help(help)
+                    .writing(given.span, Applicability::Placeholder, [most.to_string()])
+                    .report(&mut self.problems);
             }
             _ => {}
         }

@@ -49,14 +49,13 @@ impl<'s> Lowering<'s> {
         match (eye, view, given_view) {
             (Some(eye), Some(View::Lookat(point)), Some(given)) if point == eye => {
                 let message = "the camera stands on the point that it looks at";
-                self.problems.push(
-                    error("view_undefined", message)
-                        .at(given.span, "the same point as the eye")
-                        .at(eye_place, "the eye")
-                        .help("move one of them, or give a `direction` instead of `lookat`"),
-                );
-                // An editor shows the parts of a scene that have no errors. Without a view, the
-                // camera is not one of them.
+                error("view_undefined", message)
+                    .at(given.span, "the same point as the eye")
+                    .at(eye_place, "the eye")
+                    .help("move one of them, or give a `direction` instead of `lookat`")
+                    .report(&mut self.problems);
+                // An editor shows the correct parts of a scene with errors. Without a view, it
+                // shows no camera.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -153,12 +152,11 @@ impl<'s> Lowering<'s> {
                 "which way is up hangs on the last digits of these numbers".to_owned(),
             )
         };
-        self.problems.push(
-            warning("up_parallel", message)
-                .at(given.map_or(given_view.span, |given| given.span), label)
-                .help(format!("{why}; write `up {top}` to say so yourself"))
-                .fixes(fix),
-        );
+        warning("up_parallel", message)
+            .at(given.map_or(given_view.span, |given| given.span), label)
+            .help(format!("{why}; write `up {top}` to say so yourself"))
+            .fixes(fix)
+            .report(&mut self.problems);
     }
 
     /// Reports a `far` that is not greater than `near`.
@@ -317,15 +315,14 @@ impl Lowering<'_> {
                 None => format!("move the camera nearer, {exact}"),
             };
             let is_given = self.sources.text(place) != "checkerboard";
-            self.problems.push(
-                warning(
-                    "squares_too_small",
-                    "samples cannot tell the squares of this board apart",
-                )
-                .at(place, "so small from here that all of them get one colour")
-                .help(help)
-                .writing(place, Applicability::Unsafe, larger.filter(|_| is_given)),
-            );
+            warning(
+                "squares_too_small",
+                "samples cannot tell the squares of this board apart",
+            )
+            .at(place, "so small from here that all of them get one colour")
+            .help(help)
+            .writing(place, Applicability::Unsafe, larger.filter(|_| is_given))
+            .report(&mut self.problems);
         }
     }
 }

@@ -84,12 +84,11 @@ impl<'s> Lowering<'s> {
         };
         let message = format!("`{}` must be {condition}, and it is {found}", row.name);
         let (allowed, applicability) = allowed(row, condition, value);
-        self.problems.push(
-            error("out_of_range", message)
-                .at(tree.span, "out of range")
-                .help(format!("write, for example, `{} {allowed}`", row.name))
-                .writing(tree.span, applicability, [allowed]),
-        );
+        error("out_of_range", message)
+            .at(tree.span, "out of range")
+            .help(format!("write, for example, `{} {allowed}`", row.name))
+            .writing(tree.span, applicability, [allowed])
+            .report(&mut self.problems);
         None
     }
 
@@ -133,15 +132,14 @@ impl<'s> Lowering<'s> {
         let list = suggest::list(schema::method_names());
         let near = schema::nearest_method(written);
         let is_sure = near.is_some_and(|near| schema::is_sure_method(written, near));
-        self.problems.push(
-            error("unknown_method", format!("there is no method `{written}`"))
-                .at(tree.span, "not a method")
-                .help(match near {
-                    Some(near) => format!("did you mean `{near}`? The methods are {list}."),
-                    None => format!("the methods are {list}"),
-                })
-                .writing(tree.span, Applicability::safe_if(is_sure), near),
-        );
+        error("unknown_method", format!("there is no method `{written}`"))
+            .at(tree.span, "not a method")
+            .help(match near {
+                Some(near) => format!("did you mean `{near}`? The methods are {list}."),
+                None => format!("the methods are {list}"),
+            })
+            .writing(tree.span, Applicability::safe_if(is_sure), near)
+            .report(&mut self.problems);
         None
     }
 

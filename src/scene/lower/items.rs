@@ -16,10 +16,6 @@ use crate::{
     syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
 
-/// Shapes of other programs, separated by spaces. The help says that such shapes can be made of
-/// triangles.
-const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";
-
 impl<'s> Lowering<'s> {
     /// Lowers the next items of the file.
     pub(super) fn items(&mut self, items: &[Item<'s>]) {
@@ -83,11 +79,10 @@ impl<'s> Lowering<'s> {
                     Fix::remove_whole(title, definition.span, self.sources)
                 };
                 let help = "remove one of them, or give it another name; a name keeps its value";
-                self.problems.push(
-                    twice("duplicate_let", message, [first, name.span])
-                        .help(help)
-                        .fixes([fix]),
-                );
+                twice("duplicate_let", message, [first, name.span])
+                    .help(help)
+                    .fixes([fix])
+                    .report(&mut self.problems);
             }
         }
     }
@@ -216,22 +211,24 @@ impl<'s> Lowering<'s> {
                     kind.text
                 )
             }
-            None if OTHER_SHAPES.split(' ').any(|shape| shape == kind.text) => {
+            None if schema::OTHER_SHAPES
+                .split(' ')
+                .any(|shape| shape == kind.text) =>
+            {
                 format!("the kinds are {kinds}; other shapes are made of triangles")
             }
             None => format!("the kinds are {kinds}"),
         };
         let message = format!("there is no kind of block `{}`", kind.text);
-        self.problems.push(
-            error("unknown_kind", message)
-                .at(kind.span, "not a kind of block")
-                .help(help)
-                .writing(
-                    kind.span,
-                    Applicability::safe_if(near.is_some_and(is_sure)),
-                    near.map(|near| near.name),
-                ),
-        );
+        error("unknown_kind", message)
+            .at(kind.span, "not a kind of block")
+            .help(help)
+            .writing(
+                kind.span,
+                Applicability::safe_if(near.is_some_and(is_sure)),
+                near.map(|near| near.name),
+            )
+            .report(&mut self.problems);
         near
     }
 
@@ -264,11 +261,10 @@ impl<'s> Lowering<'s> {
         if let Some(first) = slot {
             let message = format!("`{}` is given twice", row.name);
             let fields = [first.field(), given.field()];
-            self.problems.push(
-                twice("duplicate_field", message, [first.name, given.name])
-                    .help("remove one of them")
-                    .fixes(fixes::one_of_two(row.name, fields, self.sources)),
-            );
+            twice("duplicate_field", message, [first.name, given.name])
+                .help("remove one of them")
+                .fixes(fixes::one_of_two(row.name, fields, self.sources))
+                .report(&mut self.problems);
         } else {
             *slot = Some(given);
         }
@@ -336,26 +332,25 @@ impl<'s> Lowering<'s> {
                 Some(fix) => (fix.title.clone(), Some(fix)),
                 None => (format!("remove one of them: {}", choice.why), None),
             };
-            self.problems.push(
-                error("conflicting_fields", message)
-                    .at(
-                        later.name,
-                        match second.name {
-                            it if it == TRIANGLE.spin.name => "the vertices fix the turn already",
-                            _ => "this says it again, in another way",
-                        },
-                    )
-                    .at(
-                        earlier.name,
-                        match first.name {
-                            it if it == TRIANGLE.spin.name => "the vertices fix the turn",
-                            _ => "this says it already",
-                        },
-                    )
-                    .help(help)
-                    .fixes(fix)
-                    .fixes(self.one_of(block, choice, [first.name, second.name])),
-            );
+            error("conflicting_fields", message)
+                .at(
+                    later.name,
+                    match second.name {
+                        it if it == TRIANGLE.spin.name => "the vertices fix the turn already",
+                        _ => "this says it again, in another way",
+                    },
+                )
+                .at(
+                    earlier.name,
+                    match first.name {
+                        it if it == TRIANGLE.spin.name => "the vertices fix the turn",
+                        _ => "this says it already",
+                    },
+                )
+                .help(help)
+                .fixes(fix)
+                .fixes(self.one_of(block, choice, [first.name, second.name]))
+                .report(&mut self.problems);
         }
     }
 
@@ -455,7 +450,7 @@ mod tests {
 
     #[test]
     fn shapes_of_other_programs_are_no_kinds_of_blocks() {
-        for shape in OTHER_SHAPES.split(' ') {
+        for shape in schema::OTHER_SHAPES.split(' ') {
             assert!(schema::nearest_block(shape).is_none(), "{shape}");
         }
     }

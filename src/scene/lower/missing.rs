@@ -57,13 +57,13 @@ impl<'s> Lowering<'s> {
             let title = format!("add {}", quoted(names));
             self.add_fields(block, title, &examples(block, names))
         });
-        let problem = error(
+        error(
             "missing_field",
             format!("{} needs {}", row.noun, all.join(or)),
         )
         .at(block.keyword, "not complete")
         .help(format!("write `{}`", examples(block, first).join("  ")))
-        .fixes(fixes);
-        self.problems.push(problem);
+        .fixes(fixes)
+        .report(&mut self.problems);
     }
 }

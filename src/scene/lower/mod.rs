@@ -12,7 +12,6 @@ mod fixes;
 mod items;
 mod lowering;
 mod missing;
-mod objects;
 mod read;
 mod repetition;
 mod suggestions;

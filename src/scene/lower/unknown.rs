@@ -225,14 +225,10 @@ impl<'s> Lowering<'s> {
             };
             return Some(Meant::new(&[field.name], shown, whole, written));
         }
-        if let Some(several) = row.several.iter().find(|several| is_tried(several.words)) {
-            let written = self.spread(block, several.fields, value);
-            return Some(Meant::new(
-                several.fields,
-                quoted(several.fields),
-                whole,
-                written,
-            ));
+        let mut several = row.several.iter();
+        if let Some(&(_, fields)) = several.find(|(words, _)| is_tried(words)) {
+            let written = self.spread(block, fields, value);
+            return Some(Meant::new(fields, quoted(fields), whole, written));
         }
         // The word may be a value whose field's name is missing.
         let takes = match value.kind {

@@ -1,14 +1,12 @@
 //! The shape `checkerboard`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
-use serde_json::{Value as Json, json};
 
-use super::json_colors;
 use crate::{
     color::Color,
     numbers::short,
-    scene::{field_ref::FieldRef, lowered_block::LoweredBlock},
-    schema::{CHECKERBOARD, CheckerboardFields},
+    scene::lowered_block::LoweredBlock,
+    schema::{CHECKERBOARD, CheckerboardFields, FieldValue},
 };
 
 /// The infinite checkerboard in a horizontal plane.
@@ -33,13 +31,10 @@ impl Checkerboard {
         })
     }
 
-    pub(super) fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
-        Some(match name {
-            _ if name == CHECKERBOARD.y.name => FieldRef::Number(&mut self.y),
-            _ if name == CHECKERBOARD.square.name => FieldRef::Number(&mut self.square),
-            _ if name == CHECKERBOARD.colors.name => FieldRef::Colors(&mut self.colors),
-            _ => return None,
-        })
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        let field = CHECKERBOARD.y.of(name, &mut self.y);
+        let field = field.or(CHECKERBOARD.square.of(name, &mut self.square));
+        field.or(CHECKERBOARD.colors.of(name, &mut self.colors))
     }
 
     pub(super) fn is_possible(&self) -> bool {
@@ -64,14 +59,5 @@ impl Checkerboard {
         let [even, odd] = colors;
         let (y, square) = (short(y), short(square));
         format!("y {y}, squares of {square}, {even} and {odd}")
-    }
-
-    pub(super) fn facts(&self) -> Vec<(&'static str, Json)> {
-        let Self { y, square, colors } = *self;
-        vec![
-            ("y", json!(y)),
-            ("square", json!(square)),
-            ("colors", json_colors(&colors)),
-        ]
     }
 }

@@ -1,16 +1,14 @@
 //! The shape `box`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
-use serde_json::{Value as Json, json};
 
-use super::json_colors;
 use crate::{
     color::Color,
     diagnostic::{Edit, Fix, Problems},
     math::predicates,
     numbers::{self, short_vector},
-    scene::{error::error, field_ref::FieldRef, lowered_block::LoweredBlock},
-    schema::{BOX, BoxFields},
+    scene::{error::error, lowered_block::LoweredBlock},
+    schema::{BOX, BoxFields, FieldValue},
 };
 
 /// A closed, axis-aligned box.
@@ -42,11 +40,10 @@ impl Cuboid {
             predicates::box_corners(block.value(center)?, block.value(size)?)
         };
         if !min.is_finite() || !max.is_finite() {
-            problems.push(
-                error("box_too_large", "the box reaches beyond the largest number")
-                    .at(block.place(center), "center ± size/2 is not finite")
-                    .help("make it smaller, or move it nearer"),
-            );
+            error("box_too_large", "the box reaches beyond the largest number")
+                .at(block.place(center), "center ± size/2 is not finite")
+                .help("make it smaller, or move it nearer")
+                .report(problems);
             return None;
         }
         if min.cmpge(max).any() {
@@ -64,10 +61,10 @@ impl Cuboid {
         })
     }
 
-    /// Returns the centre or the lengths of the sides if `name` is `center` or `size`, and
-    /// otherwise `None`. Each number is rounded to fifteen digits, which removes the rounding
-    /// errors of computing it from the corners.
-    pub(super) fn center_or_size(&self, name: &str) -> Option<DVec3> {
+    /// Returns the value of the field `name` if that is `center` or `size`; otherwise `None`. The
+    /// value is rounded to fifteen digits, which removes the rounding errors of computing it from
+    /// the corners.
+    pub(in crate::scene) fn center_or_size(&self, name: &str) -> Option<DVec3> {
         if name == BOX.center.name {
             Some(tidy(self.min.midpoint(self.max)))
         } else if name == BOX.size.name {
@@ -79,7 +76,7 @@ impl Cuboid {
 
     /// Sets the field `name`, `center` or `size`, to `to` by changing the corners. Returns `false`
     /// and changes nothing if `name` is another field.
-    pub(super) fn set_center_or_size(&mut self, name: &str, to: DVec3) -> bool {
+    pub(in crate::scene) fn set_center_or_size(&mut self, name: &str, to: DVec3) -> bool {
         let (center, half) = if name == BOX.center.name {
             (to, (self.max - self.min) / 2.0)
         } else if name == BOX.size.name {
@@ -91,13 +88,12 @@ impl Cuboid {
         true
     }
 
-    pub(super) fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
-        Some(match &mut self.faces {
-            _ if name == BOX.min.name => FieldRef::Vector(&mut self.min),
-            _ if name == BOX.max.name => FieldRef::Vector(&mut self.max),
-            Some(faces) if name == BOX.colors.name => FieldRef::FaceColors(faces),
-            None if name == BOX.color.name => FieldRef::Color(&mut self.color),
-            _ => return None,
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        let field = BOX.min.of(name, &mut self.min);
+        let field = field.or(BOX.max.of(name, &mut self.max));
+        field.or(match &mut self.faces {
+            Some(faces) => BOX.colors.of(name, faces),
+            None => BOX.color.of(name, &mut self.color),
         })
     }
 
@@ -125,23 +121,6 @@ impl Cuboid {
             None => format!("from {min} to {max}, {}", self.color),
             Some([x, y, z]) => format!("from {min} to {max}, {x}, {y} and {z}"),
         }
-    }
-
-    pub(super) fn facts(&self) -> Vec<(&'static str, Json)> {
-        let Self {
-            min,
-            max,
-            color,
-            faces,
-        } = *self;
-        vec![
-            ("min", json!(min.to_array())),
-            ("max", json!(max.to_array())),
-            match faces {
-                None => ("color", json!(color.to_string())),
-                Some(colors) => ("colors", json_colors(&colors)),
-            },
-        ]
     }
 }
 

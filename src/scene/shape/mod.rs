@@ -18,13 +18,13 @@ pub use sphere::Sphere;
 pub use triangle::{CenteredTriangle, Triangle, TriangleOutline};
 
 use glam::DVec3;
-use serde_json::Value as Json;
+use serde_json::{Value as Json, json};
 
-use super::{field_ref::FieldRef, lowered_block::LoweredBlock};
+use super::lowered_block::LoweredBlock;
 use crate::{
     color::Color,
     diagnostic::Problems,
-    schema::{self, BlockKind, Value},
+    schema::{self, BlockKind, FieldValue, TRIANGLE, Value},
 };
 
 /// A shape with its colours. Lengths are in metres.
@@ -95,6 +95,14 @@ impl Shape {
         }
     }
 
+    /// Returns the contents of a box; `None` for any other shape.
+    pub fn cuboid(&self) -> Option<&Cuboid> {
+        match self {
+            Self::Box(cuboid) => Some(cuboid),
+            Self::Sphere(_) | Self::Triangle(_) | Self::Checkerboard(_) => None,
+        }
+    }
+
     /// Returns the centre of the shape's bounding sphere; `None` if the shape is infinite.
     pub fn center(&self) -> Option<DVec3> {
         self.bounding_sphere().map(|(center, _)| center)
@@ -129,31 +137,9 @@ impl Shape {
         for_each_kind!(self, own => own.greatest_length(from))
     }
 
-    /// Returns the value of a field by its name. Returns `None` if the shape was not written with
-    /// the field, such as `v0` of a triangle that is given by its centroid. For a box, all of
-    /// `min`, `max`, `center` and `size` are available.
-    pub fn field(mut self, name: &str) -> Option<Value> {
-        if let Self::Box(cuboid) = &self
-            && let Some(value) = cuboid.center_or_size(name)
-        {
-            return Some(Value::Vector(value));
-        }
-        Some(self.field_mut(name)?.get())
-    }
-
-    /// Returns a copy with another value of a field. Returns `None` if the shape was not written
-    /// with that field, or if the value has another type. Does not check the language's conditions.
-    pub fn with_field(mut self, name: &str, value: Value) -> Option<Self> {
-        if let (Self::Box(cuboid), Value::Vector(to)) = (&mut self, value)
-            && cuboid.set_center_or_size(name, to)
-        {
-            return Some(self);
-        }
-        self.field_mut(name)?.set(value)?;
-        Some(self)
-    }
-
-    fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
+    /// Returns a field that the shape is written with, by its name. Those of a box are its corners,
+    /// and not the centre and the size that are derived from the corners.
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
         for_each_kind!(self, own => own.field_mut(name))
     }
 
@@ -179,18 +165,32 @@ impl Shape {
         &self,
         vertices: impl FnOnce(&Triangle) -> [DVec3; 3],
     ) -> Vec<(&'static str, Json)> {
-        match self {
-            Self::Sphere(sphere) => sphere.facts(),
-            Self::Triangle(triangle) => triangle.facts(vertices(triangle)),
-            Self::Box(cuboid) => cuboid.facts(),
-            Self::Checkerboard(board) => board.facts(),
+        match *self {
+            Self::Triangle(triangle) => vec![
+                ("vertices", json!(vertices(&triangle).map(|v| v.to_array()))),
+                (TRIANGLE.color.name, json(Value::Color(triangle.color))),
+            ],
+            mut shape @ (Self::Sphere(_) | Self::Box(_) | Self::Checkerboard(_)) => {
+                let names = schema::of_kind(self.block_kind()).field_names();
+                let facts = names.filter_map(|name| {
+                    let field = shape.field_mut(name)?;
+                    Some((name, json(field.value())))
+                });
+                facts.collect()
+            }
         }
     }
 }
 
-/// Returns colours as JSON.
-fn json_colors(colors: &[Color]) -> Json {
-    colors.iter().map(Color::to_string).collect()
+/// Returns the value of a field as JSON.
+fn json(value: Value) -> Json {
+    match value {
+        Value::Number(number) => json!(number),
+        Value::Vector(vector) => json!(vector.to_array()),
+        Value::Colors(colors) => json!(colors.map(|color| color.to_string())),
+        Value::FaceColors(colors) => json!(colors.map(|color| color.to_string())),
+        Value::Color(_) | Value::Angle(_) | Value::Method(_) => json!(value.to_string()),
+    }
 }
 
 #[cfg(test)]
@@ -198,7 +198,7 @@ mod tests {
     use std::iter;
 
     use crate::{
-        scene::{analyze, eval::literal},
+        scene::{FieldOwner, analyze, eval::literal},
         schema::{BLOCKS, BlockRow, FieldRow},
         source::{Source, Sources},
     };
@@ -229,12 +229,13 @@ mod tests {
             let sources = Sources::new(Source::from_text("", text.clone()));
             let objects = analyze(&sources).parts.objects;
             let shape = objects.first().expect(&text).shape;
+            let owner = FieldOwner::Shape(shape);
             assert_eq!(shape.kind(), row.name);
             for field in fields {
                 let value = literal(field.example, field.takes);
-                assert_eq!(shape.field(field.name), value, "{}: {text}", field.name);
-                let same = shape.with_field(field.name, value.unwrap());
-                assert_eq!(same, Some(shape), "{}: {text}", field.name);
+                assert_eq!(owner.value(field.name), value, "{}: {text}", field.name);
+                let same = owner.with(field.name, value.unwrap());
+                assert_eq!(same, Some(owner), "{}: {text}", field.name);
             }
             assert!(shape.is_possible(), "{text}");
         }

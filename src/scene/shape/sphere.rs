@@ -1,13 +1,12 @@
 //! The shape `sphere`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
-use serde_json::{Value as Json, json};
 
 use crate::{
     color::Color,
     numbers::{short, short_vector},
-    scene::{field_ref::FieldRef, lowered_block::LoweredBlock},
-    schema::{SPHERE, SphereFields},
+    scene::lowered_block::LoweredBlock,
+    schema::{FieldValue, SPHERE, SphereFields},
 };
 
 /// A sphere.
@@ -35,13 +34,10 @@ impl Sphere {
         })
     }
 
-    pub(super) fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
-        Some(match name {
-            _ if name == SPHERE.center.name => FieldRef::Vector(&mut self.center),
-            _ if name == SPHERE.radius.name => FieldRef::Number(&mut self.radius),
-            _ if name == SPHERE.color.name => FieldRef::Color(&mut self.color),
-            _ => return None,
-        })
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        let field = SPHERE.center.of(name, &mut self.center);
+        let field = field.or(SPHERE.radius.of(name, &mut self.radius));
+        field.or(SPHERE.color.of(name, &mut self.color))
     }
 
     pub(super) fn is_possible(&self) -> bool {
@@ -67,18 +63,5 @@ impl Sphere {
     pub(super) fn summary(&self) -> String {
         let (center, radius) = (short_vector(self.center), short(self.radius));
         format!("center {center}, radius {radius}, {}", self.color)
-    }
-
-    pub(super) fn facts(&self) -> Vec<(&'static str, Json)> {
-        let Self {
-            center,
-            radius,
-            color,
-        } = self;
-        vec![
-            ("center", json!(center.to_array())),
-            ("radius", json!(radius)),
-            ("color", json!(color.to_string())),
-        ]
     }
 }

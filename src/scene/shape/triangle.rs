@@ -1,15 +1,14 @@
 //! The shape `triangle`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
-use serde_json::{Value as Json, json};
 
 use crate::{
     color::Color,
     diagnostic::Problems,
     math::{Angle, predicates},
     numbers::{self, short, short_vector},
-    scene::{error::error, field_ref::FieldRef, lowered_block::LoweredBlock},
-    schema::{TRIANGLE, TriangleFields},
+    scene::{error::error, lowered_block::LoweredBlock},
+    schema::{FieldValue, TRIANGLE, TriangleFields},
 };
 
 /// A triangle.
@@ -94,25 +93,22 @@ impl Triangle {
         })
     }
 
-    pub(super) fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
-        if name == TRIANGLE.color.name {
-            return Some(FieldRef::Color(&mut self.color));
+    pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
+        let field = TRIANGLE.color.of(name, &mut self.color);
+        match &mut self.outline {
+            TriangleOutline::Vertices([v0, v1, v2]) => {
+                let field = field.or(TRIANGLE.v0.of(name, v0));
+                field
+                    .or(TRIANGLE.v1.of(name, v1))
+                    .or(TRIANGLE.v2.of(name, v2))
+            }
+            TriangleOutline::Centered(own) => {
+                let field = field.or(TRIANGLE.centroid.of(name, &mut own.centroid));
+                let field = field.or(TRIANGLE.normal.of(name, &mut own.normal));
+                let field = field.or(TRIANGLE.sides.of(name, &mut own.sides));
+                field.or(TRIANGLE.spin.of(name, &mut own.spin))
+            }
         }
-        Some(match &mut self.outline {
-            TriangleOutline::Vertices([v0, v1, v2]) => match name {
-                _ if name == TRIANGLE.v0.name => FieldRef::Vector(v0),
-                _ if name == TRIANGLE.v1.name => FieldRef::Vector(v1),
-                _ if name == TRIANGLE.v2.name => FieldRef::Vector(v2),
-                _ => return None,
-            },
-            TriangleOutline::Centered(own) => match name {
-                _ if name == TRIANGLE.centroid.name => FieldRef::Vector(&mut own.centroid),
-                _ if name == TRIANGLE.normal.name => FieldRef::Vector(&mut own.normal),
-                _ if name == TRIANGLE.sides.name => FieldRef::Vector(&mut own.sides),
-                _ if name == TRIANGLE.spin.name => FieldRef::Angle(&mut own.spin),
-                _ => return None,
-            },
-        })
     }
 
     pub(super) fn is_possible(&self) -> bool {
@@ -160,25 +156,16 @@ impl Triangle {
             TriangleOutline::Vertices(_) => format!("vertices {a}, {b}, {c}, {color}"),
         }
     }
-
-    pub(super) fn facts(&self, vertices: [DVec3; 3]) -> Vec<(&'static str, Json)> {
-        let Self { outline: _, color } = self;
-        vec![
-            ("vertices", json!(vertices.map(|v| v.to_array()))),
-            ("color", json!(color.to_string())),
-        ]
-    }
 }
 
 fn on_one_line(block: &LoweredBlock<'_>, problems: &mut Problems) {
     let message = "the vertices lie on one line, and form no triangle";
-    problems.push(
-        error("on_one_line", message)
-            .at(block.place(TRIANGLE.v2), "the third vertex")
-            .at(block.place(TRIANGLE.v1), "the second")
-            .at(block.place(TRIANGLE.v0), "the first")
-            .help("move one of them, so that the three points are the corners of a triangle"),
-    );
+    error("on_one_line", message)
+        .at(block.place(TRIANGLE.v2), "the third vertex")
+        .at(block.place(TRIANGLE.v1), "the second")
+        .at(block.place(TRIANGLE.v0), "the first")
+        .help("move one of them, so that the three points are the corners of a triangle")
+        .report(problems);
 }
 
 fn not_a_triangle(block: &LoweredBlock<'_>, sides: DVec3, problems: &mut Problems) {
@@ -198,9 +185,8 @@ fn not_a_triangle(block: &LoweredBlock<'_>, sides: DVec3, problems: &mut Problem
     let help = format!(
         "make the {place} side shorter than the two others together, or each of them longer"
     );
-    problems.push(
-        error("not_a_triangle", message)
-            .at(block.place(TRIANGLE.sides), label)
-            .help(help),
-    );
+    error("not_a_triangle", message)
+        .at(block.place(TRIANGLE.sides), label)
+        .help(help)
+        .report(problems);
 }

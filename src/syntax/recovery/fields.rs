@@ -3,7 +3,7 @@
 use super::{Context, Recovery, foreign::CommentPosition};
 use crate::{
     diagnostic::{Edit, Fix, Label},
-    schema::{self, BOX, BlockKind, SPHERE},
+    schema,
     source::Span,
     syntax::{
         messages::{self as say, statement},
@@ -343,12 +343,8 @@ impl<'s> Recovery<'_, 's> {
         let is_vector =
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);
         let shape: Vec<bool> = values.iter().map(is_vector).collect();
-        let kind = schema::block(self.context.kind).map(|row| row.kind);
-        let names = match kind {
-            _ if !block.fields.is_empty() => &[][..],
-            Some(kind) => names_of_values(kind, &shape),
-            None => &[],
-        };
+        let row = schema::block(self.context.kind).filter(|_| block.fields.is_empty());
+        let names = row.map_or(&[][..], |row| row.names_of_values(&shape));
         let named = names.iter().zip(&values).map(|(name, value)| {
             let written = self.written(value.span);
             let round = written.replace(['<', '['], "(").replace(['>', ']'], ")");
@@ -358,33 +354,13 @@ impl<'s> Recovery<'_, 's> {
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
         // Two vectors in a box are read as its corners. They may also be its centre and its size,
         // so that fix is not safe.
-        let said = say::MISSING_FIELD_NAME.safe_if(kind == Some(BlockKind::Sphere));
+        let has_one_way = row.is_some_and(|row| row.choices.is_empty());
+        let said = say::MISSING_FIELD_NAME.safe_if(has_one_way);
         self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);
         block.fields.extend(fields.map(|(text, value)| {
             let name = Name { text, span };
             Field { name, value, span }
         }));
-    }
-}
-
-/// Returns the names of the fields that the first values of a block stand for if they lack names;
-/// empty if that is uncertain. `shape` says for each value whether it is a vector.
-fn names_of_values(kind: BlockKind, shape: &[bool]) -> &'static [&'static str] {
-    match (kind, shape) {
-        (BlockKind::Sphere, [true] | [true, false]) => {
-            const { &[SPHERE.center.name, SPHERE.radius.name] }
-        }
-        (BlockKind::Box, [true, true]) => const { &[BOX.min.name, BOX.max.name] },
-        (
-            BlockKind::Image
-            | BlockKind::Camera
-            | BlockKind::Sampler
-            | BlockKind::Sphere
-            | BlockKind::Triangle
-            | BlockKind::Box
-            | BlockKind::Checkerboard,
-            _,
-        ) => &[],
     }
 }

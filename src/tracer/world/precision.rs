@@ -10,13 +10,12 @@ use glam::{DVec2, DVec3};
 use super::precise_cache::{ObjectCache, ObjectRef};
 use crate::{
     math::{Ball, Big, Double, Real, predicates::Plane},
-    scene::{self, Scene, Shape, TriangleOutline},
+    scene::{self, Scene, Shape},
     tracer::{
         camera::{Basis, Camera},
         crossing::SurfacePart,
-        cuboid,
         form::Form,
-        object::Object,
+        object::{Object, exact_plane},
         sphere::Sphere,
     },
 };
@@ -124,36 +123,17 @@ impl Numbers {
 
     /// Returns the exact plane of a flat surface part. Returns `None` for a part that is not flat.
     pub(super) fn plane(&self, part: SurfacePart) -> Option<Plane> {
-        let (Self::Other(other), SurfacePart::Plane(index)) = (self, part) else {
-            return None;
-        };
-        Some(match other.0 {
-            Shape::Sphere(_) => return None,
-            Shape::Triangle(scene::Triangle { outline, .. }) => match outline {
-                TriangleOutline::Vertices(vertices) => Plane::through(vertices),
-                TriangleOutline::Centered(triangle) => {
-                    Plane::across(triangle.normal, triangle.centroid)
-                }
-            },
-            Shape::Box(scene::Cuboid { min, max, .. }) => {
-                let (axis, corner) = (usize::from(index / 2), [min, max][usize::from(index % 2)]);
-                let at = corner[axis];
-                Plane::Axial { axis, at }
-            }
-            Shape::Checkerboard(scene::Checkerboard { y, .. }) => Plane::Axial { axis: 1, at: y },
-        })
+        match (self, part) {
+            (Self::Other(other), SurfacePart::Plane(index)) => exact_plane(&other.0, index),
+            _ => None,
+        }
     }
 
     /// Prepares the object in the precision `T`.
     fn object<T: Real>(&self, camera: &Camera<T>) -> Object<T> {
         match self {
             Self::Sphere(center, radius) => Object::Sphere(Sphere::new(camera, *center, *radius)),
-            Self::Other(other) => match &**other {
-                (Shape::Box(cuboid), face) => {
-                    Object::Convex(cuboid::prepare(camera, cuboid, *face))
-                }
-                (shape, _) => Object::new(camera, shape),
-            },
+            Self::Other(other) => Object::new(camera, &other.0, other.1),
         }
     }
 }

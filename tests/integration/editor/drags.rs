@@ -6,34 +6,40 @@ use pinhole::{
     inspect::{CameraFacts, inspect},
     probe::probe,
     scene::{self, CenteredTriangle, Cuboid, Scene, Shape, TriangleOutline, View},
+    schema::{BLOCKS, BlockKind},
 };
 use proptest::{
     array::{uniform2, uniform3, uniform4},
     prelude::*,
+    sample::select,
 };
 
 use super::answers::dragged;
 use crate::scenes::{read, sources};
 
-/// Generates the text of a scene with one object in front of the camera.
+/// Generates the text of a scene with one object, of any kind, in front of the camera.
 fn any_scene() -> impl Strategy<Value = String> {
     let vectors = uniform4(uniform3(-4.0..4.0));
     let turns = uniform2(-200.0..200.0);
-    let kinds = (0..6usize, 0..2usize, 0..4usize, 0..4usize);
-    (vectors, uniform3(0.1..3.0), turns, kinds).prop_map(|(vectors, [s, t, r], [spin, roll], kinds)| {
+    let objects = BLOCKS.iter().filter(|row| row.is_object);
+    let objects = select(objects.map(|row| row.kind).collect::<Vec<_>>());
+    let object = (objects, any::<bool>());
+    let views = (0..2usize, 0..4usize, 0..4usize);
+    (vectors, uniform3(0.1..3.0), turns, object, views).prop_map(|(vectors, [s, t, r], [spin, roll], object, views)| {
         let [a, b, c, eye] = vectors.map(|[x, y, z]| format!("({x:.2}, {y:.2}, {z:.3})"));
         let (size, y) = (format!("({s:.2}, {t:.1}, {r:.3})"), vectors[0][1]);
-        let object = match kinds.0 {
-            0 => format!("sphere {{ center {a} radius {r:.2} }}"),
-            1 => format!("box {{ center {a} size {size} }}"),
-            2 => format!("let min = {a} box {{ min min max min + {size} }}"),
-            3 => format!("triangle {{ centroid {a} normal {b} + (0, 0, 9) sides (2, 2, 1.5) spin {spin:.1}deg }}"),
-            4 => format!("triangle {{ v0 {a} v1 {b} v2 {c} }}"),
-            _ => format!("checkerboard {{ y {y:.2} }}"),
+        let object = match object {
+            (BlockKind::Sphere, _) => format!("sphere {{ center {a} radius {r:.2} }}"),
+            (BlockKind::Box, false) => format!("box {{ center {a} size {size} }}"),
+            (BlockKind::Box, true) => format!("let min = {a} box {{ min min max min + {size} }}"),
+            (BlockKind::Triangle, false) => format!("triangle {{ centroid {a} normal {b} + (0, 0, 9) sides (2, 2, 1.5) spin {spin:.1}deg }}"),
+            (BlockKind::Triangle, true) => format!("triangle {{ v0 {a} v1 {b} v2 {c} }}"),
+            (BlockKind::Checkerboard, _) => format!("checkerboard {{ y {y:.2} }}"),
+            (BlockKind::Image | BlockKind::Camera | BlockKind::Sampler, _) => unreachable!("it is no object"),
         };
         let view = [format!("lookat {c}"), format!("direction {c} + (0, 0, -9)")];
-        let (view, lens) = (&view[kinds.1], ["", "d 5", "fov 60deg", "hfov 1rad"][kinds.2]);
-        let (width, height) = [(160, 90), (30, 40), (1, 1), (1 << 20, 3)][kinds.3];
+        let (view, lens) = (&view[views.0], ["", "d 5", "fov 60deg", "hfov 1rad"][views.1]);
+        let (width, height) = [(160, 90), (30, 40), (1, 1), (1 << 20, 3)][views.2];
         format!("{object} image {{ width {width} height {height} }} camera {{ eye {eye} + (0, 0, 9) {view} {lens} roll {roll:.0}deg }}")
     })
 }

@@ -164,7 +164,7 @@ fn is_known_for(new: &str, old: &str) -> bool {
         let mut several = block.several.iter();
         field.is_some_and(|field| field.name == new)
             || (block.name == new && suggest::is_among(old, block.also_tried))
-            || several.any(|it| suggest::is_among(old, it.words) && it.fields.contains(&new))
+            || several.any(|(words, fields)| suggest::is_among(old, words) && fields.contains(&new))
     };
     BLOCKS.iter().any(is_tried)
         || schema::nearest_method(old) == Some(new)

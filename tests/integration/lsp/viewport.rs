@@ -1,5 +1,6 @@
 //! Editing in the picture: overlays of objects, adding objects, and drags.
 
+use pinhole::schema::BLOCKS;
 use serde_json::{Value, json};
 
 use super::{
@@ -96,18 +97,14 @@ fn an_added_object_is_visible_and_has_an_unused_name() {
          checkerboard { y -2 }",
         "sphere { center (0, 1, 0) radios 1 }",
     ] {
-        for (kind, name) in [
-            ("sphere", "Sphere"),
-            ("triangle", "Triangle1"),
-            ("box", "Box1"),
-            ("checkerboard", "Checkerboard1"),
-        ] {
+        for kind in BLOCKS.iter().filter(|row| row.is_object) {
+            let kind = kind.name;
             let mut client = LocalClient::with(before);
             let found = client.ask("pinhole/add", json!({ "kind": kind }));
             let written = found["edits"][0]["newText"].as_str().expect("a text");
-            let name_found = found["name"].as_str().expect("a name");
-            assert!(name_found.starts_with(name), "{found}");
-            assert!(!before.contains(name_found), "{found}");
+            let name = |number| format!("{}{}{number}", kind[..1].to_uppercase(), &kind[1..]);
+            let is_first = !before.contains(&name(1));
+            assert_eq!(found["name"], name(if is_first { 1 } else { 2 }), "{found}");
             let camera = if before.contains("camera") {
                 ""
             } else {

@@ -1,0 +1,123 @@
+//! Lookups in the row of a kind of block: fields by their names, or by words that are near to them
+//! or that people use by mistake.
+
+use super::{
+    blocks::BlockRow,
+    row_types::{Choice, FieldRow, Preset},
+    types::Type,
+};
+use crate::suggest::{self, is_among};
+
+impl BlockRow {
+    /// Returns the row of a field by its name.
+    pub fn field(&self, name: &str) -> Option<&'static FieldRow> {
+        self.fields.iter().find(|field| field.name == name)
+    }
+
+    /// Returns all fields that `written` may stand for, if its meaning is uncertain.
+    pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
+        let fields = self.fields.iter();
+        fields.filter(move |field| is_among(written, field.perhaps))
+    }
+
+    /// Returns the help for a word of other programs that corresponds to no field.
+    pub fn elsewhere(&self, written: &str) -> Option<&'static str> {
+        let mut rows = self.elsewhere.iter();
+        let row = rows.find(|(words, _)| is_among(written, words));
+        row.map(|&(_, instead)| instead)
+    }
+
+    /// Returns the names of the fields.
+    pub fn field_names(&self) -> impl Iterator<Item = &'static str> + use<> {
+        self.fields.iter().map(|field| field.name)
+    }
+
+    /// Returns the names of the fields that values without names stand for at the start of the
+    /// block; none if that is not known. `are_vectors` says of each value whether it is a vector.
+    pub fn names_of_values(&self, are_vectors: &[bool]) -> &'static [&'static str] {
+        let is_vector = |name: &&str| self.field(name).map(|field| field.takes == Type::Vector);
+        let fits = |names: &&&[&str]| {
+            let fields = names.iter().map(is_vector);
+            fields.eq(are_vectors.iter().copied().map(Some))
+        };
+        self.nameless.iter().find(fits).copied().unwrap_or_default()
+    }
+
+    /// Returns the choice that contains a field, if there is one.
+    fn choice(&self, field: &str) -> Option<&'static Choice> {
+        let holds = |choice: &&Choice| choice.ways.iter().any(|way| way.contains(&field));
+        self.choices.iter().find(holds)
+    }
+
+    /// Returns the fields that a field excludes: the fields of the other ways of its [`Choice`].
+    pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
+        let ways = self.choice(field).into_iter().flat_map(|it| it.ways);
+        let others = ways.filter(move |way| !way.contains(&field));
+        others.flat_map(|way| way.iter().copied())
+    }
+
+    /// Returns the conditions in [`Self::together`] that contain a field's name.
+    pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
+        self.together.iter().copied().filter(move |rule| {
+            let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+            words.any(|word| word == field)
+        })
+    }
+
+    /// Returns the fields of a minimal block: the required ones, and of each choice those fields of
+    /// the first way that have no default.
+    pub fn least_fields(&self) -> Vec<&'static FieldRow> {
+        let is_needed = |field: &&FieldRow| match field.preset {
+            Preset::Required => true,
+            Preset::Alternative => self
+                .choice(field.name)
+                .and_then(|choice| choice.ways.first())
+                .is_some_and(|first| first.contains(&field.name)),
+            Preset::Nothing | Preset::Value(_) => false,
+        };
+        self.fields.iter().filter(is_needed).collect()
+    }
+
+    /// Returns the text of a minimal block, with example values.
+    pub fn example(&self) -> String {
+        let fields = self.least_fields().into_iter();
+        let fields = fields.map(|field| format!("{} {}", field.name, field.example));
+        let fields: Vec<String> = fields.collect();
+        if fields.is_empty() {
+            format!("{} {{}}", self.name)
+        } else {
+            format!("{} {{ {} }}", self.name, fields.join("  "))
+        }
+    }
+
+    /// Returns the field named `written`, ignoring case and `_`, or else the field for which people
+    /// use `written` by mistake.
+    pub fn field_tried(&self, written: &str) -> Option<&'static FieldRow> {
+        let find = |words: fn(&FieldRow) -> &'static str| {
+            let mut fields = self.fields.iter();
+            fields.find(|field| is_among(written, words(field)))
+        };
+        find(|field| field.name).or_else(|| find(|field| field.also_tried))
+    }
+
+    /// Returns the field that was probably meant by `written`: its name is similar to `written` or
+    /// occurs in it as a word, as in `near_clip` and `eyepoint`.
+    pub fn nearest_field(&self, written: &str) -> Option<&'static FieldRow> {
+        let words = suggest::words(written);
+        let starts = |field: &&FieldRow| field.name.len() > 2 && written.starts_with(field.name);
+        suggest::nearest(written, self.field_names())
+            .and_then(|name| self.field(name))
+            .or_else(|| {
+                words
+                    .iter()
+                    .find_map(|word| self.field(&word.to_ascii_lowercase()))
+            })
+            .or_else(|| words.iter().rev().find_map(|word| self.field_tried(word)))
+            .or_else(|| {
+                self.fields
+                    .iter()
+                    .filter(starts)
+                    .max_by_key(|field| field.name.len())
+            })
+    }
+}
