@@ -28,7 +28,7 @@ const REGION_WORK: f64 = 4.0;
 const RAY_WORK: f64 = 0.5;
 /// Work charged to the pixel's budget per candidate object that a region's ray may hit, if
 /// double-double arithmetic does not decide what the ray hits and the highest precision
-/// ([`Big`](crate::math::Big)) does, in units of about 50 ns.
+/// ([`Big`]) does, in units of about 50 ns.
 const BIG_RAY_WORK: f64 = 200.0;
 
 /// Shares of the colours in a pixel or sub-pixel.

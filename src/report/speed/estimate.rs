@@ -99,7 +99,7 @@ impl MethodSeries {
     ///
     /// Errors are assumed to fall as a power of the number of samples. Between two measured
     /// numbers, the power is that of the line through both in logarithms. Beyond the last, it is
-    /// the slope at the [`end`]. Times are assumed to grow linearly with the samples.
+    /// the slope at the `end`. Times are assumed to grow linearly with the samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));

@@ -81,7 +81,7 @@ pub struct SeriesPoint {
     pub runs: Vec<Run>,
 }
 
-/// Slope of a method's error against the number of samples, both logarithmic, at the [`end`] of its
+/// Slope of a method's error against the number of samples, both logarithmic, at the `end` of its
 /// series. There, the error is proportional to the power `slope` of the number of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndSlope {
