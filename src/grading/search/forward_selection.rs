@@ -12,7 +12,7 @@ use super::{
     joint,
     judge::{Judge, Judged, least},
     labels::labels,
-    numeric_mistakes::numeric_mistakes,
+    numeric_mistakes::{numeric_mistakes, slightly_wrong},
     patch::patch,
     plain_numbers::plain,
     residual::Residual,
@@ -151,6 +151,9 @@ impl Search<'_> {
             for (_, one) in least(next.into_iter(), BEAM_WIDTH - examined.len()) {
                 examined.extend(self.examine(&one));
             }
+            if let Some(best) = beam.first() {
+                self.refine(best, &mut examined);
+            }
             // An extra patch can explain anything, so it is tried only where no other mistake
             // completes a set.
             for from in beam {
@@ -163,7 +166,22 @@ impl Search<'_> {
                 return;
             }
             examined.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+            examined.truncate(BEAM_WIDTH);
             beam = examined;
+        }
+    }
+
+    /// Extends the best set of mistakes, unless the picture is explained, by numbers that are
+    /// slightly wrong, examines the new sets, and adds them to `examined`.
+    fn refine(&mut self, best: &Judged, examined: &mut Vec<Judged>) {
+        let judge = self.judge;
+        if self.explained.is_some() || !judge.work.may_go_on() {
+            return;
+        }
+        judge.compare_with(best.candidate());
+        for one in slightly_wrong(judge, best.candidate(), &suspects(judge, best)) {
+            // An examined set of the same kind has numbers that were fitted to a few samples.
+            examined.extend(self.examine(&one));
         }
     }
 
