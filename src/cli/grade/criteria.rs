@@ -27,56 +27,24 @@ pub enum Criterion {
     Hits,
 }
 
-/// Criteria of mistakes, by prefixes of the mistakes' ids. If an id has none of these prefixes, the
-/// mistake is about a field of the camera or about hits.
-const BEGINNINGS: &[(&str, Criterion)] = &[
-    ("board_", Criterion::Board),
-    ("half_pixel", Criterion::Sampling),
-    ("averaged_", Criterion::Sampling),
-    ("wider_", Criterion::Sampling),
-    ("sharpened", Criterion::Sampling),
-    ("sample", Criterion::Sampling),
-    ("window_", Criterion::Camera),
-    ("u_not_normalised", Criterion::Camera),
-    ("fisheye", Criterion::Camera),
-    ("colors_exchanged", Criterion::Colours),
-    ("video_range", Criterion::Colours),
-    ("bytes_wrap", Criterion::Colours),
-    ("channels", Criterion::Colours),
-    ("gray", Criterion::Colours),
-    ("not_encoded", Criterion::Colours),
-    ("encoded_", Criterion::Colours),
-    ("gamma_", Criterion::Colours),
-    ("cut_off", Criterion::Colours),
-    ("not_decoded", Criterion::Colours),
-    ("decoded_twice", Criterion::Colours),
-    ("inverted", Criterion::Colours),
-    ("not_divided", Criterion::Colours),
-    ("black", Criterion::Colours),
-    ("one_colour", Criterion::Colours),
-    ("transparent", Criterion::Colours),
-    ("alpha", Criterion::Colours),
-    ("background", Criterion::Colours),
-    ("mirrored", Criterion::Camera),
-    ("upside_down", Criterion::Camera),
-    ("turned_", Criterion::Camera),
-    ("transposed", Criterion::Camera),
-    ("squeezed", Criterion::Camera),
-    ("aspect", Criterion::Camera),
-    ("looks_back", Criterion::Camera),
-    ("w_not_normalised", Criterion::Camera),
-    ("parallel_rays", Criterion::Camera),
-    ("nothing_seen", Criterion::Camera),
-    ("eye_and_lookat", Criterion::Camera),
-    ("behind_seen", Criterion::Hits),
-    ("depth_ignored", Criterion::Hits),
-    ("sphere_", Criterion::Hits),
+/// Criteria of mistakes, with prefixes of the mistakes' ids. If an id has none of these prefixes,
+/// the mistake is about a field of the camera or about hits.
+#[rustfmt::skip]
+const BEGINNINGS: &[(Criterion, &[&str])] = &[
+    (Criterion::Board, &["board_"]),
+    (Criterion::Sampling, &["half_pixel", "averaged_", "wider_", "sharpened", "sample"]),
+    (Criterion::Camera, &[
+        "window_", "u_not_normalised", "w_not_normalised", "fisheye", "parallel_rays", "nothing_seen", "eye_and_lookat",
+        "looks_back", "mirrored", "upside_down", "turned_", "transposed", "stride", "squeezed", "aspect",
+    ]),
+    (Criterion::Colours, &[
+        "colors_exchanged", "video_range", "bytes_wrap", "channels", "gray", "not_encoded", "encoded_", "gamma_", "cut_off",
+        "not_decoded", "decoded_twice", "inverted", "not_divided", "shaded", "black", "one_colour", "transparent", "alpha",
+        "background",
+    ]),
     // If such a mistake is about a certain object, the message says so, and the object is the
     // criterion.
-    ("object_", Criterion::Hits),
-    ("box_", Criterion::Hits),
-    ("faces_", Criterion::Hits),
-    ("triangle_", Criterion::Hits),
+    (Criterion::Hits, &["behind_seen", "depth_ignored", "sphere_", "object_", "box_", "faces_", "triangle_"]),
 ];
 
 /// Returns the criterion that a mistake belongs to.
@@ -93,15 +61,15 @@ pub fn criterion(finding: &Finding, scene: &Scene) -> Criterion {
 /// Returns the criterion of a mistake's id, without regard to the object that the mistake is about.
 /// Returns `None` for the field of an object.
 fn of_id(id: &str) -> Option<Criterion> {
-    let mut beginnings = BEGINNINGS.iter();
-    let found = beginnings.find(|(beginning, _)| id.starts_with(beginning));
+    let begins = |beginnings: &[&str]| beginnings.iter().any(|one| id.starts_with(one));
+    let found = BEGINNINGS.iter().find(|(_, own)| begins(own));
     let camera = schema::block("camera").map_or(&[][..], |block| block.fields);
     let is_of = |field: &str| {
         let rest = id.strip_prefix(field);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
     };
     match found {
-        Some((_, criterion)) => Some(*criterion),
+        Some((criterion, _)) => Some(*criterion),
         None => (camera.iter().any(|field| is_of(field.name))).then_some(Criterion::Camera),
     }
 }
