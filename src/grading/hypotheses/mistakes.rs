@@ -69,6 +69,7 @@ const fn row(
 macro_rules! family {
     (window $window:literal, $aspect:expr) => { row("aspect", InAreas, concat!("the picture is stretched: its window is ", $window, ", though the picture is not"), WINDOW, |c, _| set_aspect(c, $aspect)) };
     (channels $order:literal, $channels:expr) => { row("channels", InAreas, concat!("the colour channels are in the order ", $order), ORDER, |c, _| c.effects.push(Effect::Channels($channels))) };
+    (brighter $light:literal, $factor:expr) => { row("not_divided", InAreas, concat!("the light is ", $light), DIVIDE, |c, _| map_channels(c, |light| ($factor * light).min(1.0))) };
     (finite $reach:literal) => { row("board_finite", InAreas, concat!("the checkerboard ends at ±", $reach, " along x and z"), "a checkerboard is a whole plane: a ray hits it at t = (y − e_y)/d_y, wherever that is", |c, _| if has_board(c) && c.behaviour.board_reach.is_infinite() { c.behaviour.board_reach = f64::from($reach) }) };
     (shaded $light:literal, $shading:expr) => { row("shaded", InAreas, concat!("colours are shaded by the cosine of their surface's angle with ", $light), "an object has its own colour wherever it is seen: multiply it by nothing", |c, _| if c.behaviour.shading == Shading::None { c.behaviour.shading = $shading }) };
     (board $id:literal, $message:literal, $is_first:expr) => { row($id, InAreas, $message, SQUARES, |c, _| set_square_rule(c, $is_first)) };
@@ -134,6 +135,8 @@ pub const ROWS: &[MistakeRow] = &[
     row("video_range", InAreas, "the colours lie between 16 and 235, as video has them, not between 0 and 255", CHANNELS, |c, _| map_channels(c, |light| srgb_to_linear((16.0 + 219.0 * linear_to_srgb(light)) / 255.0))),
     row("bytes_wrap", InAreas, "full channels are 0: 256 c is kept in a byte, which goes up to 255", "a channel's byte is round(255 c) of its encoded colour c", |c, _| map_channels(c, |light| srgb_to_linear((256.0 * linear_to_srgb(light) + 1e-6).floor() % 256.0 / 255.0))),
     row("inverted", InAreas, "the colours are inverted: each channel is 255 less what it should be", CHANNELS, |c, _| map_channels(c, |light| srgb_to_linear(1.0 - linear_to_srgb(light.min(1.0))))),
+    family!(brighter "half of what it should be: the sum of samples is divided by twice their number", 0.5),
+    family!(brighter "sixteen times what it should be: the sum of samples is not divided by their number", 16.0),
     row("not_divided", InAreas, "all light is multiplied by about {gain}: the sum of samples is divided by the wrong count", DIVIDE, |c, _| multiply(c, [|light| light; 2])),
     row("not_divided", InAreas, "all bytes are multiplied by about {gain}, after encoding", "a byte is 255 times an encoded colour: look for another factor", |c, _| multiply(c, [linear_to_srgb, srgb_to_linear])),
     row("sharpened", Everywhere, "the picture is sharpened: edges overshoot", "a pixel is the mean of light over its own square, and nothing is done to the picture then", |c, _| if c.effects.is_empty() { c.effects.push(Effect::Sharpened) }),

@@ -105,7 +105,8 @@ fn map_channels(
 
 /// Returns the factor between the observed and the expected light of cells of one colour, after a
 /// function: the median, refined by the channels that have nearly that factor. If all of them are
-/// full, it is the least that fills them; a factor near 1 is 1.
+/// full, it is the least that fills them. A factor near 1 is 1, and so is one that fewer than half
+/// of the channels have.
 fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabulated) -> f64 {
     let flat = (0..mean.len()).filter(|&at| variance[at].max_element() < FLAT);
     let pairs = flat.flat_map(|at| [0, 1, 2].map(|i| [observed[at][i], mean[at][i]]));
@@ -123,8 +124,13 @@ fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabul
     let middle = ratios.len() / 2;
     let median = *ratios.select_nth_unstable_by(middle, f64::total_cmp).1;
     let is_near = |[seen, mean]: &&[f64; 2]| (seen / mean / median - 1.0).abs() < ALIKE;
-    let near = pairs.iter().filter(is_near);
-    let [seen, mean] = near.fold([0.0; 2], |sums, pair| [0, 1].map(|i| sums[i] + pair[i]));
+    let near: Vec<_> = pairs.iter().filter(is_near).collect();
+    if 2 * near.len() < pairs.len() {
+        return 1.0;
+    }
+    let [seen, mean] = near
+        .iter()
+        .fold([0.0; 2], |sums, pair| [0, 1].map(|i| sums[i] + pair[i]));
     match seen / mean {
         gain if (gain - 1.0).abs() < ALIKE => 1.0,
         gain => gain,
