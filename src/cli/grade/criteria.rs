@@ -38,7 +38,7 @@ const BEGINNINGS: &[(Criterion, &[&str])] = &[
         "looks_back", "mirrored", "upside_down", "turned_", "transposed", "stride", "squeezed", "aspect",
     ]),
     (Criterion::Colours, &[
-        "colors_exchanged", "video_range", "bytes_wrap", "channels", "gray", "not_encoded", "encoded_", "gamma_", "cut_off",
+        "colors_exchanged", "video_range", "bytes_wrap", "bytes_scaled", "channels", "gray", "not_encoded", "encoded_", "gamma_", "cut_off",
         "not_decoded", "decoded_twice", "inverted", "not_divided", "shaded", "black", "one_colour", "transparent", "alpha",
         "background",
     ]),

@@ -138,7 +138,7 @@ pub const ROWS: &[MistakeRow] = &[
     family!(brighter "half of what it should be: the sum of samples is divided by twice their number", 0.5),
     family!(brighter "sixteen times what it should be: the sum of samples is not divided by their number", 16.0),
     row("not_divided", InAreas, "all light is multiplied by about {gain}: the sum of samples is divided by the wrong count", DIVIDE, |c, _| multiply(c, [|light| light; 2])),
-    row("not_divided", InAreas, "all bytes are multiplied by about {gain}, after encoding", "a byte is 255 times an encoded colour: look for another factor", |c, _| multiply(c, [linear_to_srgb, srgb_to_linear])),
+    row("bytes_scaled", InAreas, "all bytes are multiplied by about {gain}, after encoding", "a byte is 255 times an encoded colour: look for another factor", |c, _| multiply(c, [linear_to_srgb, srgb_to_linear])),
     row("sharpened", Everywhere, "the picture is sharpened: edges overshoot", "a pixel is the mean of light over its own square, and nothing is done to the picture then", |c, _| if c.effects.is_empty() { c.effects.push(Effect::Sharpened) }),
     row("averaged_encoded", AtEdges, "samples were averaged as sRGB numbers, not as light: flat colours are right, and edges too dark", AVERAGE, |c, _| set_averaging(c, Curve::Missing)),
     row("gamma_22_averaged", AtEdges, "colours were decoded with the power 2.2 and encoded with 1/2.2, which is near sRGB but not it: flat colours are right, and edges a little off", ENCODE, |c, _| set_averaging(c, Curve::Power22)),

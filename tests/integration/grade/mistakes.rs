@@ -231,10 +231,10 @@ const OTHERS: &[Mistake] = &[
     row("not_divided sixteen", |p| {
         p.gain = 16.0
     }),
-    pixels("not_divided bytes are multiplied by about 0.8", |color| {
+    pixels("bytes_scaled bytes are multiplied by about 0.8", |color| {
         scaled(color, 0.8)
     }),
-    pixels("not_divided bytes are multiplied by about 1.3", |color| {
+    pixels("bytes_scaled bytes are multiplied by about 1.3", |color| {
         scaled(color, 1.3)
     }),
     picture("stride further right", |picture| with_stride(picture, -1)),
