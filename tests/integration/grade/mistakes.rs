@@ -90,9 +90,7 @@ const OF_THE_PICTURE: &[Mistake] = &[
     row("not_divided light is multiplied by about 2", |p| {
         p.gain = 2.0
     }),
-    row("not_divided half", |p| {
-        p.gain = 0.5
-    }),
+    row("not_divided half", |p| p.gain = 0.5),
     row("half_pixel", |p| p.offset = 0.5),
 ];
 
@@ -228,9 +226,7 @@ const OTHERS: &[Mistake] = &[
     row("not_divided light is multiplied by about 1.3", |p| {
         p.gain = 1.3
     }),
-    row("not_divided sixteen", |p| {
-        p.gain = 16.0
-    }),
+    row("not_divided sixteen", |p| p.gain = 16.0),
     pixels("bytes_scaled bytes are multiplied by about 0.8", |color| {
         scaled(color, 0.8)
     }),
