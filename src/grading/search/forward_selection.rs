@@ -344,17 +344,17 @@ impl<'a> Extension<'a> {
         let rows = rows.filter_map(|one| judge.with_difference(one, &self.tiny));
         let rows: Rated = rows.collect();
         if !candidate.mistakes.is_empty() {
-            return rows;
+            return best_of_each_id(rows);
         }
         // Few samples cannot distinguish how far squares are visible, so a single mistake is
         // compared on an exact picture; its difference there is scaled to the tiny grid's.
         let Some((exactly, _)) = judge.with_difference(candidate.clone(), &judge.coarse) else {
-            return rows;
+            return best_of_each_id(rows);
         };
         let scale = self.difference / exactly.max(1e-12);
         let best = least(rows.into_iter(), EXACT_ROWS).into_iter();
         let best = best.filter_map(|(_, one)| judge.with_difference(one, &judge.coarse));
-        best.map(|(left, one)| (scale * left, one)).collect()
+        best_of_each_id(best.map(|(left, one)| (scale * left, one)).collect())
     }
 
     fn numbers(&self) -> Rated {
@@ -370,6 +370,18 @@ impl<'a> Extension<'a> {
         joint.truncate(JOINT_SETS);
         joint
     }
+}
+
+/// Keeps of the rows with one identifier and object the one with the least difference. Variants of
+/// one row would fill the beam otherwise.
+fn best_of_each_id(rows: Rated) -> Rated {
+    let mut known = BTreeSet::new();
+    let mut best = least(rows.into_iter(), usize::MAX);
+    best.retain(|(_, one)| match one.mistakes.last() {
+        Some(Mistake::Row(row, object)) => known.insert((row.id, *object)),
+        _ => true,
+    });
+    best
 }
 
 /// Multiplies a difference by the penalties for a candidate's mistakes and parameters.
