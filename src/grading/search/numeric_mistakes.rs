@@ -70,11 +70,12 @@ pub fn numeric_mistakes(
 /// the least difference after one round.
 const NEAR_OWN: usize = 3;
 
-/// Fits each parameter that may be wrong to the coarse grid from its present numbers. Returns the
-/// best few candidates that differ less from the picture than `candidate`.
+/// Fits each parameter of the camera and of boards that may be wrong to the coarse grid from its
+/// present numbers. Returns the best few candidates that differ less from the picture than
+/// `candidate`.
 ///
-/// The samples of the tiny grid cannot tell that numbers are slightly wrong if most of the picture
-/// is a board with small squares: there, any move changes what the samples see.
+/// The samples of the tiny grid cannot tell that these numbers are slightly wrong if most of the
+/// picture is a board with small squares: there, any move changes what the samples see.
 pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) -> Vec<Candidate> {
     let level = &judge.coarse;
     let Some((difference, _)) = judge.with_difference(candidate.clone(), level) else {
@@ -86,7 +87,11 @@ pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) 
         (found.left < difference).then_some((found.left, fitted))
     };
     let mut all = suspected(candidate, suspects);
-    all.retain(|parameter| !parameter.is_color());
+    all.retain(|parameter| match parameter.owner {
+        Owner::Camera => true,
+        Owner::Object(object) => is_board(candidate, object) && !parameter.is_color(),
+        Owner::Image => false,
+    });
     let once = all.into_iter().filter_map(|parameter| {
         let numbers = parameter.numbers(&candidate.scene);
         let start = candidate.with(Mistake::Numbers(parameter, numbers))?;
@@ -96,6 +101,11 @@ pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) 
     let best = best.filter_map(|(_, one)| fit(&one, [3, 1]));
     let best = least(best, NEAR_OWN).into_iter();
     best.map(|(_, one)| one).collect()
+}
+
+/// Returns whether an object is a checkerboard.
+fn is_board(candidate: &Candidate, object: usize) -> bool {
+    candidate.scene.objects[object].shape.center().is_none()
 }
 
 /// Returns the parameters of a candidate's scene that may be wrong and are not named yet.
@@ -108,9 +118,7 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
         // A wrong camera moves all objects. It is not suspected if only one bounded object is
         // wrong; a board alone may outweigh all other objects.
         Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => match suspects {
-            [sole] if candidate.scene.objects.len() > 1 => {
-                candidate.scene.objects[*sole].shape.center().is_none()
-            }
+            [sole] if candidate.scene.objects.len() > 1 => is_board(candidate, *sole),
             _ => true,
         },
         _ => true,

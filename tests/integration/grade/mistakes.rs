@@ -6,7 +6,7 @@ use image::{RgbImage, imageops};
 use super::{
     scenes::shift,
     textbook::{
-        Axes, Behind, Encoding, Object, Program, Roots, Shape, Squares, Visible, light, sharpened,
+        Axes, Behind, Encoding, Program, Roots, Shape, Squares, Visible, light, sharpened,
         with_stride,
     },
 };
