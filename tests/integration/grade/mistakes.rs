@@ -6,7 +6,7 @@ use image::{RgbImage, imageops};
 use super::{
     scenes::shift,
     textbook::{
-        Axes, Behind, Encoding, Program, Roots, Shape, Squares, Visible, light, sharpened,
+        Axes, Behind, Encoding, Object, Program, Roots, Shape, Squares, Visible, light, sharpened,
         with_stride,
     },
 };
@@ -156,6 +156,15 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
     }),
     row("object_missing Crate", |p| {
         p.objects.retain(|object| object.name != "Crate")
+    }),
+    row("object_extra", |p| {
+        let shape = Shape::Sphere(dvec3(0.6, 0.5, 2.0), 0.5);
+        let color = [200, 30, 60];
+        p.objects.push(Object {
+            name: "",
+            shape,
+            color,
+        });
     }),
     row("depth_ignored", |p| p.visible = Visible::Last),
     row("sphere_near_root", |p| p.roots = Roots::Lesser),
