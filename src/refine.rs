@@ -10,7 +10,7 @@ use crate::{
     area::Area,
     film::Film,
     lock::{lock, unpoisoned},
-    render::{Control, RenderError},
+    render::{Control, RenderError, check_part},
     threads::{self, prelude::*},
     tracer::World,
 };
@@ -30,12 +30,11 @@ pub struct Coarse {
 }
 
 /// Calls `show` with a part of the picture in blocks that become finer from step to step, down to a
-/// side of `finest` pixels. The part must lie in the picture. If the render is cancelled, it ends
-/// within a row of blocks.
+/// side of `finest` pixels. If the render is cancelled, it ends within a row of blocks.
 ///
 /// # Errors
 ///
-/// There is not enough memory, no thread can be started, or the render was cancelled.
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or the render was cancelled.
 pub fn coarse_to_fine(
     world: &World,
     part: Area,
@@ -55,13 +54,19 @@ pub fn coarse_to_fine(
 ///
 /// # Errors
 ///
-/// There is not enough memory, no thread can be started, or the render was cancelled.
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
+/// the render was cancelled.
+///
+/// # Panics
+///
+/// The side is 0.
 pub fn coarse(
     world: &World,
     part: Area,
     side: u32,
     control: &Control,
 ) -> Result<Coarse, RenderError> {
+    check_part(part, world.picture())?;
     let colors: Vec<_> = world
         .palette()
         .iter()

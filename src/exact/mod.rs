@@ -185,6 +185,11 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
+    /// Returns the prepared scene.
+    pub(crate) fn world(&self) -> &World {
+        self.world
+    }
+
     /// Sets the requested error bound, as a fraction of the pixel's area.
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;

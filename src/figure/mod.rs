@@ -60,6 +60,11 @@ pub struct Choice<'a> {
 /// # Errors
 ///
 /// Why the scene has no such figure, and which it has, in a sentence.
+///
+/// # Panics
+///
+/// The scene was not read, but made in code, and breaks a condition of the language;
+/// [`Scene::check`] tells.
 pub fn figure(scene: &Scene, kind: Kind, choice: Choice<'_>) -> Result<String, String> {
     let Image { width, height, .. } = scene.image;
     match (choice.pixel, kind, choice.object) {

@@ -5,7 +5,9 @@
 
 use std::sync::Mutex;
 
-use super::{Control, RenderError, finished, renderer::Renderer, tally::PixelTally, tiles};
+use super::{
+    Control, RenderError, check_part, finished, renderer::Renderer, tally::PixelTally, tiles,
+};
 use crate::{
     area::Area,
     film::{self, Encoder, Film},
@@ -19,26 +21,14 @@ use crate::{
 /// thread waits long for the others.
 const TILE_SAMPLES: u64 = 1 << 18;
 
-/// Renders a part of the picture with samples. The part must lie in the picture.
-///
-/// # Errors
-///
-/// There is not enough memory, no thread can be started, or the render was cancelled.
-pub fn render(
-    world: &World,
-    sampling: &Sampling,
-    part: Area,
-    control: &Control,
-) -> Result<Film, RenderError> {
-    render_as(world, sampling, part, control)
-}
-
+/// Renders a part of the picture with samples, of which the sampling must have some.
 pub(super) fn render_as<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,
     control: &Control,
 ) -> Result<Film<P>, RenderError> {
+    check_part(part, world.picture())?;
     let film = Mutex::new(Film::new(part.width, part.height)?);
     let colors: Vec<_> = world
         .palette()

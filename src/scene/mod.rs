@@ -16,6 +16,7 @@
 )]
 
 pub mod describe;
+mod display;
 mod error;
 mod eval;
 mod examples;

@@ -5,7 +5,13 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::shape::Shape;
-use crate::{color::Color, diagnostic::Diagnostic, math::Angle, schema::Method, source::Span};
+use crate::{
+    color::Color,
+    diagnostic::Diagnostic,
+    math::Angle,
+    schema::Method,
+    source::{SourceId, Span},
+};
 
 /// The smallest scene that shows something: a sphere on a floor.
 pub const SMALLEST: &str = "\
@@ -138,9 +144,35 @@ pub struct Object {
 }
 
 impl Object {
+    /// Makes an object without a name. Its span is empty, as it stands in no text.
+    pub fn new(shape: impl Into<Shape>) -> Self {
+        Self {
+            name: None,
+            indices: Box::default(),
+            shape: shape.into(),
+            span: Span::new(SourceId::File, 0, 0),
+        }
+    }
+
+    /// Returns the object with a name, which no other object of the scene may have.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: Some(name.into()),
+            ..self
+        }
+    }
+
     /// Whether two objects come from the same repeated block.
     pub fn is_beside(&self, other: &Self) -> bool {
         !self.indices.is_empty() && self.span == other.span
+    }
+}
+
+impl Scene {
+    /// Returns the objects, to change them. They are copied if another scene shares them.
+    pub fn objects_mut(&mut self) -> &mut Vec<Object> {
+        Arc::make_mut(&mut self.objects)
     }
 }
 

@@ -1,5 +1,9 @@
 //! The table of sampling techniques.
 
+use std::{fmt, str::FromStr};
+
+use thiserror::Error;
+
 use crate::suggest::{self, is_among};
 
 /// Makes the rows of techniques: the variant, the word in the language, a line of help, and other
@@ -56,6 +60,27 @@ impl Method {
         Self::Scatter,
     ];
 }
+
+/// Writes the method's word in the language.
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Reads the method's word in the language.
+impl FromStr for Method {
+    type Err = UnknownMethod;
+
+    fn from_str(word: &str) -> Result<Self, UnknownMethod> {
+        method(word).ok_or_else(|| UnknownMethod(word.to_owned()))
+    }
+}
+
+/// A word that is the name of no method.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("there is no method `{0}`; the methods are {list}", list = suggest::list(method_names()))]
+pub struct UnknownMethod(String);
 
 /// Returns a method by its name.
 pub fn method(name: &str) -> Option<Method> {

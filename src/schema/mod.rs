@@ -16,7 +16,9 @@ mod types;
 
 pub use blocks::*;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
-pub use methods::{METHODS, Method, is_sure_method, method, method_names, nearest_method};
+pub use methods::{
+    METHODS, Method, UnknownMethod, is_sure_method, method, method_names, nearest_method,
+};
 pub use row_types::{
     BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset, Several,
 };

@@ -199,7 +199,7 @@ impl Benchmark<'_> {
                 let runs = Vec::new();
                 series.points.push(SeriesPoint { per_pixel, runs });
             }
-            let error = film::rmse(made.film(), &measured.reference.film);
+            let error = error_of(made.film(), &measured.reference.film);
             series.points[point].runs.push(Run { error, ..run });
         } else if let Some(runs) = &mut measured.exact {
             let (_, run) = timed(|| rendered(self.scene, Method::Exact, [1, 0], self.control))?;
@@ -237,7 +237,7 @@ impl Benchmark<'_> {
             series.picture = Some(MethodPicture {
                 per_pixel,
                 cpu: run.cpu,
-                rmse: film::rmse(film, reference),
+                rmse: error_of(film, reference),
                 part,
                 film: film.part(part)?,
             });
@@ -261,6 +261,11 @@ impl Benchmark<'_> {
         };
         (self.progress)(share.min(1.0));
     }
+}
+
+/// Returns the root mean square error of a picture of the scene.
+fn error_of(film: &Film, reference: &Film) -> f64 {
+    film::rmse(film, reference).expect("pictures of one scene have one size")
 }
 
 /// Renders the scene with `method`, `per_pixel` samples per pixel and `seed`. The exact method
@@ -297,7 +302,7 @@ fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     for y in places(film.height(), height) {
         for x in places(film.width(), width) {
             let part = Area { x, y, ..worst };
-            let error = film::rmse(&film.part(part)?, &reference.part(part)?);
+            let error = error_of(&film.part(part)?, &reference.part(part)?);
             if error > most {
                 (worst, most) = (part, error);
             }

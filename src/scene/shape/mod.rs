@@ -51,6 +51,30 @@ macro_rules! for_each_kind {
     };
 }
 
+impl From<Sphere> for Shape {
+    fn from(sphere: Sphere) -> Self {
+        Self::Sphere(sphere)
+    }
+}
+
+impl From<Triangle> for Shape {
+    fn from(triangle: Triangle) -> Self {
+        Self::Triangle(triangle)
+    }
+}
+
+impl From<Cuboid> for Shape {
+    fn from(cuboid: Cuboid) -> Self {
+        Self::Box(cuboid)
+    }
+}
+
+impl From<Checkerboard> for Shape {
+    fn from(board: Checkerboard) -> Self {
+        Self::Checkerboard(board)
+    }
+}
+
 impl Shape {
     /// Makes an object's shape of its block. Returns `None` if a value is missing or wrong, which
     /// is reported here only if the values contradict each other.
@@ -149,6 +173,14 @@ impl Shape {
         }
         self.field_mut(name)?.set(value)?;
         Some(self)
+    }
+
+    /// Returns the fields that the shape is written with, and their values. A box is written by its
+    /// corners.
+    pub(super) fn fields(mut self) -> impl Iterator<Item = (&'static str, Value)> {
+        let row = schema::of_kind(self.block_kind());
+        let value = move |name| Some((name, self.field_mut(name)?.get()));
+        row.field_names().filter_map(value)
     }
 
     fn field_mut(&mut self, name: &str) -> Option<FieldRef<'_>> {
