@@ -12,11 +12,11 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 EXAMPLES = ROOT / "examples"
 FIGURE = EXAMPLES / "figure_9_9.scn"
 
-# An exact picture, with figure 9.9's view without a far plane: half of it shows squares that become
-# ever smaller.
+# Overrides for an exact picture of figure 9.9 without a far plane. Half of the picture then shows
+# squares that become ever smaller.
 TO_THE_HORIZON = ["sampler.method=exact", "camera.fov=40deg"]
 
-# Size of the pictures that are judged.
+# Width and height of the pictures that `diff` and `grade` judge, in pixels.
 SMALL = (96, 54)
 
 
@@ -44,8 +44,8 @@ def spheres(count):
     colors = ["olive", "teal", "orange", "gray", "#fa0", "#3366cc", "rgb(255, 165, 0)", "steelblue"]
     lines = ["image { width 1280  height 720 }", "camera { eye (0, 0, 0)  direction (0, 0, -1)  d 1 }"]
     lines.append("sampler { method jittered  per_pixel 4  seed 1 }")
-    # The window is 2 high and 16/9 times as wide at distance 1; a sphere of this radius there
-    # covers its share of it.
+    # At distance 1, the window is 2 high and 16/9 times as wide. A sphere of this radius at
+    # distance 1 covers its share of 1.5 times the window.
     radius = (1.5 * 4 * 16 / 9 / (3.14159 * count)) ** 0.5
     for index in range(count):
         depth = chance.uniform(5, 50)

@@ -24,22 +24,24 @@ use pinhole::{
 
 use self::one_by_one::one_by_one;
 
-/// Number of rounds. The fastest round counts, since other work on the machine only makes a round
-/// slower.
+/// Number of rounds. The fastest round is printed, since other work on the machine only makes a
+/// round slower.
 const ROUNDS: usize = 3;
 
-/// Way of tracing samples.
+/// How samples are traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
-    /// Each sample is traced by itself.
+    /// Each sample by itself, with the quadtree finding the objects that its ray may hit.
     OneByOne,
-    /// As `render` traces them, with culling.
+    /// As by `render`, with culling: the samples of a pixel together, against the objects that may
+    /// be seen there.
     Culled,
 }
 
 const WAYS: [Way; 2] = [Way::OneByOne, Way::Culled];
 
-/// Names of examples that are rendered in both ways: some suit culling, others do not.
+/// Names of the examples that are rendered in both ways. Culling suits some of them, but not
+/// others.
 const SCENES: [&str; 5] = [
     "scatter",
     "near_and_far",
@@ -110,16 +112,17 @@ fn main() {
     exact();
 }
 
-/// Scene with a floor of which nearly every pixel sees many squares.
+/// Scene with a floor on which nearly every pixel sees many squares.
 const DENSE: &str = "camera { eye (0.3, 2, 5) lookat (7, 1.8, -30) } checkerboard { square 0.001 }";
 
-/// Returns an element of a Weyl sequence between −`size`/2 and `size`/2: the fractional part of
-/// `index`·`step`, for an irrational `step`, scaled.
+/// Returns an element of a Weyl sequence: the fractional part of `index`·`step`, for an irrational
+/// `step`, scaled to the range from −`size`/2 to `size`/2.
 fn place(index: u32, step: f64, size: f64) -> f64 {
     ((f64::from(index) * step).fract() - 0.5) * size
 }
 
-/// Returns the centre of an object. The centres of all indices are spread over the whole picture.
+/// Returns the centre of the object with the index `index`. The centres are spread over the whole
+/// picture.
 fn center(index: u32) -> [f64; 3] {
     [
         place(index, 0.618_033_988_749_895, 12.0),
@@ -138,9 +141,9 @@ fn tiny(count: u32) -> String {
     text
 }
 
-/// Returns a scene of `count` triangles in all directions, two hundred times as long as wide, that
-/// overlap each other. Even a small part of the picture has very many candidates, so culling may be
-/// up to three times as slow as tracing one by one.
+/// Returns a scene of `count` overlapping triangles in all directions, each two hundred times as
+/// long as wide. Even in a small part of the picture, very many of them may be seen, so culling may
+/// be up to three times as slow as tracing one by one.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -169,8 +172,8 @@ fn example(name: &str) -> Scene {
     read(&fs::read_to_string(path).expect("the example is there"))
 }
 
-/// Returns the scene with a picture of this width and an aspect ratio of 16:9, and `per_pixel`
-/// samples per pixel.
+/// Returns the scene with a picture that is `width` pixels wide, with an aspect ratio of 16:9, and
+/// with `per_pixel` samples per pixel.
 fn sized(scene: &Scene, width: u32, method: Method, per_pixel: u64) -> Scene {
     let mut scene = scene.clone();
     (scene.image.width, scene.image.height) = (width, width * 9 / 16);
@@ -204,9 +207,9 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     }
 }
 
-/// Measures what correct decisions cost in hard cases. Compares the rays per CPU second of three
-/// ways, in turns: the formulas of a textbook, which are wrong in hard cases only, tracing one by
-/// one, and `render`. All three generate the sample points.
+/// Measures what correct decisions cost. Compares the rays per CPU second of three ways, in turns:
+/// the formulas of a textbook, which are wrong in hard cases; tracing one by one; and `render`. The
+/// time to generate the sample points is included in all three.
 fn price() {
     const SECONDS: f64 = 2.0;
     let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);
@@ -238,7 +241,7 @@ fn price() {
     }
 }
 
-/// Returns a function that traces each sample by the formulas of a textbook.
+/// Returns a function that traces each sample with the formulas of a textbook.
 fn textbook(scene: &Scene) -> impl Fn() {
     let [width, height] = [scene.image.width, scene.image.height];
     let (textbook, objects) = (Textbook::new(scene), scene.objects.len());
@@ -261,7 +264,7 @@ fn textbook(scene: &Scene) -> impl Fn() {
 }
 
 /// Measures what the exact picture of figure 9.9 costs, with and without a far plane. Compares its
-/// time, in turns, with that of tracing few samples per pixel one by one.
+/// time with that of tracing 1, 2 and 4 samples per pixel one by one. All are measured in turns.
 fn exact() {
     const FEW: [u64; 3] = [1, 2, 4];
     println!("one thread; exact by the time of so many samples a pixel one by one, random");
@@ -306,9 +309,10 @@ fn exact() {
     }
 }
 
-/// Renders figure 9.9 on one thread and returns, for measurements of the whole process. `arguments`
-/// are the way, the method, the picture's width, samples per pixel, and the number of pictures. The
-/// way `None` prepares everything and renders nothing. Prints the CPU time of the pictures alone.
+/// Renders figure 9.9 on one thread and returns, so that the whole process can be measured.
+/// `arguments` are the way, the method, the picture's width, samples per pixel, and the number of
+/// pictures. The way `None` prepares everything and renders nothing. Prints the CPU time of the
+/// pictures alone.
 fn once(arguments: &[String]) {
     let [way, method, numbers @ ..] = arguments else {
         panic!("--once WAY METHOD WIDTH SAMPLES TIMES");
@@ -338,7 +342,8 @@ fn once(arguments: &[String]) {
     );
 }
 
-/// Compares both ways in turns, so that other work on the machine slows down both.
+/// Measures both ways in turns, so that other work on the machine slows down both, and prints how
+/// many times as fast culling is.
 fn ratios(name: &str, scene: &Scene) {
     let pictures = WAYS.map(|way| picture(scene, way));
     let mut best = [f64::MAX; WAYS.len()];

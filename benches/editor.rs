@@ -19,10 +19,10 @@ mod spheres;
 
 const OBJECTS: usize = 1000;
 
-/// Number of repetitions of a request.
+/// Number of times that each request is repeated and measured.
 const ROUNDS: u32 = 200;
 
-/// Number of repetitions of a slow request.
+/// Number of times that each slow request is repeated and measured.
 const FEW: u32 = 10;
 
 const URI: &str = "file:///spheres.scn";
@@ -101,7 +101,7 @@ fn main() {
 
 /// Measures the formatting of a text with one block per line, and the diagnostics after the editor
 /// has applied the edits. The edits are sent back as changes, from the last to the first, so that
-/// no change moves the position of another.
+/// no change moves the positions of the remaining ones.
 fn formatted() {
     let text = spheres(OBJECTS, Layout::Lines);
     let mut server = Server::start(&text);
@@ -139,7 +139,7 @@ fn formatted() {
 /// Measures a text with all objects in one line.
 fn objects_in_one_line() {
     let text = spheres(OBJECTS, Layout::Lines);
-    // Line comments would comment out the rest of the text.
+    // Comments are left out, since a line comment would comment out the rest of the line.
     let lines = text.lines().filter(|line| !line.contains("//"));
     let line = lines.collect::<Vec<_>>().join(" ");
     println!("all of it in one line of {} bytes", line.len());
@@ -200,7 +200,7 @@ impl Letters {
         }
     }
 
-    /// Sends the next change, and reads the diagnostics that follow.
+    /// Sends the next change, and reads the diagnostics that the server sends after it.
     fn next(&mut self, server: &mut Server) {
         self.version += 1;
         let place = json!({ "line": self.line, "character": self.column });
@@ -216,7 +216,7 @@ impl Letters {
     }
 }
 
-/// Runs `done` as many times as `rounds`, and prints its times.
+/// Runs `done` `rounds` times, and prints the median and the longest time.
 fn show(name: &str, rounds: u32, mut done: impl FnMut()) {
     let times = (0..rounds).map(|_| {
         let start = Instant::now();
@@ -310,7 +310,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // The server has nothing to save.
+        // The server has nothing to save, so it is killed without `exit`.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -28,7 +28,7 @@ use mistakes::{GROUPS, Mistake, OF_THE_OBJECTS};
 use serde_json::{Value, json};
 use textbook::{SAMPLINGS, Sampling};
 
-/// Sizes of pictures, in pixels.
+/// Sizes of the corpus's pictures, in pixels.
 const SIZES: [[u32; 2]; 3] = [[96, 64], [320, 180], [640, 360]];
 
 fn main() {
@@ -57,7 +57,7 @@ fn main() {
     for count in 0..4 {
         for &size in &sizes {
             for &sampling in &samplings {
-                // Pairs and triples of mistakes are tested in one size only.
+                // Pairs and triples of mistakes are tested in the middle size only.
                 if count > 1 && size != SIZES[1] {
                     continue;
                 }
@@ -80,8 +80,8 @@ fn main() {
     }
 }
 
-/// Returns sets of `count` mistakes: no mistake and single ones, or pairs or triples of mistakes
-/// from different groups.
+/// Returns sets of `count` mistakes. For a `count` of 1, these are single mistakes and the empty
+/// set; for 2 and 3, mistakes from different groups.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
@@ -101,9 +101,9 @@ fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     }
 }
 
-/// Returns pictures with sets of `count` mistakes, all of one size and sampling. A picture is
-/// returned only if each of its mistakes is visible: without that mistake, the picture differs by
-/// more than the 8-bit step that rounding may explain.
+/// Returns the cases with sets of `count` mistakes, all of one size and sampling. A case is left
+/// out if one of its mistakes is not visible: if the picture without this mistake differs only by
+/// the 8-bit step that rounding may explain.
 fn cases(
     count: usize,
     [width, height]: [u32; 2],
@@ -123,7 +123,8 @@ fn cases(
         let names: Vec<_> = set.iter().map(|one| one.title()).collect();
         let whole = case(scene, &names);
         let picture = whole.picture();
-        // With the mistake `cut_off`, bytes are truncated, so they differ by a single step.
+        // The mistake `cut_off` truncates bytes instead of rounding them, so a single step is a
+        // visible difference.
         let least = u8::from(!names.contains(&"cut_off"));
         let is_seen = |left_out: usize| {
             let mut others = names.clone();
@@ -132,7 +133,7 @@ fn cases(
             let mut bytes = picture.as_raw().iter().zip(other.as_raw());
             bytes.any(|(a, b)| a.abs_diff(*b) > least)
         };
-        // A transposed picture may have another size than the scene.
+        // A transposed picture may have another size than the scene; then it is left out.
         let is_whole = picture.dimensions() == (width, height);
         (is_whole && (0..names.len()).all(is_seen)).then_some(whole)
     };
@@ -141,7 +142,8 @@ fn cases(
     sets.filter_map(|(scene, set)| seen(scene, set)).collect()
 }
 
-/// Judges the cases and prints a row of the table: how many of them are judged correctly.
+/// Judges the cases and prints a row of the table, with the number of cases that are judged
+/// correctly.
 fn judge(program: &str, of: &str, cases: &[Case]) {
     let folder = tempfile::tempdir().expect("a folder for pictures");
     let (mut right, mut time) = (0, Duration::ZERO);

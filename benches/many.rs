@@ -3,7 +3,7 @@
 //!
 //! `-- --write COUNT` writes a scene of COUNT small spheres to standard output instead. `--
 //! --phases COUNT…` prints the CPU seconds of each phase once, and the memory that the world takes.
-//! With `--cube`, the spheres are in a cube rather than all over the picture.
+//! With `--cube`, the spheres are in a cube instead of all over the picture.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -88,7 +88,7 @@ fn phases(scene: &Scene) {
     (0..RENDERS).for_each(|_| picture(&world, scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
-    // Each sample is traced by itself through the quadtree.
+    // Without culling, each sample is traced by itself through the quadtree.
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     let whole = Area::whole(scene.image.width, scene.image.height);
     black_box(one_by_one(&world, &sampling, whole));

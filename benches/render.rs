@@ -24,7 +24,7 @@ const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 720;
 const PER_PIXEL: u64 = 16;
 
-/// Number of runs. The shortest time counts, since other work on the machine only makes a run
+/// Number of runs. The shortest time is printed, since other work on the machine only makes a run
 /// slower.
 const RUNS: usize = 5;
 
@@ -118,7 +118,7 @@ fn points(scene: &Scene) -> f64 {
     sum.element_sum()
 }
 
-/// Renders the scene sample by sample on one thread.
+/// Renders the scene sample by sample on one thread, without culling.
 fn plain(scene: &Scene) -> Film {
     let sampling = Sampling::new(&scene.sampler, WIDTH, HEIGHT);
     one_by_one(&World::new(scene), &sampling, Area::whole(WIDTH, HEIGHT))

@@ -25,7 +25,8 @@ use self::{
 
 mod spheres;
 
-/// pest's parser of the same grammar. All times are given as multiples of its time.
+/// pest's parser of the same grammar, for comparison. All times are printed as multiples of its
+/// time.
 mod grammar {
     #[derive(pest_derive::Parser)]
     #[grammar = "grammar/scn.pest"]
@@ -34,8 +35,8 @@ mod grammar {
 
 const OBJECTS: usize = 10_000;
 
-/// Number of rounds. The fastest round counts, since other work on the machine only makes a round
-/// slower.
+/// Number of rounds. The fastest round is printed, since other work on the machine only makes a
+/// round slower.
 const ROUNDS: usize = 20;
 
 fn main() {
@@ -79,7 +80,8 @@ fn main() {
     }
 }
 
-/// Parses a few kilobytes at a time, as the parser does. Returns the number of items.
+/// Parses about 4096 bytes at a time with pest, as Pinhole's parser does. Returns the number of
+/// items.
 fn chunks(text: &str) -> usize {
     const CHUNK: usize = 4096;
     let (mut at, mut items) = (0, 0);

@@ -57,7 +57,7 @@ def main():
         wait(lambda: len(said) >= 2)
         seen = {}
         for number, text in enumerate(texts):
-            # A person, too, does not save at the moment the last picture appears.
+            # A person does not save at the very moment when the last picture appears either.
             time.sleep(0.2)
             by_renaming = number % 2 == 1
             before, start = picture.stat().st_ino, time.monotonic()

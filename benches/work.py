@@ -24,13 +24,13 @@ TABLE = pathlib.Path(__file__).with_suffix(".csv")
 COLUMNS = ["command", "instructions", "memory_kb", "rustc", "valgrind"]
 SIZE = (160, 90)
 SPHERES = [1000, 10_000]
-# Factors by which a command may exceed its row. Instruction counts repeat within 0.2 %, peak memory
-# within 5 %, so the least memory of several runs counts.
+# Factors by which a command may exceed its row before it fails. Instruction counts repeat within
+# 0.2 %. Peak memory repeats only within 5 %, so the least of MEMORY_RUNS runs counts.
 MORE_INSTRUCTIONS, MORE_MEMORY = 1.03, 1.10
 MEMORY_RUNS = 5
 ENVIRONMENT = {**os.environ, "NO_COLOR": "1"}
-# Free processors. Each command has one processor for itself, so that it starts the same number of
-# threads on every machine.
+# Processors that run no command at the moment. Each command has one processor for itself, so that
+# it starts the same number of threads on every machine.
 PROCESSORS = queue.SimpleQueue()
 for processor in os.sched_getaffinity(0):
     PROCESSORS.put(processor)

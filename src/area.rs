@@ -37,7 +37,7 @@ impl Area {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// Returns whether the area lies within another one.
+    /// Returns whether the area lies within `other`.
     pub fn lies_in(self, other: Self) -> bool {
         self.common(other) == self
     }
@@ -137,8 +137,8 @@ impl Area {
         quarters.filter(|quarter| quarter.width > 0 && quarter.height > 0)
     }
 
-    /// Returns the pixel in the middle of the area. Of an even number of columns or rows, the
-    /// second of the two middle ones is taken.
+    /// Returns the pixel in the middle of the area. Of two middle columns or rows, chooses the
+    /// second.
     pub fn middle(self) -> Self {
         Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
     }

@@ -61,8 +61,8 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
     }
 }
 
-/// Returns the linear light from which on the nearest byte is `k` + 1: the least `f64` that is not
-/// below the light of `k` + 1/2, for `k` < 255.
+/// Returns the least linear light whose nearest byte is `k` + 1, for `k` < 255. It is the least
+/// `f64` that is not below the light of `k` + 1/2.
 ///
 /// The exponents of the sRGB curve are rational, so integers can decide: L − x^2.4 has the same
 /// sign as L^5 − x^12.
@@ -77,12 +77,13 @@ pub fn half_byte(k: u8) -> f64 {
     light
 }
 
-/// Returns whether linear light is darker than the light of `k` + 1/2. `light` is positive and not
-/// subnormal.
+/// Returns whether `light`, in linear light, is darker than the light of `k` + 1/2. `light` must be
+/// positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // Double-double is tried first, since integers would take half the time of a small picture. In
-    // units of its rounding, the relative errors are at most 4 and 11 for the powers on the left, 1
-    // for their product, 11 for the right side, and 1 for the difference: less than 32.
+    // Double-doubles decide most cases; integers alone would take half the time of rendering a
+    // small picture. In units of the double-double rounding, the relative errors are at most 4 for
+    // light^5, 11 for scale^12, 1 for the product of these, 11 for x^12, and 1 for the difference,
+    // in sum less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -100,28 +101,29 @@ fn is_below_half(light: f64, k: u8) -> bool {
     }
 }
 
-/// Returns whether linear light is darker than the light of `k` + 1/2, decided with integers.
+/// Returns whether `light` is darker than the light of `k` + 1/2, computed with integers.
 fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let exponent = (light.to_bits() >> 52) as usize;
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
-    // light = significand / 2^shift
+    // Here, light = significand / 2^shift.
     let shift = 1075 - exponent;
     // The value 2k + 1 counts half steps of 8-bit sRGB, of which white has 510.
     let halves = 2 * u32::from(k) + 1;
     // The straight piece of the curve ends at 0.04045, slightly more than 20 half steps.
     if halves <= 20 {
-        // L < c/12.92 with c = halves/510
+        // On the straight piece, the test is L < c/12.92 with c = halves/510.
         significand * 65_892u32 < UBig::from(10 * halves) << shift
     } else {
-        // L < x^2.4 with x = (c + 0.055)/1.055 = (1000 halves + 28050)/538050
+        // On the curved piece, the test is L < x^2.4, with x = (c + 0.055)/1.055 = (1000·halves +
+        // 28050)/538050.
         let x = UBig::from(1000 * halves + 28_050);
         significand.pow(5) * UBig::from(538_050u32).pow(12) < x.pow(12) << (5 * shift)
     }
 }
 
-/// Encodes one channel of linear light, from 0 to 1, as sRGB, from 0 to 1: the inverse of
-/// [`srgb_to_linear`]. Light below 0 continues the straight piece of the curve, and light above 1
-/// the power.
+/// Encodes one channel of linear light, from 0 to 1, as sRGB, from 0 to 1. This is the inverse of
+/// [`srgb_to_linear`]. Below 0, the straight piece of the curve is continued, and above 1, the
+/// power function.
 pub fn linear_to_srgb(light: f64) -> f64 {
     if light <= 0.04045 / 12.92 {
         12.92 * light
@@ -130,13 +132,13 @@ pub fn linear_to_srgb(light: f64) -> f64 {
     }
 }
 
-/// Converts a channel from 0 to 1 to a whole number from 0 to 255, as text.
+/// Converts a channel from 0 to 1 to a whole number from 0 to 255, and formats it.
 pub fn in_bytes(part: f64) -> String {
     (part * 255.0).round().to_string()
 }
 
-/// Converts the channels of a written colour to 0 to 255 if all are at most 1. Otherwise returns
-/// them as they are written.
+/// Converts the channels of `written`, a colour in a scene's text, from 0 to 1 to 0 to 255 if all
+/// are at most 1. Otherwise returns `written` unchanged.
 pub fn whole_parts(written: &str) -> String {
     if !are_shares(&[written]) {
         return written.to_owned();
@@ -149,8 +151,8 @@ pub fn whole_parts(written: &str) -> String {
     bytes
 }
 
-/// Returns whether all channels of a written colour are numbers up to 1. They may then be meant as
-/// 0 to 1, although the language would read them as 0 to 255.
+/// Returns whether all channels in `parts`, texts of a colour in a scene, are numbers up to 1.
+/// Channels of the language are from 0 to 255, but the author may have meant 0 to 1.
 pub fn are_shares(parts: &[&str]) -> bool {
     let separates = |c: char| c == ',' || c.is_whitespace();
     let parts = parts.iter().flat_map(|part| part.split(separates));

@@ -1,7 +1,7 @@
-//! Problems of a scene, and their two output formats: for people and for programs.
+//! Problems of a scene, and their output formats for people and for programs.
 //!
-//! In: [`Diagnostic`]s, which each stage makes where a problem arises, with possible fixes. Out:
-//! the diagnostics in the order of the text, as a report for a terminal or as lines of JSON. The
+//! In: [`Diagnostic`]s, which each stage makes where it finds a problem, with possible fixes. Out:
+//! the diagnostics in the order of the text, as reports for a terminal or as lines of JSON. The
 //! caller decides where to print them, and in which style.
 
 #[cfg(feature = "cli")]
@@ -52,15 +52,16 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// The code of the kind of problem, such as `pinhole::unknown_field`.
     pub code: String,
-    /// What is wrong, in the words of the scene: a sentence that can be understood alone.
+    /// The message: a sentence that says what is wrong in the scene's own terms and can be
+    /// understood without the labels.
     pub message: String,
     /// Advice on how to solve the problem.
     pub help: Option<String>,
-    /// The places that explain the problem, the primary one first.
+    /// Places that explain the problem; the first one is the primary label.
     pub labels: Vec<Label>,
     /// The fixes, the most probable one first.
     pub fixes: Vec<Fix>,
-    /// Whether the text at the primary place can be left out without any change of meaning.
+    /// Whether the text at the primary label is superfluous. Editors show such text in grey.
     pub is_needless: bool,
     /// Whether the problem is a violation of the grammar, regardless of what the names in the text
     /// mean.
@@ -83,7 +84,7 @@ impl Diagnostic {
     }
 }
 
-/// Sorts diagnostics by their primary places: those in the file before those in the arguments.
+/// Sorts diagnostics by their primary labels: those in the file before those in `--set` arguments.
 pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
     sort_by_span(diagnostics, |diagnostic| {
         let first = diagnostic.labels.first();
@@ -147,8 +148,8 @@ fn place(span: Span, source: &Source) -> Value {
     }
 }
 
-/// Clamps a span to its source and to character boundaries, so that every printer can slice the
-/// text by the result.
+/// Clamps a span to its source, and moves its ends to character boundaries, so that the result can
+/// slice the text.
 fn clamp(span: Span, source: &Source) -> Span {
     let start = source.floor_char_boundary(span.start);
     let end = source.floor_char_boundary(span.end.max(start));

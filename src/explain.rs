@@ -1,20 +1,21 @@
-//! Explanations of the diagnostic codes. Each code has a page with a wrong scene, the corrected
-//! one, and the reason for the rule.
+//! Explains the diagnostic codes. Each code has a page with a wrong scene, the corrected one, and
+//! the reason for the rule.
 //!
 //! The pages are the files in `grammar/codes`, Markdown in a fixed form: a title, a description of
-//! the mistake, and the sections *Wrong*, *Right* and *Why*. The tests compare the codes of the
-//! stages with the pages and read the scenes: a wrong scene must have the page's mistake and no
-//! other, a right scene none. The caller decides how a page is shown (terminal, editor).
+//! the mistake, and the sections *Wrong*, *Right* and *Why*. Tests check that every code has a
+//! page, that a wrong scene has the mistake of its page and no other, and that a right scene has
+//! none. The caller decides how a page is shown, in a terminal or an editor.
 
 /// The reference of the language, as Markdown.
 pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 
-/// How to convert a scene of a program with left-handed coordinates or with z upwards, as Markdown.
+/// Guide, as Markdown, for converting scenes of programs with left-handed coordinates or with z
+/// upwards.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// Words that other programs use, each with a heading of the reference or a word of the language
-/// that explains it. After a heading, `: ` and a text name the item or paragraph there that starts
-/// with this text.
+/// Words of other programs. A row holds such a word, and a heading of the reference or a word of
+/// the language that explains it. A heading may be followed by `: ` and the first words of an item
+/// or paragraph in that section.
 pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop", "repetition"),
     ("repeat", "repetition"),
@@ -128,8 +129,9 @@ pub fn section(heading: &str) -> Option<&'static str> {
     start.and_then(|start| LANGUAGE.get(start..).map(str::trim_end))
 }
 
-/// Returns the section's heading, the item or paragraph in it that starts with `words`, and a
-/// reference to the rest of the section. Returns `None` if the section or the item does not exist.
+/// Returns a part of the section `heading`: its heading, the item or paragraph that starts with
+/// `words`, and a reference to the rest of the section. Returns `None` if the section or the item
+/// does not exist.
 pub fn part(heading: &str, words: &str) -> Option<String> {
     let section = section(heading)?;
     let lines = section.lines();
@@ -182,7 +184,7 @@ pub fn pages() -> impl Iterator<Item = &'static Page> {
     GROUPS.iter().flat_map(|group| group.pages)
 }
 
-/// Returns a code without what surrounds it in a report: `error[pinhole::bare_angle]` becomes
+/// Returns a code without the text around it in a report: `error[pinhole::bare_angle]` becomes
 /// `bare_angle`.
 pub fn short(code: &str) -> &str {
     let inner = code.trim().trim_end_matches(':').strip_suffix(']');

@@ -29,7 +29,7 @@ pub struct Inspection {
     pub per_pixel: Option<u64>,
     /// Number of samples of the whole picture.
     pub total: u64,
-    /// The seed.
+    /// Seed of the samples.
     pub seed: u64,
     /// Vanishing point of the lines parallel to each of the world's axes, in pixels from the
     /// picture's top left corner; `None` if the axis is parallel to the view plane.
@@ -40,7 +40,7 @@ pub struct Inspection {
     pub is_exact: bool,
 }
 
-/// A camera in numbers.
+/// Properties of a camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CameraFacts {
     /// Position of the eye.
@@ -61,18 +61,18 @@ pub struct CameraFacts {
     pub hfov_deg: f64,
     /// Depth of the near plane, in metres.
     pub near: f64,
-    /// Depth of the far plane, in metres.
+    /// Depth of the far plane, in metres; `None` if there is no far plane.
     pub far: Option<f64>,
     /// "up", "down" or "level", by the exact sign of the view direction's y coordinate.
     pub looks: &'static str,
 }
 
-/// An object in numbers.
+/// Properties of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectFacts {
     /// The object's name.
     pub name: Option<String>,
-    /// Values of the indices of the block that generates the object; empty for a single object.
+    /// Indices of the object within the block that generates it; empty for a single object.
     pub indices: Box<[u32]>,
     /// The line in which the object begins, counted from 1.
     pub line: usize,
@@ -83,8 +83,8 @@ pub struct ObjectFacts {
 }
 
 impl ObjectFacts {
-    /// Returns the object's name. Without a name, returns its indices, which distinguish the
-    /// members of a block, or `-`.
+    /// Returns the object's name. If it has none, returns its indices, which distinguish the
+    /// objects of a repeated block, or `-`.
     fn shown_name(&self) -> Cow<'_, str> {
         match (&self.name, &*self.indices) {
             (Some(name), _) => Cow::Borrowed(name),
@@ -94,7 +94,7 @@ impl ObjectFacts {
     }
 }
 
-/// Describes a scene; `source` is the file that it was read from.
+/// Describes a scene. `source` is the text that it was read from, in which lines are counted.
 ///
 /// # Panics
 ///
@@ -141,8 +141,8 @@ pub fn total_samples(count: Count, image: &Image) -> u64 {
     }
 }
 
-/// Describes a camera alone, as [`inspect`] does for a whole scene. Also returns the vanishing
-/// points of the axes.
+/// Computes a camera's properties and the vanishing points of the x, y and z axes, without the rest
+/// of a scene.
 pub fn inspect_camera(camera: &Camera, image: &Image) -> (CameraFacts, [Option<[f64; 2]>; 3]) {
     let basis = Basis::new(camera, image);
     let points = [0, 1, 2].map(|axis| vanishing_point(image, &basis, axis));
@@ -175,13 +175,14 @@ fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
     }
 }
 
-/// Returns the vanishing point of the lines parallel to an axis, in pixels from the top left
-/// corner. Returns `None` if the axis is parallel to the view plane. The ray along the axis a has
-/// the direction (a·u, a·v, −a·w) in the camera's axes; scaled to depth 1, it ends in the view
-/// plane.
+/// Returns the vanishing point of the lines parallel to an axis, in pixels from the picture's top
+/// left corner. Returns `None` if the axis is parallel to the view plane.
+///
+/// The ray along the axis a has the direction (a·u, a·v, −a·w) in the camera's axes. Scaled to
+/// depth 1, it ends in the view plane.
 fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
-    // w is −f/|f| with the view direction f, so its component is zero exactly if the axis is
-    // parallel to the view plane.
+    // With the view direction f, w = −f/|f|. Therefore, this component of w is zero exactly if the
+    // axis is parallel to the view plane.
     if basis.w[axis].is_zero() {
         return None;
     }
@@ -197,7 +198,7 @@ fn rounded(x: &Big) -> f64 {
     x.to_finite() + 0.0
 }
 
-/// Sums over the objects that are not listed.
+/// Sums over the objects that the text for people does not list.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rest {
     objects: u64,
@@ -209,7 +210,7 @@ struct Rest {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Writes the text for people, which lists only the first of very many objects.
+/// Writes the text for people. It lists at most [`LISTED`] objects.
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
@@ -252,10 +253,10 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// The part of the text that describes what is seen of the objects.
+/// Formatting of the lines about the objects.
 impl Inspection {
-    /// Sums what is seen of the objects that are not listed. Returns `None` if all objects are
-    /// listed.
+    /// Sums what is seen of the objects that the text does not list. Returns `None` if it lists all
+    /// objects.
     fn rest(&self) -> Option<Rest> {
         let rest = self.objects.get(LISTED..).filter(|rest| !rest.is_empty())?;
         let mut sum = Rest {

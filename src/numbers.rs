@@ -2,9 +2,8 @@
 
 use glam::DVec3;
 
-/// Formats a number with six significant digits, without zeros at the end. Numbers from 10^6 to
-/// below 10^9 keep all digits before the point. Numbers below 10^−4 or from 10^9 on get an
-/// exponent.
+/// Formats a number with six significant digits, without trailing zeros. Numbers from 10^6 to below
+/// 10^9 keep all digits before the point. Numbers below 10^−4 or from 10^9 on have an exponent.
 pub fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();
@@ -37,7 +36,7 @@ pub fn significant(x: f64, digits: usize) -> f64 {
     format!("{x:.after$e}").parse().unwrap_or(x)
 }
 
-/// Formats a bound with two significant digits, rounded up.
+/// Formats an upper bound with two significant digits, rounded up.
 pub fn at_most(bound: f64) -> String {
     if bound == 0.0 {
         return "0".to_owned();
@@ -45,8 +44,8 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // Adds 1 to the last digit. A sum of two numbers with one decimal each, formatted with one
-        // decimal, is correct.
+        // Adds 1 to the last digit. The sum of two numbers with one decimal each is correct after
+        // formatting with one decimal.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);
@@ -56,8 +55,8 @@ pub fn at_most(bound: f64) -> String {
     }
 }
 
-/// Formats a number that a reader compares with `others`: short, unless the short form compares
-/// differently with one of them.
+/// Formats a number that a reader compares with `others`. Uses the short form, unless the short
+/// form compares differently with one of them.
 pub fn beside(x: f64, others: &[f64]) -> String {
     let text = short(x);
     let read = text.parse().unwrap_or(x);
@@ -70,8 +69,8 @@ pub fn beside(x: f64, others: &[f64]) -> String {
 }
 
 /// Rounds a number to the decimals that are meaningful for a given error: up to the first
-/// significant digit of the error, at most 12. Returns `x` unchanged unless the error is positive
-/// and finite.
+/// significant digit of the error, but at most 12 decimals. Returns `x` unchanged unless the error
+/// is positive and finite.
 pub fn rounded(x: f64, error: f64) -> f64 {
     if !(error > 0.0 && error.is_finite()) {
         return x;
@@ -81,7 +80,7 @@ pub fn rounded(x: f64, error: f64) -> f64 {
     format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0
 }
 
-/// Removes the zeros at the end of the decimals, and the point if no decimals remain.
+/// Removes trailing zeros of the decimals, and the point if no decimals remain.
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') {
         digits.trim_end_matches('0').trim_end_matches('.')

@@ -1,11 +1,11 @@
 //! Replacement of `threads.rs` for targets without threads, such as browsers. The calling thread
-//! does all work, without rayon, which would make the engine larger and no faster.
+//! does all work. It does so without rayon, which would make the program larger and no faster.
 
 use std::num::NonZero;
 
 use thiserror::Error;
 
-/// Error of starting threads, which does not occur here.
+/// Error of starting threads, which does not occur on these targets.
 #[derive(Debug, Error)]
 pub enum NoThreads {}
 

@@ -30,7 +30,7 @@ pub struct Probe {
     pub color: Color,
 }
 
-/// Follows the ray through a point of the picture plane, given in pixels from the picture's top
+/// Follows the ray through the point `pixel` of the picture plane, in pixels from the picture's top
 /// left corner.
 ///
 /// # Panics
@@ -55,7 +55,7 @@ pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
 }
 
 impl Probe {
-    /// Returns the JSON object of the command line's contract.
+    /// Returns the JSON object that `pinhole probe` prints.
     pub fn to_json(&self) -> Value {
         let hits = self.hits.iter().map(|(hit, object)| {
             let mut facts = json!({
@@ -85,7 +85,7 @@ impl Probe {
     }
 }
 
-/// Writes the text for people.
+/// Writes the text that `pinhole probe` prints for people.
 impl fmt::Display for Probe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = (short(self.pixel.x), short(self.pixel.y));

@@ -41,8 +41,8 @@ impl Projection {
         }
     }
 
-    /// Derives the projection by a textbook's formulas in `f64`, for callers that need thousands
-    /// per second.
+    /// Derives the projection by textbook formulas in `f64`, for callers that need thousands of
+    /// projections per second.
     pub fn quick(camera: &Camera, image: &Image) -> Self {
         let [right, top, backward] = formulas::axes(camera);
         // If lengths exceed the range of `f64`, the formulas give no axes.
@@ -59,8 +59,8 @@ impl Projection {
         }
     }
 
-    /// Returns the depth of a point: its distance from the eye along the view direction, negative
-    /// behind the eye.
+    /// Returns the depth of a point: its distance from the eye along the view direction. The depth
+    /// is negative behind the eye.
     pub fn depth(&self, point: DVec3) -> f64 {
         (point - self.eye).dot(self.ahead)
     }
@@ -72,29 +72,29 @@ impl Projection {
         (self.depth(point) > 0.0 && seen.is_finite()).then_some(seen)
     }
 
-    /// Returns where the line through the eye and a point hits the picture plane, in pixels from
-    /// the top left corner. The point may be behind the eye.
+    /// Returns the point where the line through the eye and `point` hits the picture plane, in
+    /// pixels from the top left corner. `point` may be behind the eye.
     pub fn projected(&self, point: DVec3) -> DVec2 {
         let from_eye = point - self.eye;
         let across = DVec2::new(from_eye.dot(self.right), -from_eye.dot(self.top));
         across / (self.depth(point) * self.pitch) + self.size / 2.0
     }
 
-    /// Returns the direction of the ray through a point of the picture, with the length at which it
-    /// ends at depth 1.
+    /// Returns the direction of the ray through a point of the picture, in pixels from the top left
+    /// corner. Its length is such that it ends at depth 1.
     pub fn ray(&self, point: DVec2) -> DVec3 {
         let across = (point - self.size / 2.0) * self.pitch;
         self.ahead + self.right * across.x - self.top * across.y
     }
 
-    /// Returns the point at a depth on the ray through a point of the picture.
+    /// Returns the point at the depth `depth` on the ray through a point of the picture.
     pub fn at_depth(&self, point: DVec2, depth: f64) -> DVec3 {
         self.eye + self.ray(point) * depth
     }
 
-    /// Intersects the ray through the point `at` of the picture with the plane through the point
-    /// `through` of the world. Returns `None` if the crossing is not in front of the eye or not
-    /// finite.
+    /// Intersects the ray through the point `at` of the picture with the plane through the world
+    /// point `through` that is perpendicular to `normal`. Returns `None` if the intersection is not
+    /// in front of the eye or not finite.
     pub fn on_plane(&self, at: DVec2, through: DVec3, normal: DVec3) -> Option<DVec3> {
         let ray = self.ray(at);
         let depth = (through - self.eye).dot(normal) / ray.dot(normal);

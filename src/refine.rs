@@ -2,7 +2,7 @@
 //!
 //! In: the prepared scene. Out: pictures in blocks, one after the other. A block shows the colour
 //! at its centre, so that only colours of the scene are shown. The preview decides when to continue
-//! with the picture itself (`render`), and when to stop for a scene that has changed.
+//! with the full picture (`render`), and when to stop because the scene has changed.
 
 use std::sync::{Mutex, atomic::Ordering};
 
@@ -17,7 +17,7 @@ use crate::{
 use glam::DVec2;
 
 /// Sides of the blocks in successive steps, in pixels. Each step takes four times as long as the
-/// one before it. All steps together take less time than a picture with one sample per pixel.
+/// step before. All steps together take less time than a picture with one sample per pixel.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
 /// A picture in blocks.
@@ -29,8 +29,9 @@ pub struct Coarse {
     pub film: Film,
 }
 
-/// Calls `show` with a part of the picture in blocks that become finer from step to step, down to a
-/// side of `finest` pixels. If the render is cancelled, it ends within a row of blocks.
+/// Renders a part of the picture in blocks that become finer from step to step, down to a side of
+/// `finest` pixels, and calls `show` after each step. If the render is cancelled, it ends within a
+/// row of blocks.
 ///
 /// # Errors
 ///
@@ -49,7 +50,7 @@ pub fn coarse_to_fine(
     Ok(())
 }
 
-/// Renders a part of the picture in blocks from the part's top left corner on. `side` is the side
+/// Renders a part of the picture in blocks, from the part's top left corner on. `side` is the side
 /// of a block in pixels, at least 1.
 ///
 /// # Errors
@@ -107,8 +108,8 @@ pub fn coarse(
 
 /// Returns the palette slot that is seen at the centre of a block.
 fn at_center(world: &World, block: Area) -> usize {
-    // The centre of an odd length is the centre of a pixel; that of an even length is the edge
-    // before one.
+    // For an odd length, the centre is that of a pixel. For an even length, it is the edge before a
+    // pixel.
     let place = |start: u32, length: u32| match length % 2 {
         0 => (start + length / 2, -0.5),
         _ => (start + length / 2, 0.0),

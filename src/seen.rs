@@ -1,8 +1,9 @@
 //! What is seen of each object of a scene.
 //!
-//! In: a scene. Out: for each object its rectangle in the picture and the area that shows it; or
-//! why it is not seen. Areas are those of `exact` pictures. Where these would take too much work,
-//! the centres of pixels count instead, and the result says so.
+//! In: a scene. Out: for each object its rectangle in the picture and the area that shows it, or
+//! the reason why it is not seen. The areas are computed by exact integration. Where this would
+//! take too much work, each pixel counts as showing the object at its centre, and the result says
+//! so.
 
 use std::{cell::OnceCell, collections::BTreeMap};
 
@@ -16,11 +17,12 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Maximum work on a whole picture, in units of about 50 ns, shared equally by its tiles. After a
-/// tile's share is used up, what is seen at a pixel's centre counts for the whole pixel.
+/// Maximum work on a whole picture, in units of about 50 ns. Each tile has an equal share. After a
+/// tile's share is used up, a pixel counts as showing only what is seen at its centre.
 const MAX_WORK: u64 = 100_000_000;
 
-/// Minimum area that counts as seen, in pixels. It is also the precision of printed areas.
+/// Minimum area that counts as seen, in pixels; with less, the object counts as not seen. It is
+/// also the precision of printed areas.
 pub const MIN_AREA: f64 = 1e-6;
 
 /// What is seen of an object.
@@ -53,7 +55,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
         let integrator = Integrator::for_values(&world, |_| []).with_work_limit(most_work);
         let is_exact = integrator.shares(*tile, |area, shares| {
             for &(object, share) in shares {
-                // A smaller share may be a rounding error, so it is ignored.
+                // A smaller part of the tile may be a rounding error, so it is ignored.
                 if share > 1e-9 && object != world.background() {
                     add(&mut areas, object, (area, area.pixels() as f64 * share));
                 }
@@ -62,11 +64,11 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
         (areas, is_exact)
     };
     let look = || tiles.par_iter().map(look).collect::<Vec<_>>();
-    // If no thread can be started, no areas are known.
+    // If no thread can be started, the result contains no areas.
     let found = threads::install(None, look).unwrap_or_default();
     let mut areas = SeenAreas::new();
     let is_exact = found.iter().all(|(_, is_exact)| *is_exact);
-    // The areas are added in a fixed order, so that sums always have the same rounding.
+    // The areas are added in a fixed order, so that the rounding of the sums is always the same.
     for (object, area) in found.into_iter().flat_map(|(areas, _)| areas) {
         add(&mut areas, object, area);
     }
@@ -78,7 +80,7 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
                 Some(place) => Visibility::Outside(place),
-                // The object in front is found only for the objects that are listed.
+                // Only for listed objects, the object in front is searched for.
                 None if index >= LISTED => Visibility::Nothing,
                 None => hidden_by(scene, &asked, index)
                     .map_or(Visibility::Nothing, Visibility::HiddenBy),

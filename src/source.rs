@@ -1,16 +1,16 @@
 //! Source texts and positions in them.
 //!
 //! In: bytes with a name. Out: a text, and the lines and columns of its offsets. A scene has one
-//! file and any number of `--set` arguments, and a diagnostic may point into each of them, so a
-//! [`Span`] contains the identifier of its source. Spans are byte ranges; lines and columns are
-//! computed only for output.
+//! file and any number of `--set` arguments. A diagnostic may refer to each of them, so a [`Span`]
+//! contains the identifier of its source. Spans are byte ranges; lines and columns are computed
+//! only for output.
 
 use std::{ops::Range, sync::OnceLock};
 
 use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
 
-/// Identifier of a source text. The file is ordered before the arguments, and these by their
-/// numbers.
+/// Identifier of a source text. In the order of identifiers, the file comes first, then the `--set`
+/// arguments by number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum SourceId {
     /// The scene file (or standard input).
@@ -22,7 +22,7 @@ pub enum SourceId {
 /// A half-open range of bytes in one source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
-    /// The text that contains the span.
+    /// The source of the span.
     pub source: SourceId,
     /// First byte.
     pub start: usize,
@@ -54,8 +54,8 @@ impl Span {
 
 /// Sorts a list by the spans of its elements; elements with equal spans keep their order.
 ///
-/// Only the indices are sorted here, by one function for lists of all types. A sort for each type
-/// would add a fiftieth to the engine's code that a browser loads.
+/// A non-generic function sorts the indices. A sort for each element type would enlarge the code
+/// that a browser loads by a fiftieth.
 pub fn sort_by_span<T>(list: &mut Vec<T>, span: impl Fn(&T) -> Span) {
     let order = order(&list.iter().map(span).collect::<Vec<_>>());
     let mut taken: Vec<Option<T>> = list.drain(..).map(Some).collect();
@@ -107,7 +107,8 @@ impl Sources {
         sets.map(|(index, set)| (SourceId::Set(index), set))
     }
 
-    /// Returns the source with an identifier, or the file if there is no such argument.
+    /// Returns the source with the identifier `id`, or the file if there is no such `--set`
+    /// argument.
     pub fn get(&self, id: SourceId) -> &Source {
         let set = match id {
             SourceId::File => None,
@@ -146,8 +147,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// Makes a source of a file's bytes. Each byte that is not valid UTF-8 becomes a `_`, so that
-    /// all offsets stay the same, and [`Source::invalid_utf8`] returns its offset.
+    /// Makes a source from a file's bytes. Each byte that is not valid UTF-8 becomes a `_`, so that
+    /// all offsets stay the same; [`Source::invalid_utf8`] returns the offsets of these bytes.
     pub fn from_bytes(name: impl Into<String>, bytes: Vec<u8>) -> Self {
         let (text, invalid) = match String::from_utf8(bytes) {
             Ok(text) => (text, Vec::new()),
@@ -177,8 +178,8 @@ impl Source {
         &self.text
     }
 
-    /// Returns the text of a byte range; an empty text if the range is outside or not at character
-    /// boundaries.
+    /// Returns the text of a byte range. Returns an empty text if the range is not within the
+    /// source, or not at character boundaries.
     pub fn slice(&self, range: Range<usize>) -> &str {
         self.text.get(range).unwrap_or_default()
     }
@@ -189,7 +190,7 @@ impl Source {
     }
 
     /// Returns whether the file is probably UTF-16, with or without a byte order mark. Most scenes
-    /// are ASCII; in UTF-16, every second byte of such a text is zero, and no other byte.
+    /// are ASCII; as UTF-16, exactly every second byte of an ASCII text is zero.
     pub fn is_utf16(&self) -> bool {
         const LOOKED_AT: usize = 256;
         let bytes = self.text.as_bytes();
@@ -210,7 +211,7 @@ impl Source {
         usize::from(self.text.starts_with(BOM)) * BOM.len_utf8()
     }
 
-    /// Returns the line end of the text: CRLF if its first line ends with CRLF, otherwise LF.
+    /// Returns the line end of the text: CRLF if its first line ends with CRLF, and otherwise LF.
     pub fn line_end(&self) -> &'static str {
         let rest = self.text.get(self.line_range(1).end..);
         if rest.is_some_and(|rest| rest.starts_with("\r\n")) {
@@ -220,8 +221,8 @@ impl Source {
         }
     }
 
-    /// Returns the byte range of a line, counted from 1, without the LF or CRLF at its end. For a
-    /// line past the end, returns the empty range at the end of the text.
+    /// Returns the byte range of a line, counted from 1, without the LF or CRLF at its end. A line
+    /// beyond the last one has the empty range at the end of the text.
     pub fn line_range(&self, line: usize) -> Range<usize> {
         let index = u32::try_from(line.saturating_sub(1)).ok();
         let Some(range) = index.and_then(|index| self.lines().line(index)) else {
@@ -239,8 +240,8 @@ impl Source {
         self.line_col(offset).line as usize + 1
     }
 
-    /// Returns line and column of an offset. A byte order mark takes no column. An offset past the
-    /// end counts as the end, and one inside a character as the character's start.
+    /// Returns line and column of an offset. A byte order mark takes no column. An offset beyond
+    /// the end is treated as the end, and an offset within a character as the character's start.
     pub fn place(&self, offset: usize) -> LineColumn {
         let place = self.line_col(offset);
         let characters = self.lines().to_wide(WideEncoding::Utf32, place);
@@ -261,8 +262,8 @@ impl Source {
         place.unwrap_or(LineCol { line: 0, col: 0 })
     }
 
-    /// Returns the index of the line starts and of the characters that take more than one byte;
-    /// computed on first use.
+    /// Returns the index of the line starts and of the characters with more than one byte. The
+    /// index is computed on first use.
     pub fn lines(&self) -> &LineIndex {
         self.lines.get_or_init(|| LineIndex::new(&self.text))
     }

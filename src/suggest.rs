@@ -1,14 +1,14 @@
-//! Suggests similar names.
+//! Suggests similar names for misspelt ones.
 //!
-//! In: what was written, and candidates. Out: the name that was probably meant, if one is similar
-//! enough.
+//! In: the written name, and candidates. Out: the candidate that was probably meant, if one is
+//! similar enough.
 
 use std::cell::Cell;
 
 use strsim::osa_distance;
 
-/// Number of comparisons that may still be made. Without a limit, a text with many mistakes and
-/// many names would compare all pairs.
+/// Remaining number of comparisons of names. When it is spent, no further names are suggested.
+/// Without a limit, a text with many mistakes and many names would compare all pairs.
 #[derive(Debug)]
 pub struct ComparisonBudget(Cell<usize>);
 
@@ -19,8 +19,8 @@ impl Default for ComparisonBudget {
 }
 
 impl ComparisonBudget {
-    /// Reserves comparisons with `names` names. Returns `false`, and reserves nothing, if fewer are
-    /// left.
+    /// Subtracts comparisons with `names` names from the budget. Returns `false`, and subtracts
+    /// nothing, if fewer are left.
     pub fn spend(&self, names: usize) -> bool {
         let left = self.0.get().checked_sub(names);
         self.0.set(left.unwrap_or(self.0.get()));
@@ -28,9 +28,9 @@ impl ComparisonBudget {
     }
 }
 
-/// Returns the nearest of the candidates if it is similar: equal except for case, or with about one
-/// typing error (OSA distance) per three letters at most. If several are equally near, returns the
-/// first.
+/// Returns the candidate that is most similar to `written`. It must be equal except for case, or
+/// have at most about one typing error (OSA distance) per three letters; otherwise, returns `None`.
+/// Of equally similar candidates, returns the first.
 pub fn nearest<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -38,8 +38,8 @@ pub fn nearest<'c>(
     nearest_of(written, &mut candidates.into_iter())
 }
 
-/// Returns the nearest name of a value or a function, as [`nearest`] does. A name of one or two
-/// letters is seldom mistyped, so it may differ only in case.
+/// Returns the most similar name of a value or a function, as [`nearest`] does. A name of one or
+/// two letters may differ only in case, since it is seldom mistyped.
 pub fn nearest_name<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -51,9 +51,12 @@ pub fn nearest_name<'c>(
     }
 }
 
-/// Returns whether `near`, the nearest of the candidates, is nearer to `written` than every other
-/// candidate. Returns `false` if the digits differ, since the name is then another one; if several
-/// words do not have exactly the letters of `near`; or if at least three letters follow `near`.
+/// Returns whether `near`, the nearest candidate, is nearer to `written` than every other
+/// candidate. Returns `false` if
+///
+/// - the digits differ, since the name is then a different one;
+/// - `written` has several words whose letters are not exactly those of `near`;
+/// - at least three letters follow `near` in `written`.
 pub fn is_only_near<'c>(
     written: &str,
     near: &str,
@@ -65,7 +68,7 @@ pub fn is_only_near<'c>(
     let letters = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "");
     let digits = |name: &str| name.replace(|c: char| !c.is_ascii_digit(), "");
     let near_letters = letters(near).to_ascii_lowercase();
-    // The letters after the name may be its value, without a space before it.
+    // The letters after the name may be its value, as in `colorred`.
     let is_longer = written.starts_with(near) && written.len() >= near.len() + 3;
     if is_longer
         || digits(&written) != digits(near)
@@ -79,8 +82,8 @@ pub fn is_only_near<'c>(
 
 /// Finds the nearest candidate. This function is not generic, so that it is compiled only once.
 fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) -> Option<&'c str> {
-    // Maximum length of a name, in characters. A longer text is not a mistyped name, and would take
-    // long to compare.
+    // Maximum length, in characters, of a name that is compared. A longer text is not a mistyped
+    // name, and comparing it would take long.
     const LONGEST: usize = 64;
     let length = written.chars().take(LONGEST + 1).count();
     if length == 0 || length > LONGEST {
@@ -90,7 +93,7 @@ fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) 
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates {
         let other = candidate.chars().count();
-        // At most half of the shorter name may differ.
+        // At most half of the shorter name's letters may differ.
         let allowed = (length.max(other) / 3).max(1).min(length.min(other) / 2);
         if length.abs_diff(other) > allowed || best.is_some_and(|(least, _)| least == 0) {
             continue;

@@ -1,5 +1,5 @@
 //! The number of threads, and pools of threads. Work that is started within other work runs on the
-//! same threads.
+//! other work's threads.
 
 use std::{
     num::NonZero,
@@ -15,26 +15,27 @@ pub use rayon::ThreadPoolBuildError as NoThreads;
 pub(crate) use rayon::prelude;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Greatest number of threads that can be requested; a greater request is reduced to it. Few
+/// Maximum number of threads that can be requested; a greater request is reduced to it. Few
 /// machines have more processors.
 const MAX_THREADS: usize = 1024;
 
-/// Limit on the number of threads of the process; 0 if there is none. This limit and the number of
-/// processors are the only global state; they change running times and nothing else.
+/// Maximum number of threads of the process; 0 if there is no limit. This limit and the number of
+/// processors are the only global state, and they change only running times.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
-/// Number of processors. It is stored because the system's answer takes longer than a small
+/// Number of processors. It is stored because asking the system takes longer than rendering a small
 /// picture.
 static PROCESSORS: LazyLock<usize> =
     LazyLock::new(|| thread::available_parallelism().map_or(1, NonZero::get));
 
-/// Limits the number of threads of this process for all work that does not specify a number itself.
+/// Limits the number of threads of this process, for all work that does not itself specify a
+/// number.
 pub fn limit(threads: NonZero<usize>) {
     LIMIT.store(threads.get().min(MAX_THREADS), Ordering::Relaxed);
 }
 
-/// Returns the number of threads to use: the limit of the process, or else one per processor.
-/// Environment variables are ignored.
+/// Returns the number of threads to use: the limit of the process, or one per processor if there is
+/// no limit. Environment variables are ignored.
 pub(crate) fn available() -> usize {
     match LIMIT.load(Ordering::Relaxed) {
         0 => *PROCESSORS,
@@ -46,14 +47,14 @@ pub(crate) fn available() -> usize {
 pub(crate) enum Threads {
     /// A pool that was started for the work.
     Started(ThreadPool),
-    /// The current threads. Work that consists of hundreds of pictures thus renders all of them on
+    /// The current threads. Work that consists of hundreds of pictures thus renders all pictures on
     /// the same threads.
     Current,
 }
 
 impl Threads {
-    /// Returns `threads` threads, or the available number if it is `None`. These are the current
-    /// threads if there are exactly as many, or if the system cannot start new ones.
+    /// Returns `threads` threads, or the available number if `threads` is `None`. Returns the
+    /// current threads if their number is right, or if the system cannot start others.
     ///
     /// # Errors
     ///
@@ -67,9 +68,9 @@ impl Threads {
     }
 
     /// Returns the pool that was built. If building failed, for instance because too many threads
-    /// are running, returns the current threads. Outside of a pool, it returns a pool of the
-    /// calling thread alone, since rayon would otherwise permanently treat that thread as a pool of
-    /// its own.
+    /// are running, returns the current threads. Outside of a pool, returns a pool of the calling
+    /// thread alone, because rayon would otherwise permanently treat this thread as a pool of its
+    /// own.
     fn started(built: Result<ThreadPool, NoThreads>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),
@@ -81,7 +82,7 @@ impl Threads {
         }
     }
 
-    /// Runs work on the threads.
+    /// Runs `work` on the threads, and returns its result.
     pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
         match self {
             Self::Started(pool) => pool.install(work),
@@ -90,7 +91,8 @@ impl Threads {
     }
 }
 
-/// Runs work on `threads` threads, or on the available number if it is `None`.
+/// Runs `work` on `threads` threads, or on the available number if `threads` is `None`. Returns the
+/// result of `work`.
 ///
 /// # Errors
 ///
@@ -108,7 +110,7 @@ mod tests {
 
     use super::{prelude::*, *};
 
-    /// Runs twice, since the calling thread is in a pool the second time.
+    /// Runs twice, because the calling thread is in a pool the second time.
     #[test]
     fn where_no_thread_can_be_started_the_calling_one_does_it() {
         for _ in 0..2 {

@@ -10,8 +10,8 @@ pub fn cpu_seconds() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Returns the wall time since the first call, in seconds, because CPU time is not implemented for
-/// this system.
+/// Returns the wall time since the first call, in seconds, on systems for which CPU time is not
+/// implemented here.
 #[cfg(not(unix))]
 pub fn cpu_seconds() -> f64 {
     static START: std::sync::LazyLock<std::time::Instant> =

@@ -51,8 +51,8 @@ def compare(options, scene, folder):
     inspected = os.path.join(folder, "inspected.json")
     with open(inspected, "w") as file:
         subprocess.run([options.pinhole, "inspect", scene, "--format", "json", *sets], stdout=file, check=True)
-    # In a separate process: a child's peak memory includes that of this process, which must
-    # therefore stay small.
+    # The scene is converted in a separate process. A child's peak memory includes that of this
+    # process, which must therefore stay small.
     subprocess.run([sys.executable, os.path.join(HERE, "scenes.py"), inspected, folder], check=True)
     with open(inspected) as file:
         size = json.loads(re.match(r'\{"image":(\{.*?\})', file.read(200))[1])
@@ -63,8 +63,8 @@ def compare(options, scene, folder):
     measured = {name: [] for name, *_ in ways}
     phases = {name: [] for name, *_ in ways}
     others, loads = [], []
-    # Caches, among them Mitsuba's compiled kernels, are filled by the pictures from which errors
-    # are measured, or else by a round that does not count.
+    # The pictures from which errors are measured fill the caches, among them Mitsuba's compiled
+    # kernels. Without such pictures, a round that does not count fills the caches.
     for number in range(1 if errors else 0, options.rounds + 1):
         for name, command, fresh in ways:
             before = busy_seconds(), time.monotonic()
@@ -92,8 +92,8 @@ def compare(options, scene, folder):
 
 
 def figure(options, scene, sets, size):
-    """Each way has a name, the command for a picture, and whether it starts without anything that
-    an earlier run has compiled."""
+    """Yields the ways to render figure 9.9. Each has a name, a function from a picture's path to
+    the command, and whether it starts without anything that an earlier run has compiled."""
     counts = {"hammersley": [16, 46, 64], "multi_jittered": [16, 48, 64], "sobol": [16, 48, 64]}
     for method, samples in [(method, samples) for method in counts for samples in counts[method]]:
         chosen = [f"sampler.method={method}", f"sampler.per_pixel={samples}"]
@@ -128,8 +128,8 @@ def pinhole(options, scene, sets, chosen):
 
 
 def povray(options, size, threshold, side, more=()):
-    """POV-Ray with its first kind of antialiasing: a fully jittered grid in each pixel that differs
-    from a neighbour by the threshold or more."""
+    """Returns the command for POV-Ray with its first kind of antialiasing: a fully jittered grid of
+    samples in each pixel that differs from a neighbour by the threshold or more."""
     arguments = [options.povray, "+Iscene.pov", f"+W{size['width']}", f"+H{size['height']}", f"+WT{THREADS}", "-D", "-V"]
     arguments += ["+AM1", f"+A{threshold:.3f}", f"+R{side}", "+J1", *more]
     return lambda picture: [*arguments, f"+O{picture}", "+FE" if picture.endswith("exr") else "+FN8"]

@@ -1,9 +1,9 @@
 """Renders a scene by Mitsuba 3 and writes the picture: mitsuba_render.py VARIANT THREADS SAMPLER
 SAMPLES SCENE PICTURE [AGAIN]
 
-What the `mitsuba` command does, and PNG as well. Prints, as JSON, the seconds of wall time of each
-phase: importing, loading the scene, rendering, writing, and, if AGAIN is given, the least of three
-times that rendering takes when nothing is left to compile."""
+Does what the `mitsuba` command does, but also writes PNG files. Prints, as JSON, the seconds of
+wall time of each phase: importing, loading the scene, rendering, writing, and, if AGAIN is given,
+the least of three times that rendering takes when nothing is left to compile."""
 
 import json
 import sys
@@ -46,7 +46,7 @@ def main():
 
 
 def rendered(scene, seed):
-    """The LLVM variants render when they are asked for the result."""
+    """Renders the scene. The LLVM variants do so only when the result is evaluated."""
     image = mitsuba.render(scene, seed=seed)
     if mitsuba.variant().startswith("llvm"):
         drjit.eval(image)

@@ -1,7 +1,8 @@
 """Converts the output of `pinhole inspect` to POV-Ray and Mitsuba: scenes.py INSPECTED FOLDER
 
-The same camera, shapes and flat colours. Both get the camera's axes as they are, so that nothing is
-left to their own rules for them, and colours in linear light."""
+The converted scenes have the same camera, shapes and flat colours. Both programs get the camera's
+axes as they are, so that nothing is left to their own rules for axes, and colours in linear light.
+"""
 
 import json
 import os
@@ -17,12 +18,13 @@ INNERMOST = 32.0
 RING = 8.0
 RINGS = 4
 
-# Number of spheres of one colour from which on Mitsuba gets them as a single shape: its JIT
-# compiler takes time for every shape.
+# Minimum number of spheres of one colour that Mitsuba gets as a single shape. Its JIT compiler
+# takes time for every shape.
 CLOUD = 100
 
-# Minimum radius of the spheres in such a shape. Mitsuba hits the bounds of ellipsoids that are much
-# smaller than 1, so the whole scene is enlarged with the camera, which does not change the picture.
+# Minimum radius of the spheres in such a shape. For ellipsoids much smaller than 1, Mitsuba's rays
+# hit the bounds instead of the surface. Therefore, the whole scene is enlarged with the camera,
+# which does not change the picture.
 SMALLEST = 4.0
 
 
@@ -62,8 +64,7 @@ def povray(scene):
         return vector([by * value for value in camera[axis]])
 
     # POV-Ray's picture is as wide as `right` and as tall as `up`, at the distance of `direction`.
-    # POV-Ray is left-handed by default, but only in how it makes a camera from `look_at`, which is
-    # not used.
+    # POV-Ray is left-handed only in how it makes a camera from `look_at`, which is not used here.
     height = camera["view_height"]
     lines = [
         "#version 3.7;",
@@ -83,8 +84,8 @@ def povray(scene):
             case "box":
                 shape = f"box {{ {vector(thing['min'])}, {vector(thing['max'])}"
             case "checkerboard":
-                # The pattern consists of cubes: a shift by half a cube puts the plane into the
-                # middle of a layer of cubes that counts as even.
+                # POV-Ray's pattern consists of cubes. A shift by half a cube puts the plane into
+                # the middle of a layer of cubes in which even squares have the first colour.
                 first, second = (f"rgb {vector(linear(color))}" for color in thing["colors"])
                 square, y = thing["square"], thing["y"]
                 lines.append(
@@ -211,9 +212,10 @@ def floor(thing, color, put):
         ]
         inner = outer
     for x0, z0, x1, z1 in parts:
-        # The pattern repeats whenever a coordinate of the rectangle passes a whole number; `color0`
-        # is where both are in the first half or both in the second. Turned to face up, the
-        # rectangle's second coordinate is opposite to z, so that it begins with an odd square.
+        # The pattern repeats whenever a coordinate of the rectangle passes a whole number. It has
+        # `color0` where both coordinates are in the first half of a period or both in the second.
+        # The rectangle is turned to face up, so that its second coordinate is opposite to z, and
+        # must begin with an odd square.
         half = [(x1 - x0) / 2, (z1 - z0) / 2]
         repeat = [side / square for side in half]
         yield (

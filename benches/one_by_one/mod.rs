@@ -1,5 +1,5 @@
-//! Renders a picture sample by sample, without culling. Tests and benchmarks compare culling with
-//! it.
+//! Renders a picture sample by sample, without culling. Tests and benchmarks compare this picture
+//! and its time with those of culling.
 
 use pinhole::{
     area::Area,
@@ -9,9 +9,10 @@ use pinhole::{
     tracer::World,
 };
 
-/// Renders the part `part` of the picture, and traces each sample by itself.
+/// Renders the area `part` of the picture, and traces each sample by itself.
 pub fn one_by_one(world: &World, sampling: &Sampling, part: Area) -> Film {
-    /// Maximum number of sample points that are generated at a time.
+    /// Maximum number of sample points that are generated at a time, which limits the memory
+    /// for them.
     const CHUNK: u64 = 1 << 12;
     let palette = world.palette().iter();
     let colors: Vec<_> = palette.map(|color| color.to_linear()).collect();

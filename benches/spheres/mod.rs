@@ -81,8 +81,8 @@ pub fn spheres(count: usize, layout: Layout) -> String {
 }
 
 /// Returns the text of a scene of `count` spheres at distances from 5 to 50. The areas of their
-/// images add up to one and a half times the picture: for any count, some spheres are visible, some
-/// are hidden, and over a fifth of the picture stays empty.
+/// images add up to one and a half times the picture. For any count, some spheres are therefore
+/// visible, some are hidden, and over a fifth of the picture stays empty.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn crowd(count: usize) -> String {
     const COVERED: f64 = 1.5;

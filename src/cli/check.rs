@@ -47,9 +47,9 @@ fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, T
     report(&input, args.format.format)
 }
 
-/// Applies the fixes of a file's errors: writes the file, or prints the text of standard input, or
-/// prints only the changes with `--diff`. Reports which fixes were applied. Returns the input after
-/// the fixes.
+/// Applies the fixes of a file's errors, and reports which fixes were applied. Writes the changed
+/// file, or prints the changed text if the input is standard input. With `--diff`, prints only the
+/// changes. Returns the input after the fixes.
 fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneInput, Trouble> {
     let (mut input, original) = SceneInput::to_change(path, &args.overrides, "--fix")?;
     let most = if args.unsafe_fixes {
@@ -85,7 +85,8 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneIn
     Ok(input)
 }
 
-/// Returns a text for people that says how many fixes were not applied and how to apply them.
+/// Returns a text for people that says how many fixes were not applied and which option applies
+/// them.
 fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     let mut text = String::new();
     let fixes = |count, one, more| match count {

@@ -25,7 +25,7 @@ use crate::{
     render::RenderError,
 };
 
-/// Compares the files that the two arguments name. Returns whether they agree as a status.
+/// Compares the files of the arguments A and B. The status is [`Status::Done`] if they agree.
 pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.a) && is_standard(&args.b) {
         let message = "standard input can be read once only, and `-` is given twice";
@@ -54,7 +54,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let jpeg = Jpeg::of(&a);
     let a = read(&args.a, &a, &args.large)?;
-    // A file whose name ends like a picture's is read as a picture, even if it is damaged.
+    // A path with the extension of a picture format is read as a picture, even if the file is
+    // damaged.
     let is_named = judge::is_named_as_picture(&args.b);
     let most = if is_named {
         IfNotPicture::ReadStart
@@ -119,8 +120,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status(if is_strict { is_equal } else { is_right }))
 }
 
-/// Compares two pictures, read or rendered, and prints the result without a verdict. `steps` is the
-/// default tolerance.
+/// Compares two pictures, whether read or rendered, and prints the result without a verdict.
+/// `steps` is the default tolerance, in steps of 8-bit sRGB.
 fn compare(
     args: &DiffArgs,
     films: [&Film; 2],
@@ -222,7 +223,7 @@ fn write_heat_map(
         return Ok(());
     }
     let map = film::heat_map(a, b, tolerance).map_err(|error| Trouble(error.to_string()))?;
-    // The path may have become a link to one of the compared files.
+    // Since the last check, the path may have become a link to one of the compared files.
     check_is_not_compared(path, args)?;
     files::write(path, Purpose::Named, cancel, |out| {
         film::write_png(&map, None, out)
@@ -355,7 +356,7 @@ impl DiffReport {
     }
 }
 
-/// Returns the JSON fields of a comparison. `found` is `None` if the sizes differ.
+/// Returns the fields of a comparison in the JSON output. `found` is `None` if the sizes differ.
 pub fn json(
     [a, b]: [String; 2],
     sizes: [[u32; 2]; 2],
@@ -395,7 +396,7 @@ pub fn json(
         .collect()
 }
 
-/// Writes the mistakes and guesses, then which objects are right.
+/// Writes each mistake and each guess, then which objects are right.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
     let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
@@ -432,10 +433,10 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// Returns a sentence about which objects are right and which are not. If there are many objects,
-/// lists only some of those that are not right.
+/// Returns a sentence about which objects are right and which are not. If there are more than 12
+/// objects, it lists only those that are not right, at most 12.
 fn objects(verdict: &Verdict) -> String {
-    /// Maximum number of objects that are listed.
+    /// Maximum number of objects that the sentence lists.
     const MOST: usize = 12;
     let all = &verdict.objects;
     let is_all = all.len() <= MOST;
@@ -491,8 +492,8 @@ fn round(steps: f64) -> String {
     }
 }
 
-/// Rounds a number of 8-bit steps to 10^−9, which removes the rounding errors of decoding and
-/// encoding a byte (numbers up to 255).
+/// Rounds `steps`, a difference in steps of 8-bit sRGB, to 10^−9. This removes the rounding errors
+/// of decoding and encoding a byte.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }

@@ -16,8 +16,9 @@ use crate::{
     tracer::World,
 };
 
-/// Tolerance between two exact pictures of equal scenes, in steps of 8-bit sRGB. Each picture's
-/// error bound of 10^−9 in linear light is at most 3.3·10^−6 steps.
+/// Tolerance between the exact pictures of two scenes, in steps of 8-bit sRGB. A larger difference
+/// is reported. The tolerance exceeds the error bound of both pictures: each one's bound of 10^−9
+/// in linear light is at most 3.3·10^−6 steps.
 pub const EXACT_STEPS: f64 = 1e-4;
 
 /// Returns whether a path has the extension of scenes, `.scn`.
@@ -25,8 +26,9 @@ pub fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == "scn")
 }
 
-/// Renders the exact pictures of both scenes. The outer error is about the arguments, the inner one
-/// about rendering. Returns `None` if a scene has errors, which are reported.
+/// Renders the exact pictures of both scenes that the arguments name. The outer error is about the
+/// arguments, the inner one about rendering. Returns `None` if a scene has errors, which are
+/// reported.
 pub fn of_scenes(
     args: &DiffArgs,
     cancel: &AtomicBool,

@@ -14,11 +14,11 @@ use crate::{
     schema, suggest,
 };
 
-/// Maximum width of a line, in columns, even if the terminal is wider: longer lines are hard to
-/// read.
+/// Maximum width of a line, in columns, even if the terminal is wider, since longer lines are hard
+/// to read.
 const WIDEST: usize = 90;
 
-/// Prints the page of the words, or the list of all codes if there are no words.
+/// Prints the page of `args.words`, or the list of all codes if there are no words.
 pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     let style = output::page_style();
     let headings = style.map_or(Headings::Plain, Headings::of);
@@ -338,12 +338,12 @@ mod tests {
             let found = page(heading).unwrap();
             assert!(found.starts_with(&format!("## {heading}\n")), "{heading}");
         }
-        // A word of the language has its own page, even if other programs use the word for
+        // A word of the language explains itself, even if it is also another program's name for
         // something else.
         for (name, meant) in explain::OTHER_NAMES {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),
-                // Only the lines that answer are shown.
+                // `page` shows only the lines that answer, not the whole page.
                 Some((_, words)) => {
                     let page = page(name).unwrap();
                     let lines: Vec<&str> = page.lines().collect();

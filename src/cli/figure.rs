@@ -12,7 +12,7 @@ use crate::{
     files::{self, Purpose},
 };
 
-/// Draws the figure and writes it.
+/// Draws the figure that the arguments ask for, and writes it to a file or to standard output.
 pub fn run(args: &FigureArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let output = args.output.as_deref().filter(|path| !is_standard(path));
     if let Some(path) = output {

@@ -21,15 +21,15 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum length of a scene's file, in bytes. A longer file is not a scene.
+/// Maximum length of a scene's file, in bytes. A longer file is rejected.
 const SCENE_LIMIT: u64 = 256 << 20;
 
-/// Number of bytes of a picture that are read to find the scene in it. It is more than may precede
-/// the pixels.
+/// Number of bytes of a picture that are read to find the scene in it. The chunks of a [`Recipe`]
+/// before the pixels are shorter.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// Number of bytes at the start of a file that decide whether the file is a picture, even if a
-/// program printed some lines before the picture.
+/// Number of bytes at the start of a file that decide whether the file is a picture. Before the
+/// picture, a program may have printed lines into the file, but not more than this.
 const START: u64 = 1 << 16;
 
 /// A scene as it was read, before parsing.
@@ -66,8 +66,8 @@ impl SceneInput {
         Self::of_bytes(path, bytes, overrides)
     }
 
-    /// Reads a text that will be changed. Also returns the original of its file, or `None` for
-    /// standard input. `command` is the command's name, for messages.
+    /// Reads a text that the command `command` will change. Also returns the original of its file,
+    /// or `None` for standard input. Fails for pipes.
     pub fn to_change(
         path: &Path,
         overrides: &Overrides,
@@ -76,7 +76,7 @@ impl SceneInput {
         let (input, original) = if is_standard(path) {
             (Self::read(path, overrides)?, None)
         } else {
-            // Pipes are rejected, since writing into one does not change what was read.
+            // Pipes are rejected, since writing to a pipe would not change the text that was read.
             let original = Original::read(path, bytes).map_err(|error| match error.kind() {
                 io::ErrorKind::InvalidInput => {
                     let hint = format!("{command} takes files, or standard input as `-`");
@@ -109,7 +109,7 @@ impl SceneInput {
         Ok(input)
     }
 
-    /// Makes the input from the bytes of a scene's file.
+    /// Makes the input from `bytes`, the text of the scene's file `path`.
     pub fn of(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Self {
         let mut input = Self::from_text(path.display().to_string(), bytes);
         input.add(overrides);
@@ -125,8 +125,8 @@ impl SceneInput {
     }
 
     fn add(&mut self, overrides: &Overrides) {
-        // The names count only the arguments on the command line, not the overrides that a picture
-        // carries.
+        // The number in the name of an override counts only the arguments on the command line, not
+        // the overrides that a picture carries.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
         self.sources.sets.extend(sets);
@@ -145,9 +145,9 @@ impl SceneInput {
         }
     }
 
-    /// Reads the scene, and reports its problems to people. The warning about objects outside of
-    /// the picture is left to the commands that are about the text: elsewhere, such as in one frame
-    /// of an animation, it may be intended.
+    /// Reads the scene, and reports its problems to people. Objects outside of the picture are not
+    /// reported, since they may be intended, for example in one frame of an animation. The commands
+    /// that check the text itself report them.
     pub fn scene(&self) -> Reading {
         let mut reading = scene::read(&self.sources);
         let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
@@ -188,22 +188,22 @@ pub fn name_copies(path: &Path) {
     }
 }
 
-/// Makes the error that a path cannot be read.
+/// Makes the error message that a path cannot be read.
 pub fn unreadable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot read {}: {error}", shown(path)))
 }
 
-/// Makes the error that a path cannot be written to.
+/// Makes the error message that a path cannot be written to.
 pub fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Trouble {
     Trouble(format!("cannot write to {}: {error}", shown(path)))
 }
 
-/// Makes the error that files cannot be written into an output folder.
+/// Makes the error message that files cannot be written into an output folder.
 pub fn not_written(why: NotWritten) -> Trouble {
     unwritable(&why.path, &why.error)
 }
 
-/// Replaces the text of a file if the file is still what was read.
+/// Replaces the text of a file. Fails if the file is no longer what was read.
 pub fn change(
     path: &Path,
     original: &Original,
@@ -225,7 +225,7 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The bytes of a file that is compared.
+/// The bytes of an argument that should be a picture.
 pub enum FileBytes {
     /// All bytes of a picture.
     Picture(Vec<u8>),
@@ -233,7 +233,7 @@ pub enum FileBytes {
     Other(Vec<u8>),
 }
 
-/// Reads a picture or, if the first bytes show that the file is none, as much of it as
+/// Reads a picture. If the first bytes show that the file is no picture, reads as much of it as
 /// `if_not_picture` says.
 pub fn read_picture_or(
     path: &Path,
@@ -275,8 +275,8 @@ pub enum IfNotPicture {
     ReadStart,
 }
 
-/// Reads the bytes of a scene's file, or the start of a picture, which contains the scene. Fails if
-/// the path is not a regular file.
+/// Reads the bytes of a scene's file, or the start of a picture, which contains the scene. Fails
+/// unless the path is a regular file.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     limited(files::open(path)?)
 }

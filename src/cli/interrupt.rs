@@ -14,25 +14,25 @@ use super::{Status, Trouble};
 /// Whether the user has pressed Ctrl-C, or the system has asked the process to end.
 ///
 /// Ctrl-C ends the process at once, unless a command watches the flag because it has to clean up
-/// first. If Ctrl-C is pressed again after the grace period, it ends the process in any case.
+/// first. Pressed again after [`GRACE`], Ctrl-C ends the process in any case.
 #[derive(Clone)]
 pub struct Interrupt(Arc<Flags>);
 
 #[derive(Default)]
 struct Flags {
-    /// Whether a command watches `pressed`.
+    /// Whether a command watches the flag `pressed` and ends itself.
     watched: AtomicBool,
     pressed: AtomicBool,
     first: OnceLock<Instant>,
     then: OnceLock<Box<dyn Fn() + Send + Sync>>,
 }
 
-/// Grace period after the first Ctrl-C. Cleaning up (a temporary file, threads) takes a small part
-/// of it.
+/// Time after the first Ctrl-C from which on another one ends the process at once. Until then, a
+/// command can clean up. Removing a temporary file and stopping threads take a small part of it.
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
-    /// Installs the handler.
+    /// Installs the handler of Ctrl-C, which sets the flag.
     pub fn listen() -> Result<Self, Trouble> {
         let flags = Arc::new(Flags::default());
         let interrupt = Self(Arc::clone(&flags));
@@ -50,18 +50,19 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// Returns the flag that Ctrl-C sets. After this call, Ctrl-C no longer ends the process by
-    /// itself; the caller must.
+    /// Returns the flag that Ctrl-C sets. After this call, Ctrl-C only sets the flag, and the
+    /// caller must end the command when it is set.
     pub fn watch(&self) -> &AtomicBool {
         self.0.watched.store(true, Ordering::SeqCst);
         &self.0.pressed
     }
 
-    /// Registers `what`, to be called when Ctrl-C is pressed. It must make the command end.
+    /// Registers `what`, which is called when Ctrl-C is pressed, or at once if it already was.
+    /// `what` must make the command end.
     #[cfg(feature = "preview")]
     pub fn then(&self, what: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.then.set(Box::new(what));
-        // Ctrl-C may have been pressed before `what` was registered.
+        // Ctrl-C may have been pressed before `what` was registered, so `what` is called here.
         if self.watch().load(Ordering::SeqCst)
             && let Some(then) = self.0.then.get()
         {

@@ -22,8 +22,8 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
 }
 
 /// Returns the part of the scene that a picture shows: the crop that the picture carries, or else
-/// the crop `named` on the command line, if their sizes agree with the picture's; or else the whole
-/// scene.
+/// the crop `named` on the command line, or else the whole scene. A crop is ignored if its size
+/// differs from the picture's.
 ///
 /// # Errors
 ///

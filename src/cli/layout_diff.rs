@@ -1,8 +1,8 @@
 //! A unified diff between a text and its layout, in time and memory linear in their length.
 //!
-//! No search for a shortest edit is needed, since a layout changes only blanks and line ends. The
-//! number of other characters before a line says where the line belongs in the other text, so one
-//! pass over both texts finds the unchanged lines.
+//! A layout changes only white space. Therefore, the number of other characters before a line gives
+//! the line's place in the other text. One pass over both texts finds the unchanged lines, without
+//! a search for a shortest edit.
 
 use std::{fmt::Write, ops::Range};
 
@@ -12,7 +12,7 @@ use crate::{
     source::Source,
 };
 
-/// Number of unchanged lines around a change, as is usual in diffs.
+/// Number of unchanged lines that are shown around a change, as is usual in diffs.
 const CONTEXT: usize = 3;
 
 /// Returns a unified diff from the source to the formatted text. If the source has both kinds of
@@ -66,7 +66,7 @@ struct LineCursor<'t> {
     next: usize,
     /// Byte at which the next line starts.
     at: usize,
-    /// Number of characters before the next line that are not white space.
+    /// Number of characters before the next line, except white space.
     solid_before: usize,
 }
 
@@ -125,8 +125,8 @@ impl Iterator for LineChanges<'_> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // An empty line contains no such characters, so it is passed before the line of the
-                // other text.
+                // An empty line has the same number of solid characters before it as the line after
+                // it. Where these numbers are equal, the empty line is passed first.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),
@@ -156,12 +156,12 @@ impl Iterator for LineChanges<'_> {
 /// Options for printing lines.
 struct Printer {
     color: bool,
-    /// Whether the text has both kinds of line ends.
+    /// Whether the text has both kinds of line ends, LF and CRLF.
     is_mixed: bool,
 }
 
 impl Printer {
-    /// Prints a hunk: changes that are close together, with their context.
+    /// Prints a hunk: changes that are close together, with the unchanged lines around them.
     fn hunk(&self, out: &mut String, changes: &[LineChange], before: &str, after: &str) {
         let (Some(first), Some(last)) = (changes.first(), changes.last()) else {
             return;
@@ -212,8 +212,8 @@ fn lines_back(text: &str, start: usize, lines: usize) -> usize {
     })
 }
 
-/// Formats a range of lines as in a hunk's head: the first line, counted from 1, and the count
-/// unless it is 1. For an empty range, the line before it is given.
+/// Formats a range of lines as in a hunk's head: the number of the first line, from 1, and the
+/// count unless it is 1. An empty range has the number of the line before it.
 fn range(lines: Range<usize>) -> String {
     match lines.len() {
         0 => format!("{},0", lines.start),
@@ -247,7 +247,8 @@ mod tests {
                 "a\nb c\n",
                 "@@ -1,3 +1,2 @@\n a\n-b\n-c\n+b c\n",
             ),
-            // An equal line at another position is not matched.
+            // A `}` is matched only with the `}` at the same place, not with an earlier or later
+            // one.
             (
                 "}\n}\n x\n}\n",
                 "}\n}\nx\n}\n",

@@ -98,8 +98,8 @@ pub fn run() -> ExitCode {
     }
 }
 
-/// Returns clap's answer to the arguments with control characters made visible, since the answer
-/// repeats some arguments. Returns `None` if the arguments parse in this form.
+/// Returns clap's answer to the arguments after their control characters were made visible, since
+/// the answer repeats some arguments. Returns `None` if clap accepts the arguments in this form.
 fn visible_answer() -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(env::args_os().map(shown)).err()

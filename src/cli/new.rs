@@ -12,7 +12,7 @@ use crate::{
     scene,
 };
 
-/// Writes the scene; fails if the file exists.
+/// Writes the smallest scene to a new file. Fails if the file exists.
 pub fn run(args: &NewArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.file) {
         output::to_programs(scene::SMALLEST.as_bytes())?;

@@ -22,7 +22,7 @@ pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
 }
 
 /// Writes a text to standard output while the text is produced, since it may be long. On a
-/// terminal, acts as [`to_programs`].
+/// terminal, control characters are made visible, as by [`to_programs`].
 pub fn stream_to_programs(
     write_to: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Trouble> {
@@ -38,7 +38,7 @@ pub fn stream_to_programs(
         .map_err(stdout_error)
 }
 
-/// Writes a page that is laid out for the terminal to standard output.
+/// Writes a page, whose text is safe and laid out for the terminal, to standard output.
 pub fn page(text: &str) -> Result<(), Trouble> {
     write(text.as_bytes())
 }
@@ -85,8 +85,8 @@ pub fn to_people(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Writes a command's answer to standard error, wrapped to the width of a terminal. A closed pipe
-/// is not an error, as with [`StandardOutput`].
+/// Writes a command's answer to standard error, wrapped to the width of a terminal. If the reader
+/// has closed the pipe, the rest is dropped without an error.
 pub fn answer(text: &str) -> Result<(), Trouble> {
     let columns = terminal_size_of(io::stderr()).filter(|_| is_watched());
     let text = match columns {
@@ -101,9 +101,9 @@ pub fn answer(text: &str) -> Result<(), Trouble> {
     }
 }
 
-/// Wraps lines longer than `width` columns between words; a terminal would break them within words.
-/// Further lines are indented to the last column of a table that starts in the left half of the
-/// terminal.
+/// Wraps lines longer than `width` columns between words, since a terminal would break them within
+/// words. The further lines are indented to the last column of a table if this column starts in the
+/// left half of the terminal.
 pub fn wrapped(text: &str, width: usize) -> String {
     let broken = text.split('\n').map(|line| {
         let words = line.trim_start_matches(' ');
@@ -120,8 +120,9 @@ pub fn wrapped(text: &str, width: usize) -> String {
     broken.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the offset at which the last column of a table starts, at most `most`. A column starts
-/// after two spaces. Returns at most 2 if the line is not part of a table.
+/// Returns the offset at which the last column of a table's line starts, at most `most`. A column
+/// starts after two spaces. If the line is not part of a table, returns 2, or `most` if that is
+/// less.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();
@@ -164,9 +165,9 @@ pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// Returns the style of reports on standard error. It has colours on a terminal that has colours,
-/// unless `NO_COLOR` is set. It is ASCII if the locale is not UTF-8. It consists of sentences, for
-/// screen readers, if `NO_GRAPHICS` is set.
+/// Returns the style of reports on standard error. Reports have colours if standard error is a
+/// terminal with colours and `NO_COLOR` is not set. They are drawn in ASCII if the locale is not
+/// UTF-8. If `NO_GRAPHICS` is set, they consist of sentences, for screen readers.
 pub fn style() -> Style {
     let plain = Style::default();
     let columns = terminal_size_of(io::stderr()).map(|(Width(columns), _)| usize::from(columns));
@@ -184,7 +185,8 @@ pub fn style() -> Style {
     }
 }
 
-/// Number of columns to the left of an excerpt, for the line number and the frame.
+/// Number of columns to the left of an excerpt, for the line number and the frame. They are not
+/// available to the excerpt.
 const FRAME: usize = 8;
 
 /// Returns the style of pages on standard output; `None` if standard output is not a terminal.

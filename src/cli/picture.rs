@@ -24,9 +24,9 @@ use crate::{
 
 /// A rendered picture, with pixels in the precision that is needed.
 pub enum RenderedPicture {
-    /// Means in 64 bits.
+    /// Means in 64-bit floats.
     Light(Rendered),
-    /// Means rounded to 32 bits.
+    /// Means rounded to 32-bit floats.
     Floats(Rendered<[f32; 3]>),
     /// Bytes of sRGB.
     Bytes(Rendered<[u8; 3]>),
@@ -51,8 +51,8 @@ impl RenderedPicture {
         }
     }
 
-    /// Returns notes for people on how exact a computed picture is; empty for a sampled picture.
-    /// `part` is the part of the whole picture that is shown.
+    /// Returns notes for people on the error bounds of an exact picture; empty for a sampled
+    /// picture. `part` is the part of the whole picture that was rendered.
     pub fn notes(&self, part: Area, output: &PictureOutput) -> String {
         match self {
             Self::Light(Rendered::Sampled(_))
@@ -75,13 +75,13 @@ impl RenderedPicture {
     }
 }
 
-/// Precision in which pixels are stored: as low as the file allows, unless the 64-bit means are
-/// needed for something else.
+/// Precision in which pixels are stored. It is as low as the file allows, unless the 64-bit means
+/// are needed for something else, for example to show the picture in the terminal.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeptPixels {
-    /// The means in 64 bits.
+    /// Means in 64-bit floats.
     Light,
-    /// Means rounded to 32 bits.
+    /// Means rounded to 32-bit floats.
     Floats,
     /// Bytes of sRGB.
     Bytes,
@@ -100,8 +100,8 @@ pub fn picture(
     let expected = if sampling.is_exact() {
         part.pixels()
     } else {
-        // This is the expected number of samples in the part. The remainder of a total may be
-        // spread unevenly, but for a progress bar this is near enough.
+        // This is the expected number of samples in the part. If the scene gives a total number of
+        // samples, its remainder may be spread unevenly, which does not matter for a progress bar.
         let share = part.pixels() as f64 / whole.pixels() as f64;
         (sampling.total() as f64 * share) as u64
     };
@@ -120,17 +120,19 @@ pub fn picture(
     })
 }
 
-/// Threshold on the error bound of a pixel, in linear light; above it, a note is printed.
+/// Threshold on the error bound of a pixel, in linear light. A note is printed about pixels above
+/// it.
 const VAGUE: f32 = 1e-6;
 
-/// Name of the rounding in an exact PNG, for the certificate.
+/// Name of the rounding of pixels in a PNG, for [`certificate`].
 const BYTES: &str = "the 8-bit rounding";
 
-/// Name of the rounding in an exact EXR, for the certificate.
+/// Name of the rounding of pixels in an EXR, for [`certificate`].
 const FLOATS: &str = "the 32-bit rounding";
 
 /// Returns the certificate of an exact part of the picture: the bound on the error of its means,
-/// and the number of pixels for which the rounding `what` in the file is proven, `certain`.
+/// and for how many pixels, `certain`, the rounding in the file is proven. `what` is the name of
+/// the rounding.
 fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
     let pixels = exact.bounds.len() as u64;
     let rounding = match pixels - certain {
@@ -142,8 +144,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        // The pixel has a single colour and needs no averaging, so the only error is in the
-        // colour's own numbers.
+        // The error bound is 0 if a pixel has a single colour, which needs no averaging.
         0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };
@@ -155,7 +156,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         && count > 0
     {
         let width = exact.film.width() as usize;
-        // Columns and rows are counted in the whole picture.
+        // The certificate gives the column and row in the whole picture, not in the part.
         let (x, y) = (
             part.x as usize + least % width,
             part.y as usize + least / width,
@@ -174,7 +175,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
 
 /// Destination and format of a picture.
 pub enum PictureOutput {
-    /// A file.
+    /// A file, with its format, and how its path was chosen.
     File(PathBuf, FileFormat, PathChoice),
     /// Standard output, as PNG.
     Standard,
@@ -185,7 +186,7 @@ pub enum PictureOutput {
 pub enum PathChoice {
     /// By the command line.
     Explicit,
-    /// From the scene's name. Only a file in the scene's folder may be replaced.
+    /// From the scene's name. A file is replaced only if it is in the scene's folder.
     BesideScene,
 }
 
@@ -268,7 +269,7 @@ impl PictureOutput {
                 write_png(picture, recipe, out)
             }),
             Self::File(path, format, path_choice) => {
-                // The path may have become a link to the scene.
+                // Since the last check, the path may have become a link to the scene.
                 check_is_not(path, scene)?;
                 files::write(path, path_choice.purpose(path), cancel, |out| {
                     let linear: LinearFilm = match (format, picture) {

@@ -15,10 +15,10 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::output;
 use crate::render::Control;
 
-/// Time before the bar appears. Shorter renders show no bar.
+/// Time before the progress bar appears. Shorter work shows no bar.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Interval between updates of the bar.
+/// Interval between updates of the progress bar.
 const INTERVAL: Duration = Duration::from_millis(100);
 
 /// Runs `work`, which counts up to `total`. If standard error is a terminal, shows the progress and
@@ -40,7 +40,7 @@ pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     })
 }
 
-/// Runs `work`, a render of `total` samples or exact pixels that stops when `cancel` is set. Shows
+/// Runs `work`, which renders `total` samples or exact pixels and stops when `cancel` is set. Shows
 /// the progress as [`watched`] does.
 pub fn rendering<T>(
     total: u64,
@@ -59,7 +59,7 @@ pub fn rendering<T>(
     })
 }
 
-/// Shows a bar until the sender of the channel is dropped.
+/// Shows a bar until the sender of the channel `wait` is dropped.
 fn show(total: u64, done: &AtomicU64, wait: &mpsc::Receiver<()>) {
     let goes_on = |time| wait.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
     if !goes_on(PATIENCE) {

@@ -17,8 +17,8 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let reading = input.scene();
-    // The output is checked before rendering, which may take hours. An output that cannot be
-    // written is reported even if the scene has errors, since its exit status is the worse one.
+    // The output is checked before rendering, which may take hours, and even if the scene has
+    // errors: the exit status of an output that cannot be written is the worse one.
     output.check(&args.scene)?;
     let Some(scene) = reading.scene else {
         return Ok(Status::SceneErrors);

@@ -27,20 +27,21 @@ use crate::{
     tracer::World,
 };
 
-/// A cell of the sheet: a scene with the size of its picture on the sheet, and its caption.
+/// A cell of the sheet: a scene whose picture has the size that it has on the sheet, and its
+/// caption.
 type SheetCell = (Scene, String);
 
 /// Gap between two cells, and around all cells, in pixels.
 const GAP: u32 = 12;
-/// Colour of the frame around a picture, in sRGB bytes.
+/// Colour of the frame around each picture, in sRGB bytes.
 const FRAME: [u8; 3] = [192; 3];
-/// Height of the letters of captions.
+/// Height of the letters of captions, in pixels.
 const LETTERS: RasterHeight = RasterHeight::Size16;
-/// Height of a caption's line, in pixels.
+/// Height of a line of captions, in pixels, including the space around the letters.
 const LINE: u32 = 22;
 const REGULAR: FontWeight = FontWeight::Regular;
 
-/// Renders the scenes and writes the sheet.
+/// Renders the scenes and writes the contact sheet.
 pub fn run(args: &SheetArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     check_output(args)?;
@@ -97,8 +98,8 @@ fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
     args.scenes.iter().try_for_each(output)
 }
 
-/// Returns the scene of a file with its caption, or all scenes of a sweep with theirs. Returns
-/// `None` if a scene has errors, which are reported.
+/// Returns the scene of a file with its caption. With `--sweep`, returns all scenes of the sweep
+/// with their captions. Returns `None` if a scene has errors, which are reported.
 fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)>>, Trouble> {
     let input = SceneInput::read(path, &args.overrides)?;
     let Some(sweep) = &args.sweep else {
@@ -113,8 +114,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
         sources.sets.push(Source::from_text(name, set));
         SceneInput { sources, ..input }
     };
-    // The problems of the first scene are reported in any case, and those of the last scene only if
-    // it has errors.
+    // The problems of the first scene are always reported; those of the last scene only if it has
+    // errors.
     let [first, last] = sweep.ends().map(with);
     if first.scene().scene.is_none() {
         return Ok(None);
@@ -141,8 +142,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Option<Vec<(Scene, String)
     Ok(Some(scenes))
 }
 
-/// Returns the caption of a scene's file: its name without folders and extension, if no other file
-/// has that name.
+/// Returns the caption of a scene's file: its name without folders and extension, or its path if
+/// another file has the same name.
 fn name(path: &Path, args: &SheetArgs) -> String {
     if is_standard(path) {
         return "standard input".to_owned();
@@ -161,7 +162,7 @@ fn name(path: &Path, args: &SheetArgs) -> String {
 }
 
 /// Returns the scene with its picture scaled down to at most `side` pixels in width and height. The
-/// number of samples per pixel stays the same.
+/// number of samples per pixel does not change.
 fn reduced(mut scene: Scene, side: u32) -> Scene {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let [across, down] = [whole.width, whole.height].map(f64::from);
@@ -190,8 +191,8 @@ fn rendered(scene: &Scene, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderE
     }
 }
 
-/// Renders the pictures and places them on white, row by row, in `columns` columns; by default in
-/// about as many columns as rows.
+/// Renders the pictures and places them on white, row by row, in `columns` columns. If `columns` is
+/// `None`, there are about as many columns as rows.
 fn sheet(
     cells: &[SheetCell],
     columns: Option<u32>,
@@ -246,8 +247,9 @@ fn sheet(
     Ok(sheet)
 }
 
-/// Shortens a caption to `width` pixels. For a step of a sweep, the target is dropped first, since
-/// it is the same in all steps, and then the start of the value, since its end is what changes.
+/// Shortens a caption to `width` pixels. The caption of a step of a sweep first loses the target,
+/// which is the same in all steps. Then it loses the start of the value, since the steps differ at
+/// its end.
 fn fitting(name: &str, width: u32) -> String {
     let most = width as usize / get_raster_width(REGULAR, LETTERS);
     if name.chars().count() <= most {

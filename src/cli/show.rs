@@ -19,7 +19,7 @@ use crate::{area::Area, color::linear_to_srgb, film::Film};
 pub struct Screen {
     /// The picture above the messages; `None` if no pictures are shown.
     shown: Option<ShownPicture>,
-    /// Messages since the last change.
+    /// Messages since the last change of the scene. They are printed again below a new picture.
     messages: String,
 }
 
@@ -55,8 +55,8 @@ impl Screen {
                 "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`".to_owned(),
             ));
         }
-        // The picture is drawn from the top, so the previous content is scrolled up, where people
-        // can find it again.
+        // The picture is drawn from the top of the screen. The previous content is scrolled up
+        // first, where people can find it again.
         output::to_people(&format!("{}\x1b[H", "\n".repeat(size().1)));
         Ok(Self {
             shown: Some(ShownPicture::default()),
@@ -76,8 +76,8 @@ impl Screen {
         output::to_people(text);
     }
 
-    /// Returns the side, in pixels, of blocks about as large as what one dot on the screen shows of
-    /// a picture of this size. Returns `None` if no pictures are shown.
+    /// Returns the side, in pixels, of the square of pixels that one dot of the screen shows of the
+    /// picture `whole`. Returns `None` if no pictures are shown.
     pub fn side(&self, whole: Area) -> Option<u32> {
         self.shown.as_ref()?;
         let (columns, rows) = size();
@@ -101,7 +101,8 @@ impl Screen {
             && shown.size != size()
         {
             shown.redraw();
-            // Lines drawn for the old width may have left characters behind.
+            // Lines that were drawn for the old width may have left characters behind, so the
+            // screen is cleared.
             output::to_people("\x1b[2J");
             self.refresh();
         }
@@ -127,9 +128,9 @@ impl ShownPicture {
 /// Colours that a terminal can show.
 #[derive(Clone, Copy)]
 enum Palette {
-    /// All 24-bit colours.
+    /// All 24-bit colours, which are used as they are.
     Full,
-    /// 256 colours, of which the nearest one is used.
+    /// Only 256 colours, of which the nearest one is used.
     Of256,
 }
 
@@ -154,8 +155,7 @@ impl Palette {
     }
 }
 
-/// Returns the number of columns and rows of cells that a picture may take. Some rows are left for
-/// messages.
+/// Returns the number of columns and rows of cells that a picture may take in the terminal.
 fn size() -> (usize, usize) {
     let (columns, rows) = terminal_size_of(io::stderr())
         .map_or((80, 24), |(Width(columns), Height(rows))| {
@@ -164,15 +164,15 @@ fn size() -> (usize, usize) {
     (columns.max(1), rows_of_picture(rows))
 }
 
-/// Returns the number of rows for the picture. A report on one mistake takes about eleven rows, and
-/// must be readable below the picture.
+/// Returns the number of rows that the picture may take, of `rows` rows of the terminal. A report
+/// on one mistake takes about eleven rows, and must be readable below the picture.
 fn rows_of_picture(rows: usize) -> usize {
     const MESSAGES: usize = 12;
     let rest = rows.saturating_sub(MESSAGES);
     rest.clamp(rows / 3, rows * 3 / 4).max(1)
 }
 
-/// Returns the characters that draw a picture in at most this many cells.
+/// Returns the characters that draw a picture in at most `columns` × `rows` cells.
 fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> String {
     let (width, height) = (film.width() as usize, film.height() as usize);
     let scale = scale(width, height, columns, rows);
@@ -197,20 +197,22 @@ fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> Stri
     text
 }
 
-/// Returns the number of pixels per dot, in each direction. A cell has two dots, which are about
-/// square.
+/// Returns the number of pixels, in each direction, that a dot shows. A cell is two dots high, and
+/// dots are about square.
 fn scale(width: usize, height: usize, columns: usize, rows: usize) -> f64 {
     (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64)
 }
 
-/// Returns the pixels of part `index` of `parts` equal parts; at least one pixel.
+/// Returns the range of pixels of part `index`, if `pixels` pixels are divided into `parts` equal
+/// parts. The range is never empty.
 fn share(index: usize, parts: usize, pixels: usize) -> std::ops::Range<usize> {
     let start = (index * pixels / parts).min(pixels - 1);
     let end = ((index + 1) * pixels / parts).max(start + 1);
     start..end.min(pixels)
 }
 
-/// Returns the mean, in linear light, of the pixels in these columns and rows, as bytes of sRGB.
+/// Returns the mean, in linear light, of the pixels in the given columns and rows, as bytes of
+/// sRGB.
 fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> [u8; 3] {
     let count = (columns.len() * rows.len()) as f64;
     let mut sum = [0.0; 3];

@@ -26,13 +26,13 @@ use crate::{
     scene::{Method, Scene},
 };
 
-/// Number of steps of the progress bar.
+/// Number of steps of the progress bar, which shows the share of the work that is done.
 const STEPS: u64 = 1000;
 
 /// File name of the HTML page.
 const INDEX: &str = "index.html";
 
-/// Files of a report; the HTML page is the last.
+/// Names of a report's files. The HTML page is the last.
 const FILES: [&str; 5] = [
     "report.csv",
     "report.json",
@@ -155,7 +155,7 @@ fn check_methods(request: &Request) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Rejects more than 2^53 samples in a picture, the limit of the language.
+/// Rejects a request for more than 2^53 samples in a picture, which is the limit of the language.
 fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
     let most = request.samples.iter().copied().max().unwrap_or(0);
@@ -191,8 +191,9 @@ fn measure(
     }
 }
 
-/// Returns the subfolder for each scene's report. The report on a single scene goes into the output
-/// folder itself. Reports on several scenes go into subfolders, beside a page about all of them.
+/// Returns the subfolder for each scene's report, with `/` at its end. The report on a single scene
+/// has no subfolder, so the text is empty. With several scenes, a page about all of them is in the
+/// output folder.
 fn folders(scenes: &[PathBuf]) -> Vec<String> {
     if scenes.len() == 1 {
         return vec![String::new()];
@@ -229,9 +230,9 @@ fn report_error(error: io::Error) -> Trouble {
 }
 
 /// Returns the name of a scene's subfolder: the file's name without its extension, and with a
-/// number if another scene or the page has that name. The name cannot lead out of the report's
-/// folder: it has no dots at its ends, and contains only letters, digits and a few common
-/// characters.
+/// number if another scene or the page has the name. The subfolder cannot lie outside of the
+/// report's folder: the name has no dots at its ends, and contains only letters, digits and a few
+/// common characters.
 fn name(scene: &Path, taken: &[String]) -> String {
     let stem = match scene.file_stem() {
         Some(stem) if !is_standard(scene) => stem.to_string_lossy().into_owned(),
@@ -243,7 +244,7 @@ fn name(scene: &Path, taken: &[String]) -> String {
         "" => "scene",
         stem => stem,
     };
-    // Some file systems do not distinguish upper and lower case.
+    // File systems may not distinguish upper and lower case, so names are compared in lower case.
     let is_taken = |name: &String| {
         let is_same = |other: &str| other.to_lowercase() == name.to_lowercase();
         is_same(INDEX) || taken.iter().any(|other| is_same(other))

@@ -10,7 +10,7 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum number of scenes in a sweep.
+/// Maximum number of scenes in a sweep. A sweep with more is rejected.
 const MOST: usize = 1000;
 
 /// The target and the range of a sweep.
@@ -26,7 +26,7 @@ pub struct Sweep {
 pub struct SweepStep {
     /// The `--set` argument of the scene.
     pub set: String,
-    /// The argument with few digits, for a caption.
+    /// The argument with its value rounded to few digits, for a caption.
     pub label: String,
 }
 
@@ -84,12 +84,12 @@ impl Sweep {
         [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
     }
 
-    /// Returns all steps, for a scene in which both ends can be evaluated. The language itself
-    /// interpolates: the steps are evaluated as `let`s after all other definitions.
+    /// Returns all steps, from a scene in which both ends can be evaluated. The scene language
+    /// itself interpolates: the steps are evaluated as `let`s after all other definitions.
     ///
     /// # Errors
     ///
-    /// The ends cannot be interpolated, such as words or colours.
+    /// The ends cannot be interpolated; they are words or colours, for example.
     pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
         let Self {
             from, to, count, ..

@@ -4,10 +4,11 @@
 
 use std::ops::Range;
 
-/// Number of unchanged lines around a change.
+/// Number of unchanged lines that are shown around a change.
 const AROUND: usize = 3;
 
-/// Maximum number of lines, in both texts together, that the search for the next equal lines skips.
+/// Maximum number of lines, in both texts together, that the search for the next equal lines
+/// passes. Beyond it, all remaining lines count as changed.
 const MOST_STEPS: usize = 1000;
 
 /// Lines of the old text, and the lines of the new text that replace them.
@@ -24,7 +25,7 @@ pub fn unified_diff(name: &str, old: &str, new: &str) -> String {
     let mut text = String::new();
     let mut rest = changes.as_slice();
     while !rest.is_empty() {
-        // Changes whose context touches share a hunk.
+        // Changes belong to one hunk if the unchanged lines around them touch.
         let near = |pair: &[ReplacedLines]| pair[1].old.start - pair[0].old.end <= 2 * AROUND;
         let together = 1 + rest.windows(2).take_while(|pair| near(pair)).count();
         let (hunk, behind) = rest.split_at(together);
@@ -72,9 +73,9 @@ fn push_hunk(text: &mut String, hunk: &[ReplacedLines], old: &[&str], new: &[&st
     push(' ', &old[at..last.old.end + after]);
 }
 
-/// Returns the changes from `old` to `new`. Walks through both texts; after a difference, the walk
-/// continues at the nearest place where two lines, or the ends of the texts, agree. Changes are
-/// small, so the list is usually short; it is correct even if it is not the shortest one.
+/// Returns the changes from `old` to `new`. Walks through both texts. After a difference, the walk
+/// continues at the nearest place where two lines agree or both texts end. The list may be longer
+/// than the shortest one, but is always correct.
 fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());
     while a < old.len() || b < new.len() {
@@ -115,7 +116,8 @@ mod tests {
 
     use super::*;
 
-    /// Texts of up to 14 lines from a few different ones, with and without a line feed at the end.
+    /// Generates texts of up to 14 lines out of a few different ones, with and without a line feed
+    /// at the end.
     fn text() -> impl Strategy<Value = String> {
         ("((a|b|c|)\n){0,14}", "(a|b)?").prop_map(|(lines, last)| lines + &last)
     }

@@ -74,7 +74,8 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(Status::Interrupted)
 }
 
-/// Interval at which the terminal's size is checked while nothing happens.
+/// Interval at which the terminal's size is checked while the file does not change. If the size has
+/// changed, the picture is drawn again.
 const REFIT: Duration = Duration::from_millis(200);
 
 /// Returns the file to which the picture is written.
@@ -93,8 +94,8 @@ fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
     }
 }
 
-/// Checks at the start that the scene can be read and is not a picture. Later, the file may be
-/// missing for a time.
+/// Checks that the scene can be read and is not a picture. This is checked only at the start, since
+/// later the file may be missing for a time.
 pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
     let bytes = input::bytes(scene).map_err(|error| input::unreadable(scene, &error))?;
     check_text(scene, &bytes)
@@ -110,8 +111,8 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Renders a text and writes its picture. Returns when the picture was written, or `None` if the
-/// text has errors or a newer text has arrived.
+/// Renders the text `bytes` and writes its picture. Returns the time at which the picture was
+/// written. Returns `None` if the text has errors or a newer text has arrived.
 fn render_and_write(
     args: &WatchArgs,
     bytes: Vec<u8>,
@@ -151,10 +152,11 @@ fn render_and_write(
     Ok(Some(done))
 }
 
-/// Time after which coarse pictures are shown until the picture is finished.
+/// Time that a render may take before coarse pictures are shown meanwhile.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Renders the scene. If that takes long, shows increasingly fine pictures meanwhile.
+/// Renders the scene. If this takes longer than [`PATIENCE`], shows increasingly fine pictures
+/// meanwhile.
 fn with_sketch(
     scene: &Scene,
     keep: KeptPixels,
@@ -179,7 +181,7 @@ fn with_sketch(
                     progress: &|_| {},
                     cancel: is_stale,
                 };
-                // If this is cancelled, there is nothing more to show; the render of the picture
+                // A cancelled coarse picture is not reported here, since the render of the picture
                 // itself reports the cancellation.
                 let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
                     screen.draw(sketch.film);

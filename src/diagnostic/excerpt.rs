@@ -1,4 +1,4 @@
-//! Excerpts of sources for reports: the labelled lines, cut to the width of a terminal.
+//! Extracts the labelled lines of a source for a report, cut to the width of a terminal.
 
 use std::ops::Range;
 
@@ -10,11 +10,11 @@ use super::{
 };
 use crate::source::{Source, SourceId, Sources, Span};
 
-/// Excerpt of a source: the labelled lines, with long lines cut to the parts around the labels.
+/// Excerpt of a source: its labelled lines. Long lines are cut to the parts around the labels.
 ///
-/// miette reads the excerpt instead of the text, so a line of ten megabytes is neither printed nor
-/// scanned, and every label lies within the text that miette sees. (miette omits a label at the end
-/// of a text, and panics at a label past it.)
+/// miette receives the excerpt instead of the text, so a line of ten megabytes is neither printed
+/// nor scanned. Every label lies within the excerpt. (miette omits a label at the end of a text,
+/// and panics at a label beyond it.)
 #[derive(Debug)]
 pub struct Excerpt<'s> {
     source: &'s Source,
@@ -32,18 +32,20 @@ struct ExcerptLine {
     start: usize,
     /// End of the line in the excerpt, in bytes, without the line feed.
     end: usize,
-    /// Offsets of each shown character in the source and in the excerpt, and those of the end of
-    /// each shown part.
+    /// For each shown character, its offsets in the source and in the excerpt; likewise for the end
+    /// of each shown part.
     shown: Vec<(usize, usize)>,
 }
 
 /// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
+/// Longer lines are cut.
 pub const LONG_LINE_BYTES: usize = 160;
-/// Minimum width of an excerpt, in columns, even if the terminal is narrower.
+/// Minimum width of an excerpt in columns, which also holds if the terminal is narrower.
 pub const MIN_COLUMNS: usize = 30;
 /// Number of columns between a label and its message.
 const HOOK_COLUMNS: usize = 4;
-/// Minimum number of columns for a message, even if its label stands far to the right.
+/// Minimum width, in columns, to which a label's message is wrapped, even if the label stands far
+/// to the right.
 const MIN_MESSAGE_COLUMNS: usize = 16;
 /// Maximum number of lines of a label. A longer label is drawn under its first line only.
 const MAX_LABEL_LINES: usize = 6;
@@ -68,7 +70,7 @@ pub fn excerpts<'s>(
 }
 
 impl<'s> Excerpt<'s> {
-    /// Makes the excerpt of a source, with lines of at most about `columns` bytes.
+    /// Makes the excerpt of a source. Lines longer than about `columns` bytes are cut.
     fn new<'l>(
         source: &'s Source,
         labels: impl Iterator<Item = &'l Label>,
@@ -97,7 +99,7 @@ impl<'s> Excerpt<'s> {
             let end = excerpt.offset_of(span.end).max(start + 1);
             let inner = SourceSpan::from((start, end - start));
             let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
-            // miette draws the hook of a label at the label's middle.
+            // miette starts the line to a label's message at the middle of the label.
             let left = start.midpoint(end) - line + HOOK_COLUMNS;
             let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
             let message = textwrap::fill(&visible_line(message), room);
@@ -115,8 +117,8 @@ impl<'s> Excerpt<'s> {
         if number == 1 {
             range.start = self.source.bom_len().min(range.end);
         }
-        // miette joins the frames of labels on consecutive lines and numbers the lines onwards from
-        // the first, so lines that are not consecutive are separated by an empty one.
+        // miette draws labels on consecutive lines in one frame, and counts line numbers from the
+        // first line. An empty line therefore separates lines that are not consecutive.
         let apart = self.lines.last().is_some_and(|l| l.number + 1 < number);
         if apart {
             self.text.push('\n');
@@ -129,7 +131,7 @@ impl<'s> Excerpt<'s> {
             }
             for (at, character) in self.source.slice(piece.clone()).char_indices() {
                 shown.push((piece.start + at, self.text.len()));
-                // A control character is escaped, which is longer than its own bytes.
+                // A control character is escaped, so its length differs from that in the source.
                 push_visible(&mut self.text, character);
             }
             shown.push((piece.end, self.text.len()));
@@ -137,7 +139,7 @@ impl<'s> Excerpt<'s> {
         if shown.last().is_some_and(|(end, _)| *end < range.end) {
             self.text.push('…');
         }
-        // A label at the end of the line needs a character to be drawn under.
+        // A label at the end of the line is drawn under this space.
         self.text.push(' ');
         self.lines.push(ExcerptLine {
             number,
@@ -154,8 +156,8 @@ impl<'s> Excerpt<'s> {
         let line = self.lines.iter().find(|line| line.number == number);
         let mut shown = line.into_iter().flat_map(|line| line.shown.iter().rev());
         let found = shown.find(|(at, _)| *at <= offset);
-        // A byte order mark is not shown, so an offset before all shown characters is the line's
-        // start.
+        // A byte order mark is not shown. An offset before all shown characters is mapped to the
+        // start of the line.
         let start = line.map_or(0, |line| line.start);
         found.map_or(start, |(_, place)| *place)
     }
@@ -181,8 +183,7 @@ impl SourceCode for Excerpt<'_> {
         ) else {
             return Err(MietteError::OutOfBounds);
         };
-        // Lines that are not consecutive are refused, so that miette draws them in frames of their
-        // own.
+        // An error for lines that are not consecutive makes miette draw them in separate frames.
         if last.number - first.number != last_index - first_index {
             return Err(MietteError::OutOfBounds);
         }
@@ -202,8 +203,8 @@ impl SourceCode for Excerpt<'_> {
     }
 }
 
-/// Returns the part of a label that is drawn: its first line if it has too many lines, and at most
-/// half of the columns if its line is long.
+/// Returns the part of a label's span that is drawn: only the first line if it has too many lines,
+/// and at most half of `columns` if its line is long.
 fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     let mut span = clamp(span, source);
     let first = source.line(span.start);
@@ -218,9 +219,9 @@ fn shorten(span: Span, source: &Source, columns: usize) -> Span {
     span
 }
 
-/// Returns the parts of a line that are shown. A line that fits is shown whole. A line that is too
-/// long, or leaves no room for a label's message, is shown for a quarter of the columns to the left
-/// and right of each label.
+/// Returns the parts of a line that are shown. A line that fits is shown whole. In a line that is
+/// too long, or that leaves no room for a label's message, a quarter of `columns` is shown on each
+/// side of each label.
 fn shown_pieces(
     source: &Source,
     line: Range<usize>,
@@ -243,8 +244,8 @@ fn shown_pieces(
         let from = source.floor_char_boundary(end.saturating_sub(around).max(line.start));
         let to = source.floor_char_boundary((end + around).min(line.end));
         match pieces.last_mut() {
-            // Parts with up to three bytes between them are joined, since an ellipsis would not be
-            // shorter.
+            // An ellipsis takes three bytes, so parts with at most three bytes between them are
+            // joined.
             Some(last) if from <= last.end + 3 => last.end = last.end.max(to),
             _ => pieces.push(from..to),
         }

@@ -1,9 +1,9 @@
-//! Fixes: edits of the text that solve a problem.
+//! Fixes, i.e. edits of the text that solve a problem.
 
 use crate::source::{SourceId, Sources, Span, sort_by_span};
 
-/// What a fix does to the author's text, and so who may apply the fix. The variants are ordered:
-/// whoever accepts one of them accepts all that precede it.
+/// Degree of certainty of a fix, which decides who may apply it. The variants are ordered: a tool
+/// that applies fixes of one variant also applies those of the variants before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Applicability {
     /// The fix keeps everything that was written, and only one meaning is plausible. It can be
@@ -12,7 +12,7 @@ pub enum Applicability {
     /// The fix chooses one of several meanings, or removes or changes something that was written.
     /// The author decides.
     Unsafe,
-    /// The fix contains an example value, which the author must replace.
+    /// The fix contains an example value that the author must replace.
     Placeholder,
 }
 
@@ -58,12 +58,12 @@ impl Fix {
         Self::sorted(title.into(), edits.into_iter().collect())
     }
 
-    /// Makes a fix of edits, which are sorted here. This function is not generic, so that it is
+    /// Makes a fix of edits after sorting them. This function is not generic, so that it is
     /// compiled only once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         sort_by_span(&mut edits, |edit| edit.span);
-        // A removal includes the blanks beside it. If two removals are neighbours, only the first
-        // includes the blanks between them, so that their spans do not overlap.
+        // A removal includes the adjacent white space. Between two removals, only the first one
+        // includes it, so that their spans do not overlap.
         for index in 1..edits.len() {
             let before = edits[index - 1].span;
             let span = &mut edits[index].span;
@@ -93,12 +93,12 @@ impl Fix {
         self.with_applicability(Applicability::Safe)
     }
 
-    /// Marks the fix as one with an example value.
+    /// Marks the fix as containing an example value.
     pub fn placeholder(self) -> Self {
         self.with_applicability(Applicability::Placeholder)
     }
 
-    /// Makes the fix unsafe if one of its edits removes a comment together with something else, or
+    /// Marks the fix as unsafe if one of its edits removes a comment together with other text, or
     /// joins two words.
     pub fn make_careful(&mut self, sources: &Sources) {
         let mut edits = self.edits.iter();
@@ -120,14 +120,14 @@ impl Fix {
         Self::new(format!("write `{text}`"), [Edit::new(span, text)])
     }
 
-    /// Makes the fix that removes the text at `span`, and blanks beside it as [`Edit::remove`]
-    /// does.
+    /// Makes the fix that removes the text at `span` as [`Edit::remove`] does, i.e. with white
+    /// space on one side.
     pub fn remove(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
         Self::new(title, [Edit::remove(span, sources)])
     }
 
     /// Makes the fix that removes a whole field or item. If nothing else stands on its lines, also
-    /// removes the comments after it, since they are about it.
+    /// removes the comments after it, which belong to it.
     pub fn remove_whole(title: impl Into<String>, span: Span, sources: &Sources) -> Self {
         let whole = with_comments(span, sources);
         let title = if whole == span {
@@ -153,8 +153,8 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
 
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Returns whether a line starts at the end of `before`, or only blanks precede the end in its
-/// line.
+/// Returns whether only blanks stand between the last line end in `before`, or its start, and its
+/// end.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
@@ -211,8 +211,8 @@ impl Edit {
         let (end, added) = match gap.rsplit_once('\n') {
             Some((_, indent)) => {
                 let last = tight.lines().next_back()?;
-                // If the block has no line of fields yet, the fields are indented by two more than
-                // the `}`.
+                // If no field stands on a line of its own, the new fields are indented by two
+                // columns more than the `}`.
                 let deeper = if last.ends_with('{') || !tight.contains('\n') {
                     format!("{indent}  ")
                 } else {
@@ -227,9 +227,9 @@ impl Edit {
         Some(Self::new(Span::new(SourceId::File, at, end), added))
     }
 
-    /// Makes the edit that removes the text at `span`: the whole line if nothing else stands on it,
-    /// and otherwise the text with the blanks on one side, so that the words on both sides stay
-    /// apart.
+    /// Makes the edit that removes the text at `span`. If nothing else stands on its line, removes
+    /// the whole line. Otherwise, also removes the white space on one side, so that the words on
+    /// both sides remain separated.
     pub fn remove(span: Span, sources: &Sources) -> Self {
         Self::remove_in(span, sources.get(span.source).text())
     }
@@ -290,7 +290,7 @@ impl Edit {
     }
 }
 
-/// Returns the text of a source with those edits of the fix applied that belong to this source.
+/// Returns `text` after those edits of the fix that belong to `source`.
 pub fn apply(fix: &Fix, source: SourceId, text: &str) -> String {
     let mut applied = String::with_capacity(text.len());
     let mut at = 0;

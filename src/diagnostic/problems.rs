@@ -1,17 +1,19 @@
-//! Collects a stage's problems, up to a maximum number.
+//! Collects the problems that one stage of reading a scene finds, up to a maximum number.
 //!
 //! A megabyte of punctuation may contain a million mistakes, and a report takes a thousand times
-//! the memory of the text it is about. Nobody reads the hundredth report.
+//! the memory of the text it refers to. Nobody reads the hundredth report.
 
 use std::ops::{Deref, DerefMut};
 
 use super::{Diagnostic, Label, Severity};
 use crate::source::Span;
 
-/// Maximum number of problems that a stage reports, and of places that one fix changes.
+/// Maximum number of problems that a stage reports, and of places that one fix changes. Further
+/// problems are omitted, and a last diagnostic says so.
 pub const MOST_PROBLEMS: usize = 10_000;
 
-/// Message of the diagnostic that replaces the omitted problems. It is not counted as a mistake.
+/// Message of the diagnostic that stands for all omitted problems. The summary does not count this
+/// diagnostic as a mistake.
 pub const LEFT_OUT: &str = "there are too many mistakes, and the others are left out";
 
 /// A stage's problems, at most [`MOST_PROBLEMS`].
@@ -23,8 +25,8 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Adds a problem. If the limit is reached, records that the problem is omitted; if one was
-    /// omitted already, does nothing.
+    /// Adds a problem. If [`MOST_PROBLEMS`] are stored, omits it and records its place. If a
+    /// problem was omitted before, does nothing.
     pub fn push(&mut self, problem: Diagnostic) {
         if self.is_full() {
             return;
@@ -36,14 +38,15 @@ impl Problems {
         }
     }
 
-    /// Adds a problem unless the limit is reached, even if a later one was omitted already.
+    /// Adds a problem that precedes others in the text: unlike [`Self::push`], also after another
+    /// problem was omitted, as long as fewer than [`MOST_PROBLEMS`] are stored.
     pub fn push_earlier(&mut self, problem: Diagnostic) {
         if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);
         }
     }
 
-    /// Records that a problem at `span` is omitted, unless an earlier one was.
+    /// Records that a problem at `span` is omitted. Only the first such call has an effect.
     pub fn leave_out(&mut self, span: Span) {
         self.left_out.get_or_insert(span);
     }
@@ -53,13 +56,14 @@ impl Problems {
         self.left_out.is_some()
     }
 
-    /// Removes the problems from index `length` on; if there were any, others can be added again.
+    /// Removes the problems from the index `length` on. If there were any, new problems can be
+    /// added, even if some were omitted before.
     pub fn truncate(&mut self, length: usize) {
         self.split_off(length);
     }
 
-    /// Removes and returns the problems from index `length` on; if there were any, others can be
-    /// added again.
+    /// Removes and returns the problems from the index `length` on. If there were any, new problems
+    /// can be added, even if some were omitted before.
     pub fn split_off(&mut self, length: usize) -> Vec<Diagnostic> {
         if length < self.kept.len() {
             self.left_out = None;
@@ -68,7 +72,7 @@ impl Problems {
     }
 }
 
-/// Returns the problems. If others were omitted, the last diagnostic says so.
+/// Converts to a list of diagnostics. If problems were omitted, the last diagnostic says so.
 impl From<Problems> for Vec<Diagnostic> {
     fn from(Problems { mut kept, left_out }: Problems) -> Self {
         kept.extend(left_out.map(|span| Diagnostic {

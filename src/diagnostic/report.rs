@@ -1,7 +1,7 @@
-//! Reports for people.
+//! Formats diagnostics for people.
 //!
-//! In: diagnostics and the texts that they point into. Out: text for a terminal, drawn by miette or
-//! as sentences. miette receives only the labelled lines, shortened to what can be shown.
+//! In: diagnostics and the texts that they refer to. Out: text for a terminal, drawn by miette or
+//! written as sentences. miette receives only the labelled lines, cut to the parts that are shown.
 
 use std::{cmp::Reverse, collections::BTreeMap, fmt::Write};
 
@@ -24,7 +24,7 @@ pub struct Style {
     pub color: bool,
     /// Width in columns to which help is wrapped.
     pub width: usize,
-    /// Width of the terminal in columns. Lines of an excerpt are cut to it, and labels and titles
+    /// Width of the terminal in columns, to which lines of an excerpt are cut and labels and titles
     /// are wrapped. If it is `None`, there is no terminal, and only very long lines are cut.
     pub excerpt: Option<usize>,
 }
@@ -34,9 +34,9 @@ pub struct Style {
 pub enum Drawing {
     /// Box-drawing characters.
     Unicode,
-    /// ASCII only, except characters of the scene itself.
+    /// ASCII characters, except for those of the scene itself.
     Ascii,
-    /// Nothing is drawn: every label is a sentence, for screen readers.
+    /// No drawing: every label is a sentence, for screen readers.
     Narrated,
 }
 
@@ -79,7 +79,7 @@ impl<'s> Report<'s> {
     /// Maximum number of reports that are shown in full. If there are more, only the first
     /// [`Self::FIRST_SHOWN`] and the count of each kind are shown; JSON has all of them.
     pub const MOST_SHOWN: usize = 100;
-    /// Number of reports that are shown if there are more than [`Self::MOST_SHOWN`].
+    /// Number of reports that are shown in full if there are more than [`Self::MOST_SHOWN`].
     pub const FIRST_SHOWN: usize = 20;
 
     /// Makes a printer for diagnostics about `sources`.
@@ -126,7 +126,7 @@ impl<'s> Report<'s> {
         text
     }
 
-    /// Returns the report of one diagnostic, drawn or narrated.
+    /// Returns the report of one diagnostic, drawn or as sentences.
     pub fn one(&self, diagnostic: &Diagnostic) -> String {
         match self.style.drawing {
             Drawing::Narrated => self.narrated(diagnostic),
@@ -233,7 +233,7 @@ impl<'s> Report<'s> {
     }
 }
 
-/// An excerpt and a help in the form that miette takes.
+/// An excerpt and a help text in the form that miette requires.
 #[derive(Debug)]
 struct Snippet<'s> {
     excerpt: Excerpt<'s>,

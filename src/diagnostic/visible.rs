@@ -1,8 +1,8 @@
-//! Makes text safe to show in a terminal.
+//! Escapes text so that it is safe to print to a terminal.
 //!
-//! In: text from a scene, a file's name, a picture or an argument. Out: the text with some
-//! characters escaped: those that could act on a terminal, change the order of what is shown, or
-//! show nothing. These are the control characters and those that Unicode calls ignorable.
+//! In: text from a scene, a file name, a picture or an argument. Out: the text, in which characters
+//! are escaped that could control a terminal, change the order of the printed text, or be
+//! invisible. These are the control characters and those that Unicode calls ignorable.
 
 use std::{borrow::Cow, fmt::Write};
 
@@ -19,9 +19,8 @@ pub fn visible(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// Returns a text for use within one line, such as a name or a message. Invisible characters, line
-/// feeds and tabs are escaped, so that the text can forge neither a second line nor a cell of a
-/// table.
+/// Returns a text for use within one line, such as a name or a message. Also escapes line feeds and
+/// tabs, so that the text cannot imitate a second line or another cell of a table.
 pub fn visible_line(text: &str) -> Cow<'_, str> {
     let breaks = |character| matches!(character, '\n' | '\t' | '\u{2028}' | '\u{2029}');
     let shown = visible(text);
@@ -59,11 +58,11 @@ pub fn push_visible(text: &mut String, character: char) {
     }
 }
 
-/// Returns whether a character must be escaped: it is a control character, has the property
-/// `Default_Ignorable_Code_Point` of the Unicode Character Database (DerivedCoreProperties), which
-/// includes the controls of bidirectional text, or marks an annotation.
+/// Returns whether a character must be escaped: a control character, a mark of an annotation, or a
+/// character with the property `Default_Ignorable_Code_Point` of the Unicode Character Database
+/// (DerivedCoreProperties), which includes the controls of bidirectional text.
 fn is_invisible(character: char) -> bool {
-    // Most characters are ASCII.
+    // This is the fast path: most characters are ASCII.
     if character.is_ascii() {
         return character.is_ascii_control() && !matches!(character, '\n' | '\t');
     }

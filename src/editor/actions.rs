@@ -1,4 +1,4 @@
-//! Changes of the text: the fixes of diagnostics, and the canonical layout.
+//! Offers changes of the text: the fixes of diagnostics, and the canonical layout.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use crate::{
     syntax::tokens::{Lexer, TokenKind},
 };
 
-/// Returns the fixes of the problems in a range, each with its problem. The place of a problem is
-/// its first label, which editors underline.
+/// Returns the fixes of the problems whose first label touches `within`, each with its problem.
+/// Editors underline the first label.
 pub fn fixes<'a>(
     analysis: &'a Analysis<'_>,
     within: Span,
@@ -32,8 +32,8 @@ pub fn fixes<'a>(
     })
 }
 
-/// Returns the ranges of made-up values, which the author is to replace, in the text of a
-/// placeholder: numbers and lists, or else the whole text.
+/// Returns the ranges of the example values in the text `written` of a placeholder fix: numbers and
+/// lists, or else the whole text. The author replaces these values.
 pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     let mut values: Vec<Range<usize>> = Vec::new();
     let (mut lexer, mut open) = (Lexer::new(written, 0), 0_usize);
@@ -63,14 +63,15 @@ pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     values
 }
 
-/// Returns all safe fixes as one change; `None` if there are none.
+/// Returns all safe fixes as one fix, or `None` if there are none.
 pub fn fix_all(analysis: &Analysis<'_>) -> Option<Fix> {
     let fixed = scene::fix_all(analysis.model.sources(), Applicability::Safe);
     let edit = change(analysis.text(), &fixed.text);
     (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed safely", edit).safe())
 }
 
-/// Returns the edits that lead to the canonical layout; `None` if the text has syntax errors.
+/// Returns the edits that change the text to its canonical layout. Returns `None` if the text has
+/// syntax errors.
 pub fn formatting(analysis: &Analysis<'_>) -> Option<Vec<Edit>> {
     let formatted = format_parsed(analysis.source(), &analysis.model.parsed)?;
     let edit = change(analysis.text(), &formatted);

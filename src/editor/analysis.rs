@@ -1,4 +1,5 @@
-//! A text with its tree, its meaning and its tokens, from which all answers are made.
+//! Analyzes a text: its tree, its meaning and its tokens. All answers to editors are derived from
+//! this analysis.
 
 use std::cell::OnceCell;
 
@@ -11,27 +12,27 @@ use crate::{
     syntax::tree::{self, Block, Definition, Field, Index, Item},
 };
 
-/// A text with its tree, its meaning and its tokens. Making one takes a few milliseconds for a
-/// thousand objects, so that nobody has to keep it.
+/// A text with its tree, its meaning and its tokens. An analysis of a scene with a thousand objects
+/// takes a few milliseconds, so it is made for each request and not kept.
 #[derive(Debug)]
 pub struct Analysis<'s> {
     /// The tree and the meaning.
     pub model: SemanticModel<'s>,
-    /// The tokens, which are read when they are needed first: neither a picture nor a list of
-    /// problems needs them.
+    /// The tokens. They are computed on first use, since neither a picture nor a list of problems
+    /// needs them.
     tokens: OnceCell<Vec<RoleToken>>,
 }
 
-/// The nodes of the tree at a place of the text, from the whole to the smallest part.
+/// Nodes of the tree that contain an offset, from the largest to the smallest.
 #[derive(Debug, Default)]
 pub(super) struct Path<'a, 's> {
-    /// The definition around the place.
+    /// The definition that contains the offset.
     pub definition: Option<&'a Definition<'s>>,
-    /// The block around the place.
+    /// The block that contains the offset.
     pub block: Option<&'a Block<'s>>,
-    /// The field of the block around the place.
+    /// The field of the block that contains the offset.
     pub field: Option<&'a Field<'s>>,
-    /// The values around the place, each a part of the one before it.
+    /// The values that contain the offset. Each is a part of the one before it.
     pub values: Vec<&'a tree::Value<'s>>,
 }
 
@@ -64,7 +65,7 @@ impl<'s> Analysis<'s> {
         self.source().slice(span.range())
     }
 
-    /// Returns the problems, as every command reports them.
+    /// Returns the problems, as the command line reports them.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.model.diagnostics
     }
@@ -94,8 +95,8 @@ impl<'s> Analysis<'s> {
         })
     }
 
-    /// Returns the word, number or sign that a place touches. If two meet there, a word is
-    /// preferred to a sign, and the one behind the place to the one before it.
+    /// Returns the word, number or sign at the offset `at`. If two of them meet there, a word is
+    /// preferred to a sign, and otherwise the later one to the earlier one.
     pub(super) fn token_at(&self, at: usize) -> Option<RoleToken> {
         let index = self.tokens().partition_point(|token| token.span.end < at);
         let touching = self.tokens().iter().skip(index);
@@ -112,12 +113,13 @@ impl<'s> Analysis<'s> {
         text.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '#' | '.'))
     }
 
-    /// Returns the nodes of the tree at a place.
+    /// Returns the nodes of the tree that contain the offset `at`.
     pub(super) fn path(&self, at: usize) -> Path<'_, 's> {
         Path::new(self.items(), at)
     }
 
-    /// Returns the block around a place and its index of a name, if it has one.
+    /// Returns the block that contains the offset `at`, and its index named `name`. Returns `None`
+    /// if it has no such index.
     pub(super) fn index_at(&self, name: &str, at: usize) -> Option<(&Block<'s>, &Index<'s>)> {
         let block = self.path(at).block?;
         let mut indices = block.repetition.iter().flat_map(|it| &it.indices);
@@ -133,7 +135,8 @@ impl<'s> Analysis<'s> {
         objects.get(..count).unwrap_or_default()
     }
 
-    /// Returns the value of a definition or a field.
+    /// Returns the value of an expression in the field or definition of `path`. Returns `None` if
+    /// it has errors.
     pub(super) fn value(&self, value: &tree::Value<'s>, path: &Path<'_, 's>) -> Option<Value> {
         let takes = path.row().and_then(|row| row.field(path.field?.name.text));
         self.model.value(value, takes.map(|field| field.takes))
@@ -146,7 +149,7 @@ impl<'s> Analysis<'s> {
 }
 
 impl<'a, 's> Path<'a, 's> {
-    /// Returns the nodes of a tree at a place.
+    /// Returns the nodes in `items` that contain the offset `at`.
     pub fn new(items: &'a [Item<'s>], at: usize) -> Self {
         let mut path = Self::default();
         let first = items.partition_point(|item| item.span().end < at);
@@ -154,12 +157,13 @@ impl<'a, 's> Path<'a, 's> {
             let span = item.span();
             if span.start <= at {
                 path = item_at(item, at);
-                // If two items meet, the one behind the place counts.
+                // If two items meet at `at`, the later one is chosen.
                 if at < span.end {
                     break;
                 }
             } else if matches!(item, Item::Block(_)) {
-                // Definitions written within a block are before it in the list of items.
+                // Definitions within a block precede it in the list of items, so only a later block
+                // ends the search.
                 break;
             }
         }
@@ -203,13 +207,14 @@ fn item_at<'a, 's>(item: &'a Item<'s>, at: usize) -> Path<'a, 's> {
     }
 }
 
-/// Returns a value and its parts around a place, from the whole to the smallest one.
+/// Returns `value` and its nested parts that contain the offset `at`, from the largest to the
+/// smallest.
 fn values_at<'a, 's>(value: &'a tree::Value<'s>, at: usize) -> Vec<&'a tree::Value<'s>> {
     let mut values = Vec::new();
     let mut next = Some(value);
     while let Some(value) = next.filter(|value| holds(value, at)) {
         values.push(value);
-        // If two parts meet, the one behind the place counts.
+        // If two parts meet at `at`, the later one is chosen.
         next = value.parts().into_iter().rev().find(|part| holds(part, at));
     }
     values

@@ -1,8 +1,8 @@
-//! The colours in a text, and the spellings of another colour in their place.
+//! Finds the colours that are written in a text, and spells another colour in their place.
 //!
-//! A colour keeps its spelling: a name stays a name if the new colour has one, a code stays a code,
-//! and `rgb(…)` stays a call. A call with expressions or comments is no swatch, because another
-//! colour would remove them.
+//! The form of the spelling is kept: a name stays a name if the new colour has one, a code stays a
+//! code, and `rgb(…)` stays a call. A call whose arguments are expressions, or that contains
+//! comments, cannot be replaced, since another colour would remove the expressions or comments.
 
 use super::{analysis::Analysis, tokens::Role};
 use crate::{
@@ -13,7 +13,7 @@ use crate::{
     syntax::tree::{self, Call, ValueKind},
 };
 
-/// A colour in the text.
+/// A colour that is written in the text and can be replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Swatch {
     /// The span of its name, its code, or the call of `rgb`.
@@ -22,7 +22,7 @@ pub struct Swatch {
     pub color: Color,
 }
 
-/// Returns the colours that are written out in the text, in order.
+/// Returns the replaceable colours of the text, in order.
 pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
     let mut swatches = Vec::new();
     for definition in analysis.model.definitions() {
@@ -33,7 +33,7 @@ pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
         for field in &block.fields {
             let known = row.and_then(|row| row.field(field.name.text));
             if known.is_some_and(|known| known.takes == Type::Method) {
-                // The word of a method is no colour, even if a colour has the same name.
+                // The name of a method is not a colour, even if a colour has the same name.
                 continue;
             }
             collect(analysis, &field.value, &mut swatches);
@@ -62,7 +62,7 @@ fn collect<'s>(analysis: &Analysis<'s>, value: &tree::Value<'s>, swatches: &mut 
     }
 }
 
-/// Whether the arguments of a call are numbers, without comments.
+/// Returns whether the arguments of a call are plain numbers without comments.
 fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
     let is_number = |kind: &ValueKind<'_>| matches!(kind, ValueKind::Number(_));
     let are_numbers = call
@@ -75,8 +75,8 @@ fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
     are_numbers && !comments.get(next).is_some_and(is_inside)
 }
 
-/// Returns the spellings of a colour in the place of another one, the spelling of the old one
-/// first. Returns none in the place of a call that is no swatch.
+/// Returns the spellings of `color` in place of the colour at `span`, those of the old form first.
+/// Returns an empty list if the text at `span` is a call that cannot be replaced.
 pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
     let own = match analysis.token_at(span.start).map(|token| token.role) {
         Some(Role::Function) => {
@@ -102,8 +102,8 @@ pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<S
     presentations
 }
 
-/// Returns the name of a colour, if it has one; if it has several, the first in the alphabet, which
-/// is American `gray`.
+/// Returns the name of a colour, if it has one. Of several names, returns the first in alphabetical
+/// order, such as the American `gray`.
 fn name(color: Color) -> Option<&'static str> {
     let bytes = color.to_bytes();
     let is_it = |name: &&str| css::color(name).is_some_and(|named| named.to_bytes() == bytes);

@@ -1,6 +1,6 @@
-//! Completions at a place of the text.
+//! Computes the completions at an offset of the text.
 //!
-//! A field or a block comes with example values, which the author types over.
+//! A field or a block is inserted with example values, which the author replaces by typing.
 
 use super::{
     analysis::Analysis,
@@ -17,23 +17,23 @@ use crate::{
 /// A completion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Completion {
-    /// The label, with which the typed word is compared.
+    /// The label. Editors compare it with the typed word.
     pub label: String,
     /// The kind.
     pub kind: CompletionKind,
-    /// A few words about it, such as its type or its value.
+    /// A short description, such as the type or the value.
     pub detail: String,
     /// A description in Markdown.
     pub help: String,
     /// The inserted text.
     pub insert: Vec<SnippetPart>,
-    /// The span that the text replaces.
+    /// The span that the inserted text replaces.
     pub replaces: Span,
-    /// The rank; completions that fit better have smaller numbers.
+    /// The rank; better completions have smaller numbers.
     pub rank: u8,
 }
 
-/// The kind of a completion.
+/// Kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CompletionKind {
     /// `let`
@@ -52,20 +52,20 @@ pub enum CompletionKind {
     Constant,
     /// A named colour.
     Color(Color),
-    /// A value written out.
+    /// A literal value.
     Value,
 }
 
-/// A part of the inserted text.
+/// Part of the inserted text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SnippetPart {
     /// Text that is inserted as it is.
     Text(String),
-    /// An example value to type over.
+    /// An example value, which the editor selects so that typing replaces it.
     Placeholder(String),
 }
 
-/// Returns the completions at a place, the best first.
+/// Returns the completions at the offset `at`, the best first.
 pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     let at = analysis.source().floor_char_boundary(at);
     let Some(situation) = situation(analysis, at) else {
@@ -80,7 +80,7 @@ pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     completions
 }
 
-/// Returns the completion of a word or a name that is inserted as it is.
+/// Returns the completion that inserts a word without placeholders.
 fn word(
     situation: &Situation,
     word: &str,
@@ -107,10 +107,12 @@ fn placeholder(value: impl Into<String>) -> SnippetPart {
     SnippetPart::Placeholder(value.into())
 }
 
-/// Returns `let`, and the blocks that the scene may still be given.
+/// Returns completions for `let`, for all objects, and for the settings that the scene does not
+/// have yet.
 fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let is_there = |row: &schema::BlockRow| {
-        // The keyword of a block behind the word that is being typed is parsed as its name.
+        // If a block follows the word that is being typed, its keyword is parsed as the name of
+        // that word's block.
         let words = analysis.blocks().flat_map(|block| [block.kind, block.name]);
         let mut words = words.flatten();
         words.any(|word| word.span != situation.word && word.text == row.name)
@@ -123,14 +125,14 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
             kind: CompletionKind::Block,
             detail: row.help.to_owned(),
             help: describe::about_block(row),
-            // If the rest of the block is there already, only the keyword is inserted.
+            // If the rest of the block follows, only the keyword is inserted.
             insert: if situation.goes_on {
                 vec![text(row.name)]
             } else {
                 block_with_fields(row)
             },
             replaces: situation.word,
-            // A scene needs a camera.
+            // The camera comes first, because a scene needs one.
             rank: u8::from(row.kind != BlockKind::Camera),
         })
         .collect();
@@ -151,7 +153,8 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     completions
 }
 
-/// Returns a block with the fields that it needs, in one line if there is at most one.
+/// Returns the text of a block with the fields that it needs. A block with at most one such field
+/// is on one line.
 fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
     let least = row.least_fields();
     let (open, between, close) = match least.len() {
@@ -159,7 +162,7 @@ fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
         _ => (" {\n  ", "\n  ", "\n}"),
     };
     let mut pieces = vec![text(format!("{}{open}", row.name))];
-    // Values are in a column, as the formatter writes them.
+    // The values are aligned in a column, as the formatter does.
     let widest = least.iter().map(|field| field.name.len()).max();
     let width = widest.unwrap_or(0);
     for (index, field) in least.iter().enumerate() {
@@ -176,7 +179,7 @@ fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
     pieces
 }
 
-/// Returns an example value to type over; the parts of a list are typed over one by one.
+/// Returns an example value as a placeholder. Each part of a list is a placeholder of its own.
 fn value_to_type_over(example: &str) -> Vec<SnippetPart> {
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
     match inner {
@@ -185,7 +188,7 @@ fn value_to_type_over(example: &str) -> Vec<SnippetPart> {
     }
 }
 
-/// Returns the parts of a list, each to type over.
+/// Returns a list that starts with `open`, with a placeholder for each part.
 fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Vec<SnippetPart> {
     let mut pieces = vec![text(open)];
     for part in parts {
@@ -198,10 +201,11 @@ fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Ve
     pieces
 }
 
-/// Returns an example for a field that fits the other fields of the block around the place.
+/// Returns an example value for a field that does not contradict the other fields of the current
+/// block.
 fn example(analysis: &Analysis<'_>, situation: &Situation, field: &FieldRow) -> String {
     let at = situation.word.start;
-    // The last block that begins before the place; it may not be closed yet.
+    // The current block is the last one that starts before the word. It may not be closed yet.
     let blocks = analysis.blocks();
     let block = blocks.take_while(|block| block.span.start <= at).last();
     example_beside(field, &|name| {
@@ -211,7 +215,7 @@ fn example(analysis: &Analysis<'_>, situation: &Situation, field: &FieldRow) -> 
     })
 }
 
-/// Returns the fields that the block may still be given.
+/// Returns completions for the fields that the current block may still be given.
 fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let Some(row) = situation.block else {
         return Vec::new();
@@ -243,7 +247,7 @@ fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     fields.collect()
 }
 
-/// Returns completions for values and parts of values.
+/// Returns completions for a value or a part of a value.
 fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     if situation.wanted == Some(Type::Method) {
         return methods(situation);
@@ -255,7 +259,7 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
     if lists.contains(&wanted) {
-        // A single colour does not fit.
+        // A single colour cannot be the value of a field for several colours.
         return completions;
     }
     completions.extend(functions(situation, is_color));
@@ -276,7 +280,7 @@ fn methods(situation: &Situation) -> Vec<Completion> {
     methods.collect()
 }
 
-/// Returns the field's example to type over, if no part of the value is typed yet.
+/// Returns a completion with the field's example value, if no part of the value is typed yet.
 fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Completion> {
     let field = situation.field.filter(|_| situation.is_whole_value)?;
     let example = example(analysis, situation, field);
@@ -294,7 +298,8 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
     })
 }
 
-/// Returns the indices of the block, and the `let`s before the place.
+/// Returns completions for the indices of the current block and for the definitions before the
+/// word.
 fn definitions(
     analysis: &Analysis<'_>,
     situation: &Situation,
@@ -388,7 +393,8 @@ fn colors(situation: &Situation) -> Vec<Completion> {
     colors.collect()
 }
 
-/// Returns the rank of a value: 1 if it has the wanted type or none is wanted, otherwise 2.
+/// Returns the rank of a value of the type `kind`: 1 if it has the wanted type or if none is
+/// wanted, otherwise 2.
 fn rank(situation: &Situation, kind: Option<Type>) -> u8 {
     u8::from(situation.wanted.is_some() && kind != situation.wanted) + 1
 }

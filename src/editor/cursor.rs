@@ -1,7 +1,7 @@
-//! What can be typed at a place of the text.
+//! Finds out what can be typed at an offset of the text.
 //!
-//! A made-up name replaces the word at the place, and the text is parsed as usual. The position of
-//! that name in the tree tells what can be typed.
+//! The word at the offset is replaced by a made-up name, and the text is parsed as usual. The
+//! position of this name in the tree determines what can be typed.
 
 use super::{
     analysis::{Analysis, Path},
@@ -16,34 +16,34 @@ use crate::{
     },
 };
 
-/// The made-up name, which no scene uses.
+/// Made-up name in place of the word at the cursor. No scene uses it.
 const CURSOR: &str = "__cursor__";
 
-/// A place of the text with its surroundings.
+/// The context of an offset in the text: what can be typed, and where.
 #[derive(Clone, Debug)]
 pub struct Situation {
-    /// The kind of text that can be typed here.
+    /// The kind of text that can be typed.
     pub expected: Expected,
-    /// The row of the block around the place, if its kind is known.
+    /// The schema's row of the current block, if its kind is known.
     pub block: Option<&'static schema::BlockRow>,
-    /// The fields that the block is given, except the word at the place.
+    /// Names of the fields that the current block has, except the word at the offset.
     pub given: Vec<&'static str>,
     /// The field whose value is typed.
     pub field: Option<&'static schema::FieldRow>,
-    /// The wanted type, if it is known.
+    /// The type that the typed value should have, if it is known.
     pub wanted: Option<Type>,
-    /// The name whose definition is typed; it cannot use itself.
+    /// Span of the name whose definition is being typed. Its value cannot use the name.
     pub defining: Option<Span>,
-    /// Whether a whole value is typed, and no part of it is here yet.
+    /// Whether the value of a field or definition is typed and none of it is there yet.
     pub is_whole_value: bool,
-    /// Whether the rest follows the word already: the braces of a block, the value of a field, or
-    /// the arguments of a function.
+    /// Whether the text that belongs after the word is there already: the braces of a block, the
+    /// value of a field, or the arguments of a function.
     pub goes_on: bool,
     /// The word that is being typed; empty if there is none.
     pub word: Span,
 }
 
-/// The kind of text that can be typed at a place.
+/// Kind of text that can be typed at an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// `let`, or a block.
@@ -54,7 +54,8 @@ pub enum Expected {
     Value,
 }
 
-/// Returns what can be typed at a place; `None` within comments, numbers and new names.
+/// Returns what can be typed at the offset `at`. Returns `None` in comments, numbers and names that
+/// are being defined.
 pub fn situation(analysis: &Analysis<'_>, at: usize) -> Option<Situation> {
     let ends = |token: &RoleToken| token.span.end == at && !is_part(analysis, token);
     let word = touched(analysis, at, |token| token.span.start < at && !ends(token))?;
@@ -63,8 +64,8 @@ pub fn situation(analysis: &Analysis<'_>, at: usize) -> Option<Situation> {
     is_word.then(|| with_cursor(analysis, word, ask)).flatten()
 }
 
-/// Returns the span of the function's name of the innermost call around a place, and the index of
-/// the argument at the place.
+/// Finds the innermost call around the offset `at`. Returns the span of the function's name, and
+/// the index of the argument at the offset.
 pub fn call(analysis: &Analysis<'_>, at: usize) -> Option<(Span, usize)> {
     let word = touched(analysis, at, |token| is_part(analysis, token))?;
     with_cursor(analysis, word, |path| {
@@ -81,7 +82,7 @@ pub fn call(analysis: &Analysis<'_>, at: usize) -> Option<(Span, usize)> {
     })
 }
 
-/// Whether a token is a word, a number or the code of a colour.
+/// Returns whether a token is a word, a number or a colour code.
 fn is_part(analysis: &Analysis<'_>, token: &RoleToken) -> bool {
     matches!(token.role, Role::Number | Role::ColorCode)
         || analysis.slice(token.span).starts_with(is_letter)
@@ -91,8 +92,8 @@ fn is_letter(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 
-/// Returns the span of a token of certain kinds that a place touches, or else the place itself;
-/// `None` within comments.
+/// Returns the span of a token that touches the offset `at` and satisfies `is_meant`, or else the
+/// empty span at `at`. Returns `None` in a comment.
 fn touched(
     analysis: &Analysis<'_>,
     at: usize,
@@ -101,8 +102,7 @@ fn touched(
     let comments = analysis.comments();
     let next = comments.partition_point(|comment| comment.end < at);
     let is_in_comment = comments.get(next).is_some_and(|comment| {
-        // A place behind `*/` is outside of the comment, but a place at the end of a line comment
-        // is inside.
+        // The offset after `*/` is outside of the comment, but the end of a line comment is inside.
         let is_closed = comment.end == at && analysis.slice(*comment).ends_with("*/");
         comment.start < at && !is_closed
     });
@@ -116,8 +116,8 @@ fn touched(
     (!is_in_comment).then(|| token.map_or(file(at, at), |token| token.span))
 }
 
-/// Puts the made-up name in the place of a word, and returns the answer of a function to its path
-/// in the tree.
+/// Replaces `word` by the made-up name [`CURSOR`] and parses the text. Returns the result of `ask`
+/// for the path to this name in the tree.
 fn with_cursor<T>(
     analysis: &Analysis<'_>,
     word: Span,
@@ -128,7 +128,8 @@ fn with_cursor<T>(
         analysis.text().get(word.end..)?,
     );
     let apart = if word.range().is_empty() { " " } else { "" };
-    // The tree keeps nothing of a list that is not closed, so it is closed behind the place.
+    // The tree does not contain an unclosed list. If the name is in such a list, the text is parsed
+    // again with closing parentheses after the name.
     let mut closing = String::new();
     loop {
         let text = format!("{before}{CURSOR}{closing}{apart}{after}");
@@ -146,7 +147,7 @@ fn with_cursor<T>(
     }
 }
 
-/// Returns the number of lists that are open at a place.
+/// Returns the number of parentheses that are open at the offset `at`.
 fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
     let before = analysis.tokens().iter();
     let before = before.take_while(|token| token.span.end <= at);
@@ -158,7 +159,8 @@ fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
     })
 }
 
-/// Returns the situation at a path of the tree.
+/// Returns what can be typed in place of `word`, given the path to the made-up name in the tree.
+/// Returns `None` in the name of a definition or in the head of a block.
 fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     let row = path
         .block
@@ -185,7 +187,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = matches!(last.kind, ValueKind::Call(_));
     } else if let Some(field) = path.field {
         situation.expected = Expected::Field;
-        // The next field is parsed as the value of this one.
+        // If the value is missing, the next field's name is parsed as the value of this field.
         let next = match &field.value.kind {
             ValueKind::Name(name) => Some(*name),
             ValueKind::Call(call) => Some(call.function.text),
@@ -197,7 +199,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = !is_empty && next.is_none();
     } else if let Some(block) = path.block {
         situation.expected = expected_in(block, word.start)?;
-        // A block behind the place is parsed as the name of this one.
+        // If another block follows, its keyword is parsed as the name of this block.
         let is_own =
             |block: &Block<'_>| block.name.is_none_or(|it| schema::block(it.text).is_none());
         situation.goes_on = block.open.is_some() && is_own(block);
@@ -208,7 +210,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     Some(situation)
 }
 
-/// Whether a place is in a value, and not in the name of a field or definition.
+/// Returns whether the made-up name is in a value rather than the name of a field or a definition.
 fn holds_value(path: &Path<'_, '_>) -> bool {
     path.field.is_none_or(|field| field.name.text != CURSOR)
         && path
@@ -221,7 +223,9 @@ fn is_cursor(value: &tree::Value<'_>) -> bool {
     matches!(value.kind, ValueKind::Name(CURSOR))
 }
 
-/// Returns what can be typed in a block outside of its fields; `None` in its head.
+/// Returns what can be typed in a block at the offset `at` outside of its fields: another kind of
+/// block in place of its keyword, or a field within its braces. Returns `None` in the rest of its
+/// head.
 fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     if block.kind.is_some_and(|kind| kind.text == CURSOR) {
         return Some(Expected::Item);
@@ -230,7 +234,8 @@ fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     is_inside.then_some(Expected::Field)
 }
 
-/// Returns the wanted type in the innermost list or call.
+/// Returns the type that the innermost part of a value should have. `takes` is the type of the
+/// whole value.
 fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
     let mut wanted = takes;
     for (outer, inner) in path.values.iter().zip(path.values.iter().skip(1)) {
@@ -242,8 +247,8 @@ fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
             }
             ValueKind::Tuple(_) | ValueKind::Parentheses(_) => match wanted {
                 Some(Type::Colors | Type::FaceColors) => Some(Type::Color),
-                // These are parentheses around a part of an expression, or those of a vector. Both
-                // mostly contain numbers.
+                // These parentheses enclose a vector or a part of an expression. In most cases,
+                // they contain numbers.
                 Some(Type::Vector) => Some(Type::Number),
                 wanted => wanted,
             },

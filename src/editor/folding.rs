@@ -1,23 +1,23 @@
-//! Finds the lines that can be folded: blocks, and runs of comments.
+//! Finds lines that editors can fold: blocks, and comments on consecutive lines.
 
 use super::analysis::Analysis;
 use crate::source::{Span, sort_by_span};
 
-/// Lines that can be folded to the first one.
+/// Lines that can be folded to their first line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fold {
-    /// The span from the text of the first line to the end of the last one.
+    /// Span from the first character of the first line's text to the end of the last line.
     pub span: Span,
     /// The kind of the lines.
     pub kind: FoldKind,
 }
 
-/// A kind of lines that can be folded.
+/// Kind of lines that can be folded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldKind {
     /// A block.
     Block,
-    /// A comment, or several without other text between them.
+    /// One or more comments without other text between them.
     Comment,
 }
 
@@ -39,8 +39,8 @@ pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
     folds
 }
 
-/// Returns runs of comments on consecutive lines of their own, and each comment behind code by
-/// itself.
+/// Returns the spans of comments. Comments on consecutive lines of their own are joined; a comment
+/// after code is separate.
 fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
     let mut runs: Vec<Span> = Vec::new();
     let mut behind_code = Vec::new();
@@ -50,7 +50,7 @@ fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
         let before = source.slice(start..comment.start);
         let is_alone = before.trim_start_matches('\u{feff}').trim().is_empty();
         if !is_alone {
-            // A comment behind code is about that line, so it belongs to no run.
+            // A comment after code belongs to its line, so it is not joined with others.
             behind_code.push(*comment);
             continue;
         }
@@ -65,7 +65,7 @@ fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
     runs
 }
 
-/// Whether there is only one line end between two comments.
+/// Returns whether the text between two comments is a single line end, perhaps with blanks.
 fn is_next_line(between: &str) -> bool {
     between.trim().is_empty() && between.matches('\n').count() == 1
 }

@@ -1,4 +1,5 @@
-//! Remarks on values, which editors show in grey at the ends of lines.
+//! Computes hints about values, such as the result of an expression. Editors show them in grey at
+//! the ends of lines.
 
 use std::ops::Range;
 
@@ -13,32 +14,33 @@ use crate::{
     syntax::tree::{self, Block, Field, ValueKind},
 };
 
-/// A remark at the end of a line.
+/// A hint at the end of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hint {
-    /// The byte offset of the line's end.
+    /// Byte offset of the line's end.
     pub at: usize,
-    /// The remark.
+    /// The text of the hint.
     pub text: String,
 }
 
-/// The remarks on a value.
+/// Hints about one value.
 struct Remark<'s> {
-    /// The end of the value.
+    /// Byte offset of the value's end.
     end: usize,
-    /// The name of the field or definition that has the value.
+    /// Name of the value's field or definition.
     name: &'s str,
-    /// The result of an expression.
+    /// Result of the value, if it is an expression.
     result: Option<Value>,
-    /// A fact that follows from the value together with others.
+    /// A fact that follows from this value and others, such as the field of view.
     beside: Option<String>,
 }
 
-/// Returns the remarks on values that end within a range of bytes, in order: the result of an
-/// expression, the field of view that belongs to a distance, the total number of samples.
+/// Returns the hints about values that end in the byte range `within`, in order: the result of an
+/// expression, the field of view that corresponds to a distance, the total number of samples.
 ///
-/// They are at the ends of lines, because within a line they would push the formatter's columns
-/// apart. A result that is not directly behind its expression has the name of its field.
+/// Hints stand at the ends of lines, because within a line they would shift the formatter's
+/// columns. A result that does not directly follow its expression is preceded by the name of its
+/// field.
 pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
     let mut remarks: Vec<Remark<'_>> = Vec::new();
     let touches =
@@ -86,17 +88,17 @@ pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
     hints
 }
 
-/// Returns the result of a field's expression.
+/// Returns the result of a field's value if it is an expression rather than a literal.
 fn computed<'s>(analysis: &Analysis<'s>, block: &Block<'s>, field: &Field<'s>) -> Option<Value> {
     let row = schema::block(block.kind?.text)?.field(field.name.text)?;
-    // The word of a method is no name, even if a `let` has the same name.
+    // The name of a method is not a reference, even if a `let` has the same name.
     if row.takes == Type::Method || !is_computed(&field.value) {
         return None;
     }
     analysis.model.value(&field.value, Some(row.takes))
 }
 
-/// Whether a value is no literal.
+/// Returns whether a value is an expression rather than a literal.
 fn is_computed(value: &tree::Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Name(name) => css::color(name).is_none(),
@@ -108,7 +110,8 @@ fn is_computed(value: &tree::Value<'_>) -> bool {
     }
 }
 
-/// Returns what follows from a field of the camera or the sampler together with others.
+/// Returns a fact that follows from a field of the camera or the sampler together with other
+/// fields. Returns `None` if the field has a reported problem.
 fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Option<String> {
     let parts = &analysis.model.parts;
     let image = parts.image?;
@@ -141,7 +144,8 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
     }
 }
 
-/// Whether a field or its block conflicts with another one, which is reported.
+/// Returns whether a diagnostic labels the field's name or the block's keyword, as it does for
+/// conflicting fields.
 fn is_disputed(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
     let diagnostics = analysis.diagnostics().iter();
     let mut labels = diagnostics.flat_map(|diagnostic| &diagnostic.labels);

@@ -1,4 +1,4 @@
-//! The meaning of the word at a place.
+//! Describes the word at an offset of the text.
 
 use super::{
     analysis::{Analysis, Path},
@@ -20,7 +20,7 @@ use crate::{
     tracer::vertices,
 };
 
-/// The meaning of a word or a value.
+/// Description of a word or a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hover {
     /// The span of the word or value.
@@ -29,8 +29,8 @@ pub struct Hover {
     pub markdown: String,
 }
 
-/// Returns the meaning of the word at a place. If there is a problem, its message comes first, and
-/// the page that explains it last.
+/// Returns the description of the word at the offset `at`. If there is a problem, its message comes
+/// first, and the page that explains the problem comes last.
 pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let meaning = meaning(analysis, at);
     let Some((span, problem)) = mistake(analysis, at) else {
@@ -53,7 +53,7 @@ pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     Some(Hover { span, markdown })
 }
 
-/// Returns the first problem whose first label contains a place.
+/// Returns the first problem whose first label contains the offset `at`, and that label's span.
 fn mistake<'a>(analysis: &'a Analysis<'_>, at: usize) -> Option<(Span, &'a Diagnostic)> {
     analysis.diagnostics().iter().find_map(|diagnostic| {
         let span = diagnostic.labels.first()?.span;
@@ -92,14 +92,14 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     }
 }
 
-/// Describes a colour in all its spellings.
+/// Describes a colour in all its notations.
 pub(super) fn about_color(color: Color) -> String {
     let [r, g, b] = color.srgb.map(short);
     let [red, green, blue] = color.to_linear().map(short);
     format!("`{color}`, `rgb({r}, {g}, {b})`; in linear light ({red}, {green}, {blue})")
 }
 
-/// Describes a `let`: its line and its value.
+/// Describes a definition: its line and its value.
 pub(super) fn about_definition<'s>(analysis: &Analysis<'s>, definition: &Definition<'s>) -> String {
     let name = definition.name.map_or("", |name| name.text);
     let written = shorten(analysis.slice(definition.value.span));
@@ -132,7 +132,7 @@ fn described(value: Value) -> String {
     }
 }
 
-/// Describes a kind of block; for the camera also its axes and its field of view.
+/// Describes a kind of block. For the camera, also describes its axes and its field of view.
 fn kind(analysis: &Analysis<'_>, row: &BlockRow) -> String {
     let about = about_block(row);
     let facts = match row.kind {
@@ -145,7 +145,7 @@ fn kind(analysis: &Analysis<'_>, row: &BlockRow) -> String {
     }
 }
 
-/// Describes the camera's axes, field of view and vanishing points, as `inspect` does.
+/// Describes the camera's axes, field of view and vanishing points, as `pinhole inspect` does.
 fn camera(analysis: &Analysis<'_>) -> Option<String> {
     let parts = &analysis.model.parts;
     let (camera, points) = inspect::inspect_camera(parts.camera.as_ref()?, parts.image.as_ref()?);
@@ -153,7 +153,7 @@ fn camera(analysis: &Analysis<'_>) -> Option<String> {
     Some(format!("```text\n{summary}```"))
 }
 
-/// Describes an object, as `inspect` does.
+/// Describes the object whose name is at the path, as `pinhole inspect` does.
 fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     let block = path.block?;
     let (kind, name) = (block.kind?.text, block.name?.text);
@@ -183,8 +183,8 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
     )
 }
 
-/// Returns the depth of the value around a place that is described: the smallest one, or for a
-/// number, a list or a sign the operation or call that it belongs to.
+/// Returns the index in `path.values` of the value to describe: the innermost one, except that a
+/// number, a list or a sign stands for the operation or call that it belongs to.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;
@@ -197,7 +197,7 @@ fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     Some(computed.filter(|_| is_part).unwrap_or(around.len()))
 }
 
-/// Describes the result of a value.
+/// Describes the value at the path and its result.
 fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> Option<Hover> {
     let depth = depth_of_meaning(path)?;
     let value = *path.values.get(depth)?;
@@ -229,7 +229,7 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> 
             about(call.function.span, markdown)
         }
         ValueKind::Number(_) => {
-            // A number is described by its field; a coordinate of a vector has no description.
+            // A number gets its field's description. A coordinate of a vector gets none.
             let (row, field) = (path.row()?, path.field_row()?);
             if depth > 0 {
                 return None;
@@ -252,7 +252,7 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> 
     }
 }
 
-/// Whether a value is a literal or a list of literals.
+/// Returns whether a value is a literal or a list of literals.
 fn is_literal(value: &tree::Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Number(_) | ValueKind::Angle { .. } | ValueKind::ColorCode(_) => true,

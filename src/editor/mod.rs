@@ -1,10 +1,10 @@
-//! Answers for editors while somebody writes a scene.
+//! Answers the requests of editors while an author writes a scene.
 //!
-//! In: a text, and a place in it. Out: completions, the meaning of a word, the uses of a name, and
-//! so on, as plain data with byte spans; a file for each answer. They know no editor and no
-//! protocol: the language server converts them, and so could a page in a browser. All of them use
-//! the language's table and the tree and the scene of `analysis`, which are as complete as the
-//! errors of the text allow.
+//! In: a text, and an offset in it. Out: completions, the meaning of a word, the uses of a name and
+//! so on, as plain data with byte spans. Each kind of answer has a file. The files do not depend on
+//! an editor or a protocol: the language server converts the answers, and a page in a browser could
+//! do so, too. All of them use the schema, and the tree and the scene of `analysis`, which are as
+//! complete as the errors of the text allow.
 
 mod actions;
 mod analysis;

@@ -1,6 +1,6 @@
-//! Definitions, uses and renaming of the names that a text defines.
+//! Finds definitions and uses of names, and renames them.
 //!
-//! `let`s and objects have separate namespaces, so that one of each may have the same name. An
+//! `let`s and objects have separate namespaces, so a `let` and an object may have the same name. An
 //! index is known only in its block.
 
 use super::{
@@ -17,7 +17,7 @@ use crate::{
 pub struct Occurrence {
     /// The span of the name.
     pub span: Span,
-    /// Whether it is the definition.
+    /// Whether the name is defined here rather than used.
     pub is_definition: bool,
 }
 
@@ -28,15 +28,15 @@ enum Namespace {
     Objects,
 }
 
-/// Returns the definition of the name at a place.
+/// Returns the span of the name at the offset `at` in its definition.
 pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     let mut occurrences = occurrences(analysis, at).into_iter();
     let first = occurrences.find(|occurrence| occurrence.is_definition);
     first.map(|occurrence| occurrence.span)
 }
 
-/// Returns the definition and all uses of the name at a place, in order; none if the text does not
-/// define the name.
+/// Returns the definition and all uses of the name at the offset `at`, in order. Returns an empty
+/// list if the text does not define the name.
 pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
     let Some((name, space)) = name_at(analysis, at) else {
         return Vec::new();
@@ -59,11 +59,11 @@ pub fn occurrences(analysis: &Analysis<'_>, at: usize) -> Vec<Occurrence> {
     if is_defined { occurrences } else { Vec::new() }
 }
 
-/// Returns the span of the name at a place, if it can be renamed.
+/// Returns the span of the name at the offset `at`.
 ///
 /// # Errors
 ///
-/// Why it cannot be renamed, in a sentence.
+/// Returns a sentence that says why the name cannot be renamed.
 pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
     let Some(token) = analysis.token_at(at) else {
         return Err("no name stands here".to_owned());
@@ -84,11 +84,11 @@ pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
     })
 }
 
-/// Returns the spans to replace by a new name for the name at a place.
+/// Returns the spans to replace by `new`, the new name for the name at the offset `at`.
 ///
 /// # Errors
 ///
-/// Why the name cannot be given, in a sentence.
+/// Returns a sentence that says why the name cannot be renamed to `new`.
 pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>, String> {
     renamable(analysis, at)?;
     let occurrences = occurrences(analysis, at);
@@ -115,7 +115,8 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
         }
         _ => {}
     }
-    // Indices of different blocks may have the same name.
+    // Indices of different blocks may have the same name, so an index `new` of another block is no
+    // conflict.
     let block = |name: &str, at| analysis.index_at(name, at).map(|(block, _)| block.span);
     let own = block(analysis.slice(name.span), name.span.start);
     let is_elsewhere = |token: &RoleToken| {
@@ -127,7 +128,8 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
             && analysis.slice(token.span) == new
             && !is_elsewhere(token)
     };
-    // A use of the new name without a definition would mean the renamed one, so it counts as taken.
+    // An undefined use of the new name would then refer to the renamed definition, so it counts as
+    // taken.
     let taken = analysis.tokens().iter().find(is_taken);
     match taken.filter(|_| analysis.slice(name.span) != new) {
         Some(taken) => Err(format!(

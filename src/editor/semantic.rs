@@ -1,4 +1,4 @@
-//! Classifies words for colouring.
+//! Classifies the words of a text, so that editors can colour them.
 
 use super::{
     analysis::Analysis,
@@ -33,9 +33,9 @@ pub enum SemanticKind {
     Class,
     /// The name of a function.
     Function,
-    /// A word of the language that is a value: a method, a named colour, a constant.
+    /// A predefined word that is a value: a method, a named colour, a constant.
     EnumMember,
-    /// A number with its unit, or a colour's code.
+    /// A number with its unit, or a colour code.
     Number,
     /// An operator or `=`.
     Operator,
@@ -44,7 +44,8 @@ pub enum SemanticKind {
 }
 
 impl SemanticKind {
-    /// All kinds; the index of each is its number in a legend.
+    /// All kinds, in the order of the token legend of the language server protocol, which numbers
+    /// them by index.
     pub const ALL: [Self; 9] = [
         Self::Keyword,
         Self::Property,
@@ -58,7 +59,7 @@ impl SemanticKind {
     ];
 }
 
-/// Returns the tokens of the text in order.
+/// Returns the classified tokens of the text, in order.
 pub fn semantic_tokens(analysis: &Analysis<'_>) -> Vec<SemanticToken> {
     let words = analysis.tokens().iter();
     let words = words.filter_map(|token| classified(analysis, token));

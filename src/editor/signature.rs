@@ -1,4 +1,4 @@
-//! The signature of the function whose arguments are being written.
+//! Finds the signature of the function whose arguments are being typed.
 
 use super::{analysis::Analysis, cursor};
 use crate::{scene::describe, schema, source::Span};
@@ -13,13 +13,13 @@ pub struct Signature {
     pub help: &'static str,
     /// The byte ranges of the parameters in the label.
     pub parameters: Vec<Range<usize>>,
-    /// The index of the parameter that is being written.
+    /// Index of the parameter that is being typed.
     pub active: usize,
     /// The span of the function's name in the text.
     pub span: Span,
 }
 
-/// Returns the signature of the innermost call around a place.
+/// Returns the signature of the innermost call around the offset `at`.
 pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
     let at = analysis.source().floor_char_boundary(at);
     let (span, index) = cursor::call(analysis, at)?;

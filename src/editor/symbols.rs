@@ -1,4 +1,4 @@
-//! The outline of a text: its definitions and blocks, with their fields.
+//! Builds the outline of a text: its definitions and blocks, with their fields.
 
 use super::analysis::Analysis;
 use crate::{
@@ -19,9 +19,9 @@ pub struct Symbol {
     pub detail: String,
     /// The kind.
     pub kind: SymbolKind,
-    /// The whole span.
+    /// Span of the whole definition, block or field.
     pub span: Span,
-    /// The span of its name or keyword, within the whole span.
+    /// Span of the name or keyword, which editors select. It lies within `span`.
     pub selection: Span,
     /// The fields of a block.
     pub children: Vec<Symbol>,
@@ -78,7 +78,7 @@ fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
         selection: field.name.span,
         children: Vec::new(),
     });
-    // A name before its keyword, as in `let Ball = sphere {`, is outside of the block.
+    // A wrong name before the keyword, as in `let Ball = sphere {`, is outside of the block's span.
     let name = block
         .name
         .filter(|name| name.span.start >= block.span.start);

@@ -1,7 +1,7 @@
-//! The words and signs of a text with their roles.
+//! Splits a text into words and signs, and assigns their roles.
 //!
 //! In: a text and its tree. Out: the lexer's tokens in order. The tree determines the role of a
-//! word; a word that is not in the tree has none.
+//! word; a word that is not in the tree has the role [`Role::Other`].
 
 use crate::{
     scene::SemanticModel,
@@ -29,7 +29,7 @@ pub enum Role {
     Let,
     /// `for`
     Repeat,
-    /// The name of a `let` or an index, in its definition.
+    /// A name that is defined: the name of a `let` or an index in its definition.
     Defined,
     /// The keyword of a block.
     Kind,
@@ -39,9 +39,9 @@ pub enum Role {
     Field,
     /// A name that is used as a value: of a `let`, an index, a colour, or a constant.
     Name,
-    /// The name of a function before its `(`.
+    /// A function's name before its `(`.
     Function,
-    /// The word of a sampling method.
+    /// The name of a sampling method.
     Method,
     /// A number, with its unit.
     Number,
@@ -49,16 +49,16 @@ pub enum Role {
     ColorCode,
     /// `+ - * / = <`
     Operator,
-    /// Any other: a brace, a comma, or a word that is not in the tree.
+    /// Any other text: a brace, a comma, or a word that is not in the tree.
     Other,
 }
 
-/// Returns a span of the file.
+/// Returns the span of the bytes from `start` to before `end` in the file.
 pub fn file(start: usize, end: usize) -> Span {
     Span::new(SourceId::File, start, end)
 }
 
-/// Returns the tokens of a text. None of them reaches into a comment.
+/// Returns the tokens of a text, comments left out.
 pub fn tokens(model: &SemanticModel<'_>) -> Vec<RoleToken> {
     let text = model.sources().file.text();
     let mut roles = Roles(scanned(text, &model.parsed.comments));
@@ -78,14 +78,14 @@ pub fn tokens(model: &SemanticModel<'_>) -> Vec<RoleToken> {
     roles.0
 }
 
-/// Returns the tokens with the roles that do not depend on the tree.
+/// Returns the tokens outside of `comments`, with those roles that do not depend on the tree.
 fn scanned(text: &str, comments: &[Span]) -> Vec<RoleToken> {
     let mut tokens = Vec::with_capacity(text.len() / 4);
     let mut comments = comments.iter().peekable();
     let mut lexer = Lexer::new(text, 0);
     loop {
         let token = lexer.token();
-        // Text that error recovery took for a comment need not begin as one.
+        // A comment that error recovery found, such as `# …`, may start with any token.
         if let Some(comment) = comments.next_if(|comment| comment.start <= token.start)
             && comment.end > token.start
         {
@@ -108,7 +108,7 @@ fn scanned(text: &str, comments: &[Span]) -> Vec<RoleToken> {
     }
 }
 
-/// Tokens whose roles are set by the tree.
+/// Tokens whose roles are set from the tree.
 struct Roles(Vec<RoleToken>);
 
 impl Roles {

@@ -1,9 +1,9 @@
-//! The arrangement of lines in a sub-pixel whose boundaries are all straight.
+//! Divides a sub-pixel into convex cells if its boundaries are all straight lines.
 //!
-//! In: the lines that pass through a sub-pixel, limited in number by `mod`. Out: the convex cells
-//! of the sub-pixel, which are added to [`Regions`], each with a point inside. Each line cuts the
-//! cells of the lines before it. The bound counts the error of each line times its length, and the
-//! area of all cells that are too small to determine their colour.
+//! In: the lines that pass through the sub-pixel. Out: the cells, each with a point inside, added
+//! to [`Regions`]. The sub-pixel starts as one cell; each line in turn cuts the cells that it
+//! crosses. The error bound counts the position error of each line times the line's length, and the
+//! whole area of each cell that is too small to determine its colour.
 
 use std::mem;
 
@@ -16,23 +16,27 @@ use super::{
     region::{Region, Regions, Shares},
 };
 
-/// Area, in square pixels, below which the colour of a cell is not certain, because the point whose
-/// colour is determined might lie outside the cell. Smaller cells are not cut either: slivers that
-/// exist only by rounding would double in number with each line. A polygon of 2⁻⁴⁶ square pixels
-/// has sides about 10⁹ roundings long.
+/// Minimum area of a cell, in square pixels. A smaller cell adds its whole area to the error bound,
+/// because rounding may put the point whose colour is determined outside the cell. Nor do lines cut
+/// it, because slivers that exist only by rounding would double in number with each line. A square
+/// of this area has sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
 const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Maximum area of a polygon that a line does not cut, divided by n·|h|, where h is the mean of the
-/// line's form over the n vertices. The values at the vertices have the same sign, so that each is
-/// at most n·|h|. Each vertex is therefore at most 2n·|h| from the line, because the larger factor
-/// of the form is at least 1/2. The polygon is at most √2 long.
+/// Constant k of the bound area ≤ k·n·|h| for a cell of n vertices, where the area is in square
+/// pixels and h is the value of a line's form at the cell's centre. A larger cell certainly has its
+/// centre on the correct side of a line whose error is |h|.
+///
+/// Derivation: the line does not cut the cell, so the form has the same sign at all vertices, and
+/// is at most n·|h| there. Each vertex is at most 2n·|h| from the line, because the larger factor
+/// of the form is at least 1/2. The cell is at most √2 long, and 2·√2 < 3.
 const MAX_AREA_PER_HEIGHT: f64 = 3.0;
 
-/// Maximum value of a line's form at a vertex that roundings can put on the wrong side of the line.
-/// The form has four roundings of terms that are at most 2, and its larger factor is about 1.
+/// Upper bound on the rounding error of a line's form a·x + b·y + c at a vertex; below it, the sign
+/// of the form is uncertain. The form has four roundings of terms that are at most 2, because its
+/// larger factor is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
-/// Returns the shares of the colours in a sub-pixel that lines cut.
+/// Returns the share of each colour in the sub-pixel of `regions`, which `lines` cut into cells.
 pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
     let mut polygons = vec![PIXEL.to_vec()];
     let mut worst = 0.0_f64;
@@ -40,8 +44,8 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
         let rad = line.rad + ROUNDING;
         worst = worst.max(rad);
         // The true line is within 2·`rad` of the computed one, because the larger factor is at
-        // least 1/2; the line is at most √2 long in the pixel. The rounding of vertices on both
-        // sides of it is included.
+        // least 1/2. The line is at most √2 long in the pixel, and 2·√2 < 3. `rad` includes the
+        // rounding errors of vertices on both sides of the line.
         regions.add_doubtful_area(3.0 * rad);
         for polygon in mem::take(&mut polygons) {
             if regions.budget.is_spent() {
@@ -60,8 +64,8 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
         }
         let area = area(polygon);
         let inside = center(polygon);
-        // If the point is close to a line, it may lie on the wrong side, and so may the whole
-        // polygon.
+        // If the point is close to a line, the point and with it the whole cell may be on the wrong
+        // side.
         let may_be_thin = || area <= MAX_AREA_PER_HEIGHT * polygon.len() as f64 * worst;
         let is_near_line = || {
             lines
@@ -83,8 +87,8 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
     regions.finish()
 }
 
-/// Cuts a convex polygon along a line. Returns both parts, or the polygon itself if it lies on one
-/// side.
+/// Cuts a convex polygon along a line. Returns the two parts, or only the polygon itself if it lies
+/// on one side of the line.
 fn cut(polygon: Vec<DVec2>, line: &BoundaryLine) -> Vec<Vec<DVec2>> {
     let heights = || polygon.iter().map(|p| height(line, p));
     if heights().all(|h| h >= 0.0) || heights().all(|h| h <= 0.0) {

@@ -1,9 +1,9 @@
 //! The boundaries of what is seen in a sub-pixel.
 //!
-//! In: a sub-pixel and its candidates. Out: the lines and conics that may pass through it:
-//! silhouettes, intersections of surfaces, and intersections with the near and far planes. They are
-//! computed in double-double, and again in the highest precision if double-double leaves too large
-//! an error.
+//! In: a sub-pixel and its candidates, the objects that may be seen in it. Out: the lines and
+//! conics that may separate colours in it: silhouettes, intersections of surfaces, and
+//! intersections with the near and far planes. They are computed in double-double, and again in the
+//! highest precision if the double-double error is too large.
 
 use std::{cell::OnceCell, ops::ControlFlow};
 
@@ -17,21 +17,23 @@ use crate::{
 
 use super::budget::PixelBudget;
 
-/// Doubtful area of a conic, in square pixels, from which on double-double is not accurate enough.
-/// It equals eight roundings of a mean in `f64`.
+/// Minimum doubtful area of a conic, in square pixels, at which the conic is computed again in the
+/// highest precision. The doubtful area is the area that the conic's error may put on the wrong
+/// side. The value is eight unit roundoffs, about the rounding error of a pixel's mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Work per pair of objects whose depths are compared, in units of about 50 ns.
+/// Work charged per pair of objects whose depths are compared, in units of about 50 ns.
 const PAIR_WORK: f64 = 1.0 / 16.0;
-/// Work per object or pair whose curves are computed, in units of about 50 ns.
+/// Work charged per object or pair of objects whose curves are computed, in units of about 50 ns.
 const CURVES_WORK: f64 = 8.0;
-/// Work to prepare a triangle or a box that the cache does not keep, in units of about 50 ns.
+/// Work charged to prepare a triangle or cuboid, in units of about 50 ns. It is charged only if the
+/// candidates outnumber the cache's slots, because the cache then cannot keep all prepared objects.
 const PREPARATION_WORK: f64 = 140.0;
-/// Additional work per object and per pair of surfaces in the highest precision, in units of about
-/// 50 ns.
+/// Additional work charged per object, and per pair of surfaces, whose curves are computed in the
+/// highest precision, in units of about 50 ns.
 const BIG_CURVE_WORK: f64 = 1500.0;
 
-/// Source of boundaries: an object or a pair of objects, as indices into the candidates.
+/// Source of boundary curves: an object or a pair of objects, as indices into the candidates.
 #[derive(Clone, Copy, Debug)]
 enum BoundarySource {
     /// The silhouette of an object.
@@ -52,7 +54,7 @@ struct Boundaries<'a, T: Precision> {
     budget: &'a PixelBudget<'a>,
 }
 
-/// Returns those of the candidates that may be seen in a sub-pixel, in file order.
+/// Returns the candidates in `among` that may be seen in the sub-pixel, in file order.
 pub fn visible(
     world: &World,
     sub_pixel: SubPixel,
@@ -65,9 +67,9 @@ pub fn visible(
     visible
 }
 
-/// Collects in `out` the curves in a sub-pixel that may bound what is seen of the candidates.
-/// Returns whether they are all there. The search ends early if there are more than `max_curves`
-/// after equal ones are merged, or if the budget is spent.
+/// Replaces the content of `out` by the curves that may separate colours in the sub-pixel, where
+/// only `candidates` may be seen. Returns `true` if `out` has all of them. Returns `false` as soon
+/// as more than `max_curves` unequal curves are found or the budget is spent.
 pub fn curves(
     world: &World,
     sub_pixel: SubPixel,
@@ -78,9 +80,9 @@ pub fn curves(
 ) -> bool {
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
-    // For imprecise sources, double-double leaves too large an error in a curve. For incomplete
-    // sources, some pair of surfaces has no intersection in double-double, and only the highest
-    // precision decides whether there is one.
+    // Some curve of each `imprecise` source has too large an error in double-double. Some pair of
+    // surfaces of each `incomplete` source has no intersection in double-double, and only the
+    // highest precision decides whether there is one.
     let (mut imprecise, mut incomplete) = (Vec::new(), Vec::new());
     let mut incomplete_curves = Vec::new();
     let mut room = max_curves;
@@ -99,14 +101,15 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // If this holds, too many curves are left although equal ones have been merged.
+        // `room` exceeds `2 * max_curves` only if more than `max_curves` curves are left after
+        // merging equal curves.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }
         ControlFlow::Continue(())
     };
-    // Silhouettes come first: in a heap they alone exceed the maximum long before all pairs have
-    // been examined.
+    // Silhouettes come first: the silhouettes of a heap of objects alone exceed `max_curves`, long
+    // before all pairs have been examined.
     let outlines = boundaries.outlines(&mut take);
     if outlines.is_break() || boundaries.pairs(&mut take).is_break() {
         return false;
@@ -126,8 +129,8 @@ pub fn curves(
     out.len() <= max_curves
 }
 
-/// Merges curves with equal forms, such as those of objects that share planes or edges. Each merged
-/// curve keeps the largest error of its group.
+/// Merges curves with equal forms, such as those of objects that share planes or edges. A merged
+/// curve gets the largest error of the curves that it replaces.
 fn merge_equal_curves(curves: &mut Vec<Boundary>) {
     curves.sort_by_cached_key(Boundary::key);
     curves.dedup_by(|again, curve| {
@@ -159,7 +162,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
     }
 
     /// Calls `take` for the silhouette and the clip-plane intersections of each candidate that does
-    /// not cover the whole sub-pixel, until it breaks.
+    /// not cover the whole sub-pixel. Stops as soon as `take` breaks.
     fn outlines(&self, mut take: impl FnMut(BoundarySource) -> ControlFlow<()>) -> ControlFlow<()> {
         for (i, candidate) in self.candidates.iter().enumerate() {
             if !candidate.is_whole {
@@ -170,8 +173,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         ControlFlow::Continue(())
     }
 
-    /// Calls `take` for each pair of objects that may intersect, until it breaks or the budget is
-    /// spent.
+    /// Calls `take` for each pair of objects that may intersect. Stops as soon as `take` breaks or
+    /// the budget is spent.
     fn pairs(&self, mut take: impl FnMut(BoundarySource) -> ControlFlow<()>) -> ControlFlow<()> {
         let geometry = &self.world.geometry;
         let is_board = |candidate: &VisibilityCandidate| {
@@ -189,7 +192,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
-                // Boards are parallel, and both have the horizon as their silhouette.
+                // All boards are parallel, and their common silhouette is the horizon.
                 let are_parallel = is_board(a) && is_board(b);
                 if !apart && !are_parallel {
                     take(BoundarySource::Pair(i, j))?;
@@ -199,8 +202,9 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         ControlFlow::Continue(())
     }
 
-    /// Appends the curves of a source that may pass through the sub-pixel to `out`. Returns whether
-    /// all its pairs of surfaces have an intersection, as all unequal surfaces do.
+    /// Appends to `out` the curves of `source` that may pass through the sub-pixel. Returns `false`
+    /// if some pair of its surfaces has no intersection curve in this precision. These surfaces are
+    /// equal planes or concentric spheres, or cannot be distinguished from such.
     fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
             if curve.may_cross_pixel() {
@@ -244,7 +248,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         self.objects[at].get_or_init(|| {
             self.charge_big_curve();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
-            // The cache keeps only some of the objects.
+            // With more candidates than slots, the cache cannot keep all prepared objects.
             if self.candidates.len() > CACHE_SLOTS && matches!(*object, Object::Convex(_)) {
                 self.budget.charge(PREPARATION_WORK);
             }
@@ -273,8 +277,8 @@ impl Boundary {
         }
     }
 
-    /// Returns whether the curve's error is so small that a higher precision would gain next to
-    /// nothing.
+    /// Returns whether the curve's error is so small that a higher precision would hardly improve
+    /// the pixel's bound.
     fn is_tight(&self) -> bool {
         match self {
             Self::Line(line) => line.rad < LOOSE_LINE,
@@ -282,7 +286,8 @@ impl Boundary {
         }
     }
 
-    /// Returns the factors of the curve's form, normalised so that equal curves have equal keys.
+    /// Returns the coefficients of the curve's form as bits, normalised so that equal curves have
+    /// equal keys.
     fn key(&self) -> [u64; 12] {
         let mut factors = [0.0; 12];
         match self {
@@ -293,7 +298,7 @@ impl Boundary {
                 }
             }
         }
-        // A form and its negative are the same curve, and −0 is 0.
+        // A form and its negative describe the same curve, and adding 0 turns −0 into 0.
         let leading = factors.iter().find(|factor| **factor != 0.0);
         let sign = 1_f64.copysign(leading.copied().unwrap_or(1.0));
         factors.map(|factor| (factor * sign + 0.0).to_bits())

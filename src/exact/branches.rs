@@ -1,9 +1,9 @@
-//! Curves as x-monotone branches: over a range of x, a line is the graph of one function y(x), and
-//! a conic consists of the graphs of two.
+//! Curves as functions y(x): over a range of x, a line is the graph of one function, and a conic
+//! consists of the graphs of two, its branches.
 //!
-//! In: lines and conics of a sub-pixel. Out: each branch over a range of x, as a chord and an arc
-//! with the branch's end tangents, with an error bound. If the roundings of `f64` leave too large
-//! an error in an arc, its ends and tangents are computed in double-double.
+//! In: lines and conics of a sub-pixel. Out: for each branch over a range of x, a [`Section`], that
+//! is a chord or an arc with the branch's end tangents, with an error bound. If the rounding errors
+//! of `f64` are too large for an arc, its ends and tangents are computed in double-double.
 
 use glam::DVec2;
 
@@ -14,16 +14,18 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// Maximum error of an arc's area, divided by its width, for which `f64` is accurate enough; above
-/// it, double-double is used. The total is 4e-15 for a pixel, far below the usual tolerance.
+/// Maximum error of an arc's area, divided by the arc's width, for a result in `f64`; above it, the
+/// arc is computed in double-double. All arcs of a curve across the pixel then contribute at most
+/// 4e-15 square pixels, far below the default tolerance of 9e-10.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
-/// Absolute slope dy/dx above which a line counts as vertical. Across the pixel, x then changes by
-/// less than eight roundings.
+/// Maximum |dy/dx| of a line that is treated as a function y(x); above it, the line counts as
+/// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Margin by which a branch must lie above or below the pixel to be left out, as a fraction of its
-/// largest |y| (or of 1 if that is greater). Rounding errors of y are millions of times smaller.
+/// Distance in y from the pixel beyond which a branch, bulge included, is ignored, divided by the
+/// branch's largest |y| or by 1, whichever is greater. Rounding errors of y are millions of times
+/// smaller.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).
@@ -38,26 +40,26 @@ pub enum Track<'a> {
         /// Value of y at x = 0.
         start: f64,
     },
-    /// One of the two functions of a conic.
+    /// One of the two functions of a conic: its upper or lower branch.
     Branch {
         /// The conic.
         graph: &'a ConicGraph,
-        /// Sign of the root: 1 or −1.
+        /// Sign of the root √Δ: 1 or −1.
         side: f64,
     },
 }
 
 /// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions of x:
 ///
-/// y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − C·g, g = Ax² + 2Dx + F.
+/// y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − C·g, g = Ax² + 2Dx + F
 #[derive(Clone, Copy, Debug)]
 pub struct ConicGraph {
     factors: [Double; 6],
-    /// Polynomial Δ in x: the coefficients of x², 2x and 1.
+    /// Coefficients of x², 2x and 1 in the polynomial Δ.
     delta: [Double; 3],
 }
 
-/// Two functions of a conic over a range of x.
+/// The two functions of a conic over a range of x.
 #[derive(Debug)]
 pub struct ConicSpan<'a> {
     graph: &'a ConicGraph,
@@ -67,13 +69,13 @@ pub struct ConicSpan<'a> {
     roots: [f64; 3],
 }
 
-/// A part of a track over a range of x. The track lies between its chord there and two of its
+/// Approximation of a [`Track`] over a range of x: its chord, or an arc with the same ends and end
 /// tangents.
 #[derive(Clone, Copy, Debug)]
 pub struct Section {
-    /// Values of y at the left end, in the middle and at the right end.
+    /// Values of y at the left end, in the middle and at the right end of the range.
     pub y: [f64; 3],
-    /// The arc, with 1 if it bulges upwards (to greater y) or −1 if downwards; `None` if the
+    /// The arc, and the side to which it bulges: 1 for greater y, −1 for smaller y. `None` if the
     /// section is straight.
     pub arc: Option<(f64, Arc)>,
     /// Maximum distance in y between the track and this section.
@@ -114,8 +116,8 @@ impl ConicGraph {
         delta.hi.max(0.0).sqrt()
     }
 
-    /// Returns the two functions from `left` to `right`, or `None` if the conic has no point in the
-    /// middle between them.
+    /// Returns the two functions over the range of x from `left` to `right`, or `None` if the conic
+    /// has no point at the middle x.
     pub fn span(&self, left: f64, right: f64) -> Option<ConicSpan<'_>> {
         let x = [left, 0.5 * (left + right), right];
         let middle = self.root(x[1]);
@@ -126,13 +128,13 @@ impl ConicGraph {
         })
     }
 
-    /// Computes the function `side` at `x`, where `root` is √Δ.
+    /// Computes y at `x` of the function with the sign `side` (1 or −1), where `root` is √Δ at `x`.
     fn y(&self, x: f64, root: f64, side: f64) -> f64 {
         let [a, b, c, d, e, f] = &self.factors;
         let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
-        // Of the two forms of the solution, this uses the one without cancellation.
+        // Of the two equal formulas (−b ± √Δ)/C and g/(−b ∓ √Δ), use the one without cancellation.
         if minus * side >= 0.0 {
             (minus + root) / c.hi
         } else {
@@ -142,8 +144,8 @@ impl ConicGraph {
         }
     }
 
-    /// Computes in double-double the point at `x` of the function `side`, and the signed root √Δ
-    /// there.
+    /// Computes in double-double the point at `x` of the function with the sign `side`, and √Δ
+    /// times `side` there.
     fn end_in_double(&self, x: f64, side: f64) -> ArcEnd<Double> {
         let [a, b, c, d, e, f] = &self.factors;
         let [p, q, r] = &self.delta;
@@ -173,16 +175,17 @@ impl ConicGraph {
 }
 
 impl<'a> ConicSpan<'a> {
-    /// Returns the function `side` as a track with its section. Returns `None` if the function is
-    /// not finite or lies outside the pixel. The section is `None` if the branch turns too much to
-    /// be represented by one arc.
+    /// Returns the function with the sign `side` as a track, with its section over the range.
+    /// Returns `None` if the function is not finite or lies outside the pixel. The section is
+    /// `None` if the branch turns too much to be represented by one arc; the caller then halves the
+    /// range.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
         if !y[1].is_finite() {
             return None;
         }
-        // A function that bends in one direction is nowhere farther from its chord than twice the
+        // If the curvature has one sign, the distance from the chord is nowhere more than twice the
         // distance in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
@@ -202,8 +205,8 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // Here the branch is too flat to distinguish its tangents. Each y has six operations,
-            // and the mean of two y has two.
+            // A branch without an arc may be too flat to distinguish its tangents; its section is
+            // then straight. Each y has six operations, and the mean of two y has two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -215,9 +218,9 @@ impl<'a> ConicSpan<'a> {
         Some((Track::Branch { graph, side }, section))
     }
 
-    /// Returns the arc of the function `side` between two points, and the maximum error of the area
-    /// between the arc and its chord. Returns `None` if the tangents do not meet between the
-    /// points, or if the arc turns by more than 120°.
+    /// Returns the arc with the ends `ends` and the end tangents of the function with the sign
+    /// `side`, and an error bound of the area between arc and chord. Returns `None` if the tangents
+    /// do not intersect between the ends, or if the arc turns by more than 120°.
     fn arc(&self, ends: [DVec2; 2], side: f64) -> Option<(Arc, f64)> {
         let Self { graph, roots, .. } = self;
         let [start, end] = ends;
@@ -228,6 +231,7 @@ impl<'a> ConicSpan<'a> {
         });
         let mut tangents = Tangents::new(&factors, &rounded);
         // If the conic is almost a line, its gradient in `f64` is hardly more than rounding error.
+        // The tangents are then computed again in double-double.
         let is_good = tangents.off <= ARC_TOLERANCE * (end.x - start.x);
         if !is_good {
             let ends = ends.map(|at| graph.end_in_double(at.x, side));
@@ -240,23 +244,24 @@ impl<'a> ConicSpan<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // Arcs that turn by more than 120° are cut. For a circle, the weight is the cosine of half
-        // the turn.
+        // An arc that turns by more than 120° is rejected, so that the caller halves it. For a
+        // circle, the weight is the cosine of half the turn.
         const MIN_WEIGHT: f64 = 0.5;
         let turns_little = arc.weight > MIN_WEIGHT && arc.weight < 1.0 / MIN_WEIGHT;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
     }
 }
 
-/// A point of a conic, with the signed root √Δ there, which is half of ∂/∂y of the conic's form.
+/// A point of a conic, with √Δ there. √Δ has the sign of the branch, and is half of the derivative
+/// of the conic's form with respect to y.
 struct ArcEnd<T> {
     at: [T; 2],
     root: T,
 }
 
-/// The intersection of the tangents at two points of a conic, the control point.
+/// The control point of an arc of a conic: the intersection of the tangents at its two ends.
 struct Tangents {
-    /// Position of the intersection relative to the first point.
+    /// Position of the control point relative to the arc's start.
     control: DVec2,
     /// Square of the arc's weight.
     w2: f64,
@@ -265,20 +270,21 @@ struct Tangents {
 }
 
 impl Tangents {
-    /// Intersects the tangents at the points `ends` of the conic with the coefficients `factors`,
-    /// and bounds the error.
+    /// Intersects the tangents of the conic with the coefficients `factors` at the points `ends`,
+    /// and bounds the error of the area between arc and chord.
     ///
-    /// The gradient is off by a few roundings of its terms, which are κ times as many roundings of
-    /// its length. The directions of both tangents are off by the same number, in radians. An angle
-    /// error at the base of a triangle changes the triangle's area by half the square of the
-    /// adjacent leg times the error. An error of the control point along its tangent changes the
-    /// triangle and the weight in opposite directions, and by no more than that.
+    /// The computed gradient has an error of a few roundings of its terms. This is κ roundings of
+    /// the gradient's length, where κ − 1 is the size of the terms divided by the length. The
+    /// direction of each tangent has the same error in radians. In the triangle of chord and
+    /// tangents, an angle error at the chord changes the area by half the square of the adjacent
+    /// leg times the error. If the control point moves along its tangent, triangle and weight
+    /// change in opposite directions, and the total change is no greater.
     ///
-    /// The weight's square is the quotient of two values of the conic's quadratic part Q, and the
-    /// area between arc and chord grows no faster than the weight. A value of Q is off by roundings
-    /// of its own terms and by the error of its vector argument. That error consists of roundings
-    /// of coordinates and of the direction's error. An error of the root corresponds to another
-    /// conic within the error of this one; it moves points and tangents together.
+    /// The square of the weight is the quotient of two values of the conic's quadratic part Q. The
+    /// area between arc and chord grows no faster than the weight. A value of Q has rounding errors
+    /// of its own terms, and the error of its argument, which is a vector: rounding errors of the
+    /// coordinates and of the direction. An error of √Δ needs no term: it corresponds to another
+    /// conic within the error of the given one, which moves points and tangents together.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
@@ -293,8 +299,8 @@ impl Tangents {
             1.0 + terms / length(&gradients[i])
         });
         let kappa = kappa[0].max(kappa[1]);
-        // Returns Q at the vector `v`, and the relative error in roundings, where `v` itself is off
-        // by `off` roundings.
+        // Returns the conic's quadratic part Q at the vector `v`, and its relative error in
+        // roundings. `v` has an error of `off` roundings.
         let quadratic = |v: &[T; 2], off: f64| {
             let half = [
                 product(&[a.clone(), b.clone()], v),
@@ -331,15 +337,15 @@ impl Tangents {
 }
 
 impl Track<'_> {
-    /// Returns the track of a line, or `None` if it is vertical or so steep that it counts as
-    /// vertical.
+    /// Returns the track of a line, or `None` if the line is vertical or steeper than
+    /// [`MAX_SLOPE`].
     pub fn of_line(line: &BoundaryLine) -> Option<Self> {
         let [a, b, c] = line.factors;
         let (slope, start) = (-a / b, -c / b);
         (slope.abs() <= MAX_SLOPE && start.is_finite()).then_some(Self::Line { slope, start })
     }
 
-    /// Computes y at `x`, where the track must be defined.
+    /// Computes y at `x`. A branch must have a point there.
     pub fn y(&self, x: f64) -> f64 {
         match self {
             Self::Level(y) => *y,
@@ -348,14 +354,15 @@ impl Track<'_> {
         }
     }
 
-    /// Returns the track from `left` to `right` as a straight section.
+    /// Returns the straight section of the track from x = `left` to x = `right`.
     pub fn straight(&self, left: f64, right: f64) -> Section {
         Section::straight([left, 0.5 * (left + right), right].map(|x| self.y(x)))
     }
 }
 
 impl Section {
-    /// Returns a straight section from its y at the left end, in the middle, and at the right end.
+    /// Returns a straight section with the given y at the left end, in the middle, and at the right
+    /// end.
     pub fn straight(y: [f64; 3]) -> Self {
         Self {
             y,
@@ -364,10 +371,10 @@ impl Section {
         }
     }
 
-    /// Bounds the section at `x` from above if `up` is 1, or from below if `up` is −1. The bound is
-    /// valid if `x` is the left end, the right end, or the x of a control point. It consists of the
-    /// two tangents on the side to which the arc bulges, and of the chord on the other; the error
-    /// is added.
+    /// Returns an upper bound of the section's y at `x` if `up` is 1, and a lower bound if `up` is
+    /// −1. On the side to which the arc bulges, the bound follows the two tangents; on the other
+    /// side, it follows the chord. The section's error is included. `x` must be `left`, `right`, or
+    /// the x of a control point.
     fn hull(&self, up: f64, x: f64, left: f64, right: f64) -> f64 {
         let chord = |a: DVec2, b: DVec2| {
             if b.x > a.x {
@@ -390,8 +397,8 @@ impl Section {
         at + up * self.error
     }
 
-    /// Returns the maximum of this section's y minus that of `other`, or more, over the range of x
-    /// from `left` to `right`. The result is negative if this section is certainly below.
+    /// Returns an upper bound of this section's y minus that of `other` over the range of x from
+    /// `left` to `right`. If it is negative, this section is certainly below `other`.
     pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
         let controls = [self, other].map(|section| section.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
@@ -406,18 +413,20 @@ impl Section {
         hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// Bounds how far this section rises above `other` over the same range of x, and how far the
-    /// two are apart in y. Returns `None` unless both are arcs that bulge to the same side. If the
-    /// arcs are nearly parallel, the bounds are tight, however close the arcs are. Points with the
-    /// same parameter are compared, and heights are measured from the direction of this section's
-    /// chord.
+    /// Returns two bounds for arcs over the same range of x: how far this section rises above
+    /// `other`, and how far the two are apart in y. Returns `None` unless both are arcs that bulge
+    /// to the same side. If the arcs are nearly parallel, the bounds are tight, even if the arcs
+    /// nearly coincide.
     ///
-    /// If the weights are equal, a point of each arc is the same weighted mean of that arc's three
-    /// control points. An error in x counts with the slope of the steepest tangent. A different
-    /// weight moves a point by at most the point's distance from the control point, times the
-    /// difference. The control point of a narrow arc is uncertain along the arc, where little
-    /// depends on it. The error of a point is less than eight times the area's error divided by the
-    /// width, plus the rounding of x; that rounding moves no more area than itself times the arc's
+    /// Derivation: compare points with the same curve parameter, with heights measured from the
+    /// direction of this section's chord. If the weights are equal, a point of each arc is the same
+    /// weighted mean of that arc's three control points. A difference in x counts times the slope
+    /// of the steepest tangent. A difference in weight moves a point by at most this difference
+    /// times the point's distance from the control point.
+    ///
+    /// The control point of a narrow arc is uncertain along the arc, where the area hardly depends
+    /// on it. The error of a point is less than eight times the area's error divided by the width,
+    /// plus the rounding error of x, which changes the area by at most itself times the arc's
     /// height.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
@@ -435,8 +444,8 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
-        // There are about twenty operations on the coordinates of both arcs, and the coordinates
-        // have errors. The error term counts on both sides, for three points and the chord.
+        // The coordinates of both arcs have errors and take about twenty operations. The error
+        // counts on both sides, for three points and the chord.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest
             + (aside + rounding) * steepest
@@ -448,15 +457,15 @@ impl Section {
         Some([rise + off, apart + off])
     }
 
-    /// Integrates y over x from `left` to `right`, the ends of the section.
+    /// Returns the integral of y over x. `left` and `right` must be the ends of the section.
     pub fn integral(&self, left: f64, right: f64) -> f64 {
         let chord = 0.5 * (right - left) * (self.y[0] + self.y[2]);
         chord + self.arc.map_or(0.0, |(bulge, arc)| bulge * arc.area())
     }
 
-    /// Bounds the distance in y between two sections over the same range of x. Returns infinity
-    /// unless both are straight or both are arcs that bulge to the same side; the bound is tight if
-    /// the curves are nearly equal.
+    /// Returns an upper bound of the distance in y between two sections over the same range of x.
+    /// Returns infinity unless both are straight or both are arcs that bulge to the same side. The
+    /// bound is tight if the curves are nearly equal.
     pub fn distance(&self, other: &Self) -> f64 {
         let ends = (self.y[0] - other.y[0])
             .abs()

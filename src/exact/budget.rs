@@ -1,20 +1,21 @@
 //! Limits on the work on a pixel and on a picture, and the requested accuracy.
 //!
-//! In: the work of the next step, in units of about 50 ns. Out: whether to do the step. If a step
-//! is not done, its result is the mean of what may be seen, with the whole area as the bound. Every
-//! pixel therefore ends in any view. Work is counted, not timed, so that the same scene gives the
-//! same picture.
+//! In: the work of the next step, in units of about 50 ns. Out: whether to do the step. A region
+//! whose step is not done gets the mean of the colours that may be seen in it, with its whole area
+//! as the error bound, so that every pixel of any scene is finished. Work is counted instead of
+//! timed, so that the same scene gives the same picture.
 
 use std::{
     cell::Cell,
     sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
 };
 
-/// Maximum work on a pixel, in units: about 0.6 seconds. A unit is the time to cut one square of a
-/// board out of a polygon, about 50 ns on the machine where it was measured.
+/// Maximum work on a pixel, in units of about 50 ns, which amounts to about 0.6 seconds. Beyond it,
+/// the rest of the pixel counts as an error. A unit is the time to cut one square of a checkerboard
+/// out of a polygon on the machine where it was measured.
 const PIXEL_WORK: f64 = 1.2e7;
 
-/// Work spent on the pixels of a picture, by all threads, with its limit.
+/// Work of all threads on the pixels of a picture, and its limit.
 #[derive(Debug)]
 pub(super) struct PictureWork {
     spent: AtomicU64,
@@ -22,18 +23,18 @@ pub(super) struct PictureWork {
 }
 
 impl PictureWork {
-    /// Starts counting the work on a picture. `limit` is in units.
+    /// Starts counting the work on a picture. `limit` is in units of about 50 ns.
     pub fn new(limit: u64) -> Self {
         let spent = AtomicU64::new(0);
         Self { spent, limit }
     }
 
-    /// Adds the work of a pixel, in units.
+    /// Adds the work on a pixel, in units of about 50 ns.
     pub fn add(&self, work: u64) {
         self.spent.fetch_add(work, Relaxed);
     }
 
-    /// Returns the work spent so far, in units.
+    /// Returns the work spent so far, in units of about 50 ns.
     pub fn spent(&self) -> u64 {
         self.spent.load(Relaxed)
     }
@@ -44,19 +45,19 @@ impl PictureWork {
     }
 }
 
-/// Work that may still be spent on a pixel, and the flag that cancels its picture.
+/// Work that may still be spent on a pixel, with the flag that cancels its picture.
 #[derive(Debug)]
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
-    /// Requested error bound, as a fraction of the pixel's area. Truncation errors are limited to
-    /// fractions of it.
+    /// Requested error bound, as a fraction of the pixel's area. Integrators may truncate infinite
+    /// sums at fractions of it.
     pub tolerance: f64,
     /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,
 }
 
 impl<'a> PixelBudget<'a> {
-    /// Creates the budget of a pixel with the full work.
+    /// Creates the budget of a pixel on which no work is spent yet.
     pub fn new(tolerance: f64, cancel: &'a AtomicBool) -> Self {
         Self {
             left: Cell::new(PIXEL_WORK),
@@ -65,7 +66,7 @@ impl<'a> PixelBudget<'a> {
         }
     }
 
-    /// Returns the work spent on the pixel so far, in units.
+    /// Returns the work spent on the pixel so far, in units of about 50 ns.
     pub fn spent(&self) -> f64 {
         PIXEL_WORK - self.left.get()
     }
@@ -81,8 +82,8 @@ impl<'a> PixelBudget<'a> {
         self.left.get() <= 0.0 || self.is_cancelled()
     }
 
-    /// Charges `work` if the budget affords it, and returns whether it does. It never affords
-    /// infinity or NaN, nor anything once the picture is cancelled.
+    /// Charges `work` if the budget affords it. Returns whether it does. The budget affords neither
+    /// infinity nor NaN, and nothing at all once the picture is cancelled.
     pub fn try_charge(&self, work: f64) -> bool {
         let is_affordable = self.affords(work);
         if is_affordable {
@@ -96,7 +97,7 @@ impl<'a> PixelBudget<'a> {
         work <= self.left.get() && !self.is_cancelled()
     }
 
-    /// Charges work that is done in any case, even beyond the limit.
+    /// Charges `work` without a check, even if it exceeds the limit.
     pub fn charge(&self, work: f64) {
         self.left.set(self.left.get() - work);
     }

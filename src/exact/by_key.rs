@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-/// A number and a value; the number alone determines the order.
+/// A value with a number, its key; only the key determines the order.
 pub(super) struct ByKey<T>(pub f64, pub T);
 
 impl<T> Ord for ByKey<T> {

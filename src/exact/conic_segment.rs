@@ -2,10 +2,11 @@
 //! checkerboard's sign over it.
 //!
 //! In: an arc as a rational quadratic Bézier curve. Out: the segment's area in closed form, and the
-//! integral of the board's sign over the segment. For the integral, the arc is cut at each crossing
-//! with a line of the board. The segment of each piece then lies in one square, and the chords
-//! bound a convex polygon. Segments that are small enough are neglected, which limits their number
-//! towards the horizon. The bound counts their area and the displacements by rounding.
+//! integral of the board's sign over the segment. For the integral, the arc is cut wherever it
+//! crosses a line of the board. The segment of each piece then lies in one square, and the chords
+//! of the pieces bound a convex polygon. Segments below a minimum area are neglected, which limits
+//! their number towards the horizon. The error bound counts neglected areas and the rounding errors
+//! of positions.
 
 use glam::DVec2;
 
@@ -14,16 +15,18 @@ use super::{
     checker::{BoundedSum, Homography, UNIT, form, square_wave},
 };
 
-/// Maximum of |1 − w²|, where w is the arc's weight, for which the area is computed by a series.
-/// The first term after its 34 is at most 0.36³⁴ = 8e-16.
+/// Maximum of |1 − w²| for which an arc of weight w has its area computed by a series; above it, by
+/// a closed formula. The first of the terms that the series omits is at most 0.36³⁴ = 8e-16.
 const NEAR_PARABOLA: f64 = 0.36;
 
-/// Maximum number of lines of a board at which an arc is cut; with more, the arc is halved first.
-/// Measured: with 48, boards of small squares behind spheres take up to half as long again.
+/// Maximum number of board lines at which an arc is cut; if more cross it, the arc is halved first.
+/// Measured: with 48, boards of small squares behind spheres take up to 50 % longer.
 const MAX_LINES: f64 = 12.0;
-/// Maximum of the total area of both halves' segments, as a fraction of the segment of the whole
-/// arc; above it, the arc is not halved. The exact fraction is a quarter for a parabola, at most
-/// 0.37 for an ellipse (half of one), and less for a hyperbola. The constant is twice the largest.
+/// Maximum total area of the segments of an arc's halves, as a fraction of the whole arc's segment.
+/// Above it, numbers are too large or too small to represent the arc: it is not halved, and its
+/// segment is added to the error bound. Exactly, the fraction is 1/4 for a parabola, at most 0.37
+/// for an ellipse (half of one), and less for a hyperbola. The constant is twice the largest of
+/// these.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.
@@ -77,7 +80,7 @@ impl Arc {
     }
 
     /// Evaluates the curve's polar form (blossom) at the parameters `s` and `t`. Returns the point
-    /// in homogeneous coordinates: times its weight, and the weight.
+    /// in homogeneous coordinates: the point times its weight, and the weight.
     fn blossom(&self, s: f64, t: f64) -> (DVec2, f64) {
         let (first, last) = ((1.0 - s) * (1.0 - t), s * t);
         let middle = self.weight * (s * (1.0 - t) + t * (1.0 - s));
@@ -102,7 +105,7 @@ fn triangle_share(w: f64) -> f64 {
     (w / s) * (w / s - libm::log(w + s) / s / s)
 }
 
-/// Evaluates the series, with z = sin²θ,
+/// Evaluates the series in z = sin²θ
 ///
 /// (θ − sin θ·cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k,
 ///
@@ -120,7 +123,7 @@ fn series(z: f64) -> f64 {
         }
         all
     };
-    // Because |z| < 2^−`bits`, the terms after these add up to less than a rounding.
+    // Because |z| < 2^−`bits`, the terms after the first `terms` add up to less than a rounding.
     let bits = (-1 - libm::ilogb(z)).max(1);
     let terms = (f64::MANTISSA_DIGITS as usize / bits as usize + 1).min(TERMS);
     let terms = COEFFICIENTS[..terms].iter().rev();
@@ -132,10 +135,10 @@ impl Homography {
     /// square pixels.
     ///
     /// The arc is cut where it crosses a line of the board, so that the segment of each piece lies
-    /// in one square. What remains is a convex polygon. Pieces with negligible segments are
-    /// replaced by their chords. If a segment of area A is cut into n pieces, each of their
-    /// segments has the area A/n³, and all together have A/n². This total equals the tolerance t if
-    /// each has t^(3/2)/√A.
+    /// in one square. The chords of the pieces enclose the rest of the region, a convex polygon. A
+    /// piece whose segment is negligible is replaced by its chord. If a segment of area A is cut
+    /// into n pieces, each piece has a segment of A/n³, and all pieces together have A/n². This
+    /// total equals the tolerance t if each piece has t^(3/2)/√A.
     pub(super) fn over_segment(&self, arc: &Arc, budget: &PixelBudget) -> BoundedSum {
         let area = arc.area();
         if let Some(sign) = self.square_of(arc) {
@@ -151,8 +154,8 @@ impl Homography {
         chords.sum.or_unknown(area)
     }
 
-    /// Cuts an arc whose segment has the area `area`. Adds the integrals over the segments of its
-    /// pieces and the ends of the pieces to `chords`.
+    /// Cuts an arc whose segment has the area `area`. Adds the integrals over the pieces' segments
+    /// to `chords.sum`, and the pieces' ends to `chords.points`.
     fn cut(&self, arc: &Arc, area: f64, chords: &mut Chords) {
         if let Some(sign) = self.square_of(arc) {
             chords.sum.add(over_one_square(area, sign));
@@ -172,7 +175,8 @@ impl Homography {
         }
         let halves = [arc.between(0.0, 0.5), arc.between(0.5, 1.0)];
         let areas = halves.map(|half| half.area());
-        // The comparison fails if numbers are too large or too small to represent the arc.
+        // The comparison fails if numbers are too large or too small to represent the arc, which is
+        // then not halved.
         let is_halved = areas[0] + areas[1] < MAX_HALVES_SHARE * area;
         if !is_halved {
             chords.sum.bound += if area.is_nan() { 1.0 } else { area };
@@ -209,7 +213,7 @@ impl Homography {
                     .across
                     .map(|across| square_wave(form(&across, middle) * depth));
                 let mut segment = over_one_square(piece.area(), a * b);
-                // The lines of the board are displaced by roundings.
+                // Rounding errors displace the lines of the board.
                 segment.bound += self.displacement_error(&[piece.start, piece.control, piece.end]);
                 chords.sum.add(segment);
                 chords.points.push(piece.end);
@@ -218,8 +222,8 @@ impl Homography {
         }
     }
 
-    /// Returns the sign of the square that contains the arc's triangle, or `None` if no single
-    /// square certainly does.
+    /// Returns the sign of the square that certainly contains the triangle of the arc's start,
+    /// control point and end. Returns `None` if a line of the board may cross the triangle.
     fn square_of(&self, arc: &Arc) -> Option<f64> {
         let mut sign = 1.0;
         for i in 0..2 {
@@ -233,8 +237,8 @@ impl Homography {
     }
 
     /// Returns the numbers of the first and last line of a family (0: a = i, 1: b = i) that may
-    /// cross an arc. The first is greater than the last if none does. Returns `None` if the arc's
-    /// triangle may reach the horizon.
+    /// cross an arc. The first exceeds the last if no line crosses the arc. Returns `None` if the
+    /// arc's triangle may reach the horizon.
     fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in [arc.start, arc.control, arc.end] {
@@ -254,13 +258,14 @@ impl Homography {
 fn over_one_square(area: f64, sign: f64) -> BoundedSum {
     BoundedSum {
         value: sign * area,
-        // The area of a triangle has five operations. The ratio has up to ten. At the ends of the
-        // series' range, a difference in the ratio is only a quarter of its terms.
+        // The area of a triangle has five operations, and the ratio of segment to triangle up to
+        // ten. Where the series gives way to the closed formula, the formula's difference is only a
+        // quarter of its terms.
         bound: 48.0 * UNIT * area,
     }
 }
 
-/// The points where an arc is cut, and the sum over the segments between them.
+/// The ends of an arc's pieces, and the sum of the integrals over the pieces' segments.
 struct Chords {
     points: Vec<DVec2>,
     sum: BoundedSum,

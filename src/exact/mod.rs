@@ -1,13 +1,11 @@
-//! Exact pixel means: the mean of a pixel is computed by exact integration over its area, not by
-//! sampling.
+//! Exact pixel means: a pixel's mean is integrated exactly over its area, not sampled.
 //!
 //! In: the prepared scene and the part of the picture to compute. Out: the mean of each pixel in
 //! linear light, with a bound on the mean's error. In ordinary views, the bound is at most 1e-9
 //! unless the caller asks for less accuracy. A view is ordinary if the vertical field of view is 1
 //! to 170 degrees, squares are 1e-4 to 1e6 times the eye's height, and all numbers are 0 or within
-//! 1e±9. In other views the bound may be larger, up to 1 if only the mean of two colours is known.
-//! The work on a pixel is limited to about a second on the machine where it was measured
-//! (`budget`).
+//! 1e±9. In other views, the bound may be larger, up to 1 for a pixel of unknown colour. The work
+//! on a pixel is limited to about a second on the machine where it was measured (`budget`).
 //!
 //! Lines and conics divide a pixel into regions, each of which shows one colour or one
 //! checkerboard. The means are therefore computed in four steps:
@@ -67,46 +65,46 @@ use self::{
     region::{Regions, Shares},
 };
 
-/// Default error bound that is requested, as a fraction of the pixel's area. It is a little below
-/// 1e-9, so that the result is still within 1e-9 after the rounding of sums.
+/// Error bound that is requested by default, as a fraction of the pixel's area. It is a little
+/// below 1e-9, so that the result is within 1e-9 even after the rounding of sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// Maximum number of curves that pass through a whole pixel; with more, the pixel is quartered
-/// before anything is computed. n curves cross at about n² points, and at each of them all curves
-/// have to be examined. About half of the curves pass through each quarter. Measured: a heap of 300
-/// objects takes half as long with 6 as with 24, and seven times as long with 96; a dozen objects
-/// take a tenth longer with 6.
+/// before anything is computed. n curves cross at about n² points, where all curves have to be
+/// examined; a quarter has only about half of the curves. Measured: with 6 instead of 12, a dozen
+/// objects take 10 % longer. A heap of 300 objects takes twice as long with 24 as with 6, and seven
+/// times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
-/// Number of curves by which the maximum grows with each quartering. Curves that are still together
-/// in a small piece are unlikely to be separated in smaller ones. Measured on a heap: with 1, the
-/// running time is two thirds; with 16, it is four times as long.
+/// Number by which the maximum number of curves grows with each quartering. Curves that pass
+/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap:
+/// with 1 instead of 4, the time is two thirds; with 16, it is four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
-/// Maximum number of times per pixel that a piece already computed is quartered. The piece with the
-/// largest bound comes first, as long as the pixel's bound exceeds the tolerance. Near a point that
-/// a few curves share, each quartering reduces the bound to a quarter, so that 16 reduce it by a
-/// factor of 2^32.
+/// Maximum number of times per pixel that an already computed piece is quartered to reduce its
+/// bound. The piece with the largest bound comes first, while the pixel's bound exceeds the
+/// tolerance. Near a point that a few curves share, each quartering reduces the bound to a quarter;
+/// 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
 /// Maximum memory of a pixel's queued pieces, in bytes; above it, the pixel is not divided any
-/// further, and the bound counts what is not computed as doubtful. A whole pixel as a single piece
-/// may take more. The memory that a piece needs only while it is computed, which grows with its
-/// objects, is not counted.
+/// further, and uncomputed pieces count as errors. The limit excludes memory that a piece needs
+/// only while it is computed, and does not apply to a pixel that is a single piece.
 const MAX_MEMORY: usize = 64 << 20;
-/// Side of a piece, in pixels, up to which it is not quartered because of too many curves. Its area
-/// is then less than a rounding of the pixel's.
+/// Minimum side, in pixels, of a piece that is quartered because too many curves pass through it. A
+/// smaller piece counts as an error instead; its area is less than a unit roundoff of the pixel's
+/// area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
-/// Work per piece, in units of about 50 ns. The values of the work constants are not critical,
-/// because they only end computations that take too long.
+/// Work charged per piece, in units of about 50 ns. Work constants need not be precise, because
+/// they only stop computations that take too long.
 const PIECE_WORK: f64 = 100.0;
-/// Work per object of a piece, in units of about 50 ns.
+/// Work charged per object of a piece, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
-/// Work per ordered pair of curves in a piece that a conic passes through, in units of about 50 ns.
-/// It is charged in addition to the work of the regions of the piece, which accounts for only half
-/// of the time that was measured for a heap of 10⁴ spheres.
+/// Work charged per ordered pair of curves in a piece with a conic, in units of about 50 ns.
+/// Without it, the regions' work accounts for only half of the time measured for a heap of 10⁴
+/// spheres.
 const SLABS_WORK: f64 = 60.0;
-/// Work of a pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
+/// Work charged per pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
 const BOARD_PIXEL_WORK: u64 = 10;
 
-/// A computed pixel: the means of the N values that each colour has, each from 0 to 1. By default
-/// the values are the three channels in linear light.
+/// A computed pixel. Each colour has N values from 0 to 1, by default its three channels in linear
+/// light, and the pixel has the mean of each value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactPixel<const N: usize = 3> {
     /// Mean of each value.
@@ -115,7 +113,7 @@ pub struct ExactPixel<const N: usize = 3> {
     pub bound: f64,
 }
 
-/// Computes the exact pixels of a picture.
+/// Integrator that computes the exact pixels of a picture.
 #[derive(Debug)]
 pub struct Integrator<'a, const N: usize = 3> {
     world: &'a World,
@@ -127,7 +125,7 @@ pub struct Integrator<'a, const N: usize = 3> {
     work: PictureWork,
 }
 
-/// A square part of a pixel.
+/// A square part of a pixel, whose colour shares are computed separately.
 struct PixelPiece {
     sub_pixel: SubPixel,
     /// Objects that may be seen in the piece.
@@ -139,11 +137,12 @@ struct PixelPiece {
 /// State of the computation of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PieceState {
-    /// Too many curves pass through the piece: nothing is computed yet.
+    /// Nothing is computed yet, because too many curves pass through the piece or the budget is
+    /// spent.
     Crowded,
     Computed,
-    /// The piece is computed and is not quartered, because quartering its parent did not halve the
-    /// bound.
+    /// The piece is computed and will not be quartered, because quartering the piece that contains
+    /// it reduced the bound by less than half.
     Final,
 }
 
@@ -153,12 +152,13 @@ impl PixelPiece {
         self.sub_pixel.side * self.sub_pixel.side
     }
 
-    /// Returns the maximum error that the piece contributes to the pixel.
+    /// Returns the maximum error of the pixel's mean that this piece may cause.
     fn bound(&self) -> f64 {
         self.area() * self.shares.bound
     }
 
-    /// Returns the memory of the piece in bytes, apart from its place in the queue.
+    /// Returns the memory in bytes of the piece's vectors. The piece itself is counted with the
+    /// queue.
     fn memory(&self) -> usize {
         let candidates = self.candidates.capacity() * size_of::<VisibilityCandidate>();
         let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
@@ -196,8 +196,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         self
     }
 
-    /// Limits the work, in units of about 50 ns. Above the limit, [`pixels`](Self::pixels) returns
-    /// `None`, and [`shares`](Self::shares) takes the colour in the middle of each further pixel.
+    /// Limits the work on the picture, in units of about 50 ns. Above the limit,
+    /// [`pixels`](Self::pixels) returns `None`, and [`shares`](Self::shares) uses the colour in the
+    /// middle of each remaining pixel.
     pub fn with_work_limit(mut self, limit: u64) -> Self {
         self.work = PictureWork::new(limit);
         self
@@ -223,7 +224,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut curves = Vec::new();
         let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
-        // These are the checkerboard pixels that the batches do not compute accurately enough.
+        // Checkerboard pixels that the batches cannot compute accurately enough.
         let mut deferred = Vec::new();
         let is_over = || cancel.load(Relaxed) || self.work.is_exceeded();
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
@@ -247,7 +248,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // `Quartering::new` sets no limit on candidates.
+                // `Quartering::new` sets no limit on candidates, so that no part is crowded.
                 PicturePart::Crowded { .. } => {
                     unreachable!("every part of an exact picture is quartered")
                 }
@@ -264,10 +265,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Calls `show` for each area of one colour and for each other pixel, with the share of every
-    /// colour by palette slot. The world must be made by [`World::by_object`]. Once the work limit
-    /// is exceeded, the colour in the middle of a pixel stands for the whole pixel. Returns whether
-    /// every share is known to within 1e-6.
+    /// Calls `show` with each area of one colour and with each other pixel, together with the share
+    /// of each colour by palette slot. The world must be made by [`World::by_object`]. Above the
+    /// work limit, a pixel's middle counts for the whole pixel. Returns whether all shares are
+    /// known to within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -336,8 +337,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full heap is copied to twice as much memory, and for a moment the old memory
-                // exists as well.
+                // A full queue grows by copying to twice the memory, and the old memory exists
+                // until then.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -384,9 +385,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
         shares
     }
 
-    /// Returns the pixel with its mean in the middle of the possible range, and half of the range
-    /// as the bound. The range is within the bound of the given mean, and between the least and the
-    /// greatest value of all colours that may be seen in the pixel.
+    /// Moves the mean of `pixel` to the middle of the range in which the true mean may lie, with
+    /// half the range's width as the bound. The range is the mean plus or minus its bound, limited
+    /// to the values of the colours that may be seen in the pixel.
     fn center_in_range(
         &self,
         pixel: &ExactPixel<N>,
@@ -414,8 +415,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Sets a checkerboard pixel in `film` from its integral, or appends it to `deferred` if there
-    /// is no integral or its bound exceeds the tolerance.
+    /// Sets a checkerboard pixel in `film` from `sum`, the integral of the board's sign. Appends
+    /// the pixel to `deferred` instead if `sum` is `None` or its bound exceeds the tolerance.
     fn set(
         &self,
         pixel: BoardPixel,
@@ -423,7 +424,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film: &mut PartPixels<N>,
         deferred: &mut Vec<BoardPixel>,
     ) {
-        // The share is rounded once, in addition to the roundings of a mean of two colours.
+        // The share is rounded once, before the roundings of a mean of two colours.
         let roundings = UNIT + rounding(2);
         let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {
@@ -434,8 +435,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film.set(pixel.x, pixel.y, self.mean(&shares, bound));
     }
 
-    /// Computes the shares of a piece. If too many curves pass through it or the budget is spent,
-    /// returns a crowded piece with unknown shares.
+    /// Computes the shares of a piece. If too many curves pass through the piece or the budget is
+    /// spent, the piece is [`Crowded`](PieceState::Crowded), with a bound of 1.
     fn piece(
         &self,
         sub_pixel: SubPixel,
@@ -492,9 +493,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 }
 
-/// Returns the maximum rounding error of a mean of `colors` colours. The sum of products and the
-/// sum of shares each have as many roundings as there are colours; the products add one, and so
-/// does the quotient. A single colour has no rounding error.
+/// Returns the maximum rounding error of a mean of `colors` colours. The sums of products and of
+/// shares each have `colors` roundings; the products and the quotient add one each. A single colour
+/// has none.
 fn rounding(colors: usize) -> f64 {
     match colors {
         0..=1 => 0.0,

@@ -3,7 +3,7 @@
 use super::ExactPixel;
 use crate::area::Area;
 
-/// The pixels of a part of the picture.
+/// The pixels of a part of the picture, filled in any order.
 pub(super) struct PartPixels<const N: usize> {
     pub part: Area,
     /// Pixels of the part, row by row.

@@ -1,10 +1,10 @@
 //! The regions of a sub-pixel, and what is seen in each.
 //!
 //! In: regions between boundaries, with a point inside each. Out: the share of each colour in the
-//! sub-pixel, with an error bound. One ray through the point decides what is seen in a region; a
-//! checkerboard is integrated by `checker` and `conic_segment`. The bound is the sum of their
-//! bounds, of the doubtful areas that callers report, and of the difference between the regions'
-//! total area and that of the sub-pixel.
+//! sub-pixel, with an error bound. One ray through the point decides which object is seen in the
+//! region; a checkerboard is then integrated by `checker` and `conic_segment`. The error bound is
+//! the sum of the integrals' bounds, of the doubtful areas that callers report, and of the
+//! difference between the regions' total area and that of the sub-pixel.
 
 use std::mem;
 
@@ -21,15 +21,15 @@ use super::{
     conic_segment::Arc,
 };
 
-/// Work per region, in units of about 50 ns.
+/// Work charged per region, in units of about 50 ns.
 const REGION_WORK: f64 = 4.0;
-/// Work per object that a region's ray may hit, in units of about 50 ns.
+/// Work charged per object that a region's ray may hit, in units of about 50 ns.
 const RAY_WORK: f64 = 0.5;
-/// Work per object that a region's ray may hit, in units of about 50 ns, in the highest precision
-/// ([`Big`]).
+/// Work charged per object that a region's ray may hit if the ray is traced in the highest
+/// precision ([`Big`]), in units of about 50 ns.
 const BIG_RAY_WORK: f64 = 200.0;
 
-/// Shares of the colours in a sub-pixel.
+/// Shares of the colours in a pixel or sub-pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
     /// Palette slots, each with the share of the sub-pixel's area that shows its colour. The
@@ -39,12 +39,12 @@ pub struct Shares {
     pub bound: f64,
 }
 
-/// Sum of the colours' shares over the regions of a sub-pixel.
+/// Adds up the shares of the colours over the regions of a sub-pixel.
 pub struct Regions<'a> {
     world: &'a World,
     sub_pixel: SubPixel,
     candidates: &'a [VisibilityCandidate],
-    /// Boards that regions have shown so far, with the index of each one's object.
+    /// Checkerboards that regions have shown so far, each with the index of its object.
     boards: Vec<(usize, LocalBoard)>,
     shares: Shares,
     /// Work that may still be spent on the pixel.
@@ -56,7 +56,8 @@ pub struct LocalBoard {
     pub board: Homography,
     /// Whether the square [0, 1)² has the second colour.
     pub odd: bool,
-    /// Maximum error of the values of the board's forms, relative to the sizes of their terms.
+    /// Maximum error of a value of the board's linear forms, divided by the size of the form's
+    /// terms.
     relative_error: f64,
 }
 
@@ -64,8 +65,8 @@ pub struct LocalBoard {
 pub struct Region<'a> {
     /// Vertices of the polygon, which is convex, in order.
     pub polygon: &'a [DVec2],
-    /// Arcs over sides of the polygon, each with 1 if it bulges outwards or −1 if it bulges
-    /// inwards.
+    /// Arcs over sides of the polygon, each with 1 if it bulges out of the polygon or −1 if it
+    /// bulges into it.
     pub arcs: &'a [(f64, Arc)],
     /// Area, in square pixels.
     pub area: f64,
@@ -74,7 +75,7 @@ pub struct Region<'a> {
 }
 
 impl<'a> Regions<'a> {
-    /// Starts an empty sub-pixel in which only the candidates may be seen.
+    /// Starts the sum for a sub-pixel in which only `candidates` may be seen.
     pub fn new(
         world: &'a World,
         sub_pixel: SubPixel,
@@ -91,7 +92,8 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// Adds the colours of a region, which no boundary crosses, to the shares.
+    /// Adds a region, which no boundary may cross, to the share of the colour or colours seen in
+    /// it.
     pub fn add(&mut self, region: &Region) {
         let Some(object) = self.seen(region) else {
             return self.shares.add(self.world.background(), region.area);
@@ -101,7 +103,7 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         }
         let Some(at) = self.board(object) else {
-            // Only boards have two colours.
+            // This cannot happen, because only boards have two colours.
             self.add_doubtful_area(region.area);
             return self.shares.add(first, region.area);
         };
@@ -113,8 +115,8 @@ impl<'a> Regions<'a> {
             sum.bound += segment.bound;
         }
         let half = if local_board.odd { -0.5 } else { 0.5 } * sum.value;
-        // The board's own bound assumes that each factor of a form has one rounding; here the forms
-        // may have greater errors. No share exceeds the area, however large these errors.
+        // The board's own bound assumes one rounding error in each factor of a form. Here, the
+        // factors may have greater errors. The error of a share never exceeds the region's area.
         let bound = 0.5 * sum.bound * (1.0 + local_board.relative_error / f64::UNIT);
         let bound = bound.min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
@@ -122,9 +124,9 @@ impl<'a> Regions<'a> {
         self.shares.bound += bound;
     }
 
-    /// Returns the object that is seen in a region, `None` for the background. If double-double
-    /// arithmetic does not decide this with certainty, the point may lie next to a boundary, and
-    /// the region's whole area is added to the doubtful area.
+    /// Returns the object that is seen in a region, or `None` for the background. If double-double
+    /// arithmetic does not decide this with certainty, the region's point may lie next to a
+    /// boundary, and the region's area is added to the error bound.
     fn seen(&mut self, region: &Region) -> Option<usize> {
         let (object, is_certain) = self.object_at(region.inside);
         if !is_certain {
@@ -134,8 +136,8 @@ impl<'a> Regions<'a> {
     }
 
     /// Returns the object that is seen at a point (`None` for the background), and whether
-    /// double-double arithmetic decides this with certainty. Returns `None` and `false` if the
-    /// budget does not afford the highest precision, which may be needed.
+    /// double-double arithmetic decides this with certainty. If not, the highest precision decides.
+    /// Returns `None` and `false` if the budget does not afford the highest precision.
     fn object_at(&self, at: DVec2) -> (Option<usize>, bool) {
         let (budget, count) = (self.budget, self.candidates.len() as f64);
         budget.charge(REGION_WORK + RAY_WORK * count);
@@ -153,7 +155,8 @@ impl<'a> Regions<'a> {
         found
     }
 
-    /// Adds an area, as a share of the sub-pixel, that may be counted in a wrong region or in none.
+    /// Adds to the error bound an area that may be counted in a wrong region or in none, as a
+    /// fraction of the sub-pixel's.
     pub fn add_doubtful_area(&mut self, area: f64) {
         self.shares.bound += area;
     }
@@ -161,11 +164,11 @@ impl<'a> Regions<'a> {
     /// Returns the shares of the colours in all regions, with a bound of at most 1.
     pub fn finish(mut self) -> Shares {
         let mut shares = mem::take(&mut self.shares);
-        // Area that the regions omit or count twice may have any colour.
+        // Area that the regions omit or count twice may have any colour, so it counts as an error.
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // If numbers overflowed, nothing is known.
+            // Intermediate results have overflowed, so the shares are meaningless.
             return self.unknown();
         }
         // The error of a channel is at most 1.
@@ -173,8 +176,8 @@ impl<'a> Regions<'a> {
         shares
     }
 
-    /// Returns shares with the bound 1. Only the object in the middle of the sub-pixel is examined;
-    /// each of its two colours gets half.
+    /// Returns shares with the bound 1, for a sub-pixel that is not computed. Only the object in
+    /// the middle of the sub-pixel is examined, and each of its two colours gets half of the area.
     pub fn unknown(&self) -> Shares {
         let (object, _) = self.object_at(DVec2::ZERO);
         let background = [self.world.background(); 2];
@@ -185,8 +188,8 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// Returns the index in `boards` of an object's board, which is derived on first use. Returns
-    /// `None` if the object is not a checkerboard.
+    /// Returns the index in `boards` of the board of `object`, and derives the board on first use.
+    /// Returns `None` if the object is not a checkerboard.
     fn board(&mut self, object: usize) -> Option<usize> {
         let known = self.boards.iter().position(|(known, _)| *known == object);
         if known.is_some() {
@@ -199,9 +202,9 @@ impl<'a> Regions<'a> {
 }
 
 impl LocalBoard {
-    /// Derives the board of an object in the coordinates of a sub-pixel, in the highest precision
-    /// if double-double leaves too large an error. Returns `None` if the object is not a
-    /// checkerboard.
+    /// Derives the board of `object` in the coordinates of the sub-pixel. Computes it in the
+    /// highest precision if the double-double error is too large. Returns `None` if the object is
+    /// not a checkerboard.
     pub fn new(world: &World, object: usize, sub_pixel: SubPixel) -> Option<Self> {
         let local_board = Self::in_precision::<Double>(world, object, sub_pixel)?;
         if local_board.relative_error < LOOSE_LINE {
@@ -223,7 +226,7 @@ impl LocalBoard {
         let seen = board.local(&sub_pixel.middle(camera), &[side.clone(), side]);
         let forms = [seen.across[0], seen.across[1], seen.below].into_iter();
         let errors = forms.zip(seen.rads).map(|(form, rad)| {
-            // The squares may be too small for the range of `f64`.
+            // The factors of extremely small squares may overflow or underflow in `f64`.
             let size = size(&form);
             let is_known = size.is_finite() && size > 0.0;
             if is_known { rad / size } else { f64::INFINITY }
@@ -237,7 +240,8 @@ impl LocalBoard {
 }
 
 impl Shares {
-    /// Adds the shares of a part whose area is `area` as a fraction of the whole.
+    /// Adds the shares of a part of this area; `area` is the part's area as a fraction of the
+    /// whole.
     pub fn add_part(&mut self, part: &Self, area: f64) {
         for &(slot, share) in &part.by_slot {
             self.add(slot, area * share);
@@ -249,7 +253,7 @@ impl Shares {
         match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
             Some((_, share)) => {
                 *share += area;
-                // This is the rounding of the sum, which is at most 1.
+                // This is the rounding error of the sum, which is at most 1.
                 self.bound += f64::UNIT;
             }
             None => self.by_slot.push((slot, area)),

@@ -1,4 +1,4 @@
-//! `camera`: eye, window and one ray, from outside.
+//! Draws the figure `camera`: the eye, the window and one ray, seen from outside.
 
 use glam::{DVec2, DVec3};
 
@@ -19,15 +19,19 @@ use crate::{
 
 const HEIGHT: f64 = 460.0;
 
-/// A ray that goes farther than this many sizes of the window's pyramid is cut off: the window
-/// would be too small to be seen.
+/// Maximum length of the drawn ray, relative to the distance from the eye to a corner of the
+/// window. A longer ray is drawn only in part, since the window would otherwise be too small.
 const FARTHEST: f64 = 15.0;
 
-/// Maximum number of objects that are drawn, and of lines of a board in either direction.
+/// Maximum number of objects that are drawn; further ones are left out.
 const MOST_OBJECTS: usize = 60;
+
+/// Maximum number of lines of a board in either direction, about. A board with more squares in the
+/// drawing gets a line only at every second, third, … square.
 const MOST_LINES: f64 = 14.0;
 
-/// Draws the figure, with the ray through the middle of a pixel.
+/// Draws the figure, with the ray through the middle of `pixel`, or of a pixel of the largest
+/// object.
 pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let [x, y] = pixel.unwrap_or_else(|| pixel_of_largest(scene));
     let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
@@ -62,7 +66,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let arrow = 0.13 * (max - min).length();
     points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
 
-    // From the right, behind and above, so that the ray runs to the right.
+    // The camera is seen from the right, from behind and from above, so that the ray runs to the
+    // right.
     let level = (view.ahead + view.top * 0.2).with_y(0.0);
     let level = level.normalize_or(DVec3::NEG_Z);
     let side = level.cross(DVec3::Y) * 0.72 - level * 0.55 + DVec3::Y * 0.42;
@@ -81,7 +86,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     for corner in corners {
         outside.line(&mut canvas, "faint", &[view.eye, corner]);
     }
-    // The picture in the window.
+    // Draw the picture in the window.
     let picture = overlays(scene, &ShownObjects::First(None));
     let in_frame = |at: DVec2| view.at_depth(at.clamp(DVec2::ZERO, view.size), facts.d);
     draw_objects(
@@ -147,8 +152,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     )
 }
 
-/// Returns the middle of the visible part of the largest object, boards excepted; the middle of the
-/// picture if there is none.
+/// Returns the pixel in the middle of the object with the largest visible area, boards excluded.
+/// Returns the middle of the picture if there is no such object.
 fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     let (seen, _) = seen(scene);
     let mut largest = (0.0, Area::whole(scene.image.width, scene.image.height));
@@ -165,8 +170,8 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     [around.x + around.width / 2, around.y + around.height / 2]
 }
 
-/// Returns the objects that lie in front of the eye and within reach of it, or are hit, each with a
-/// sphere around it.
+/// Returns the indices of at most [`MOST_OBJECTS`] objects to draw, each with its bounding sphere:
+/// those near the camera that are in front of the eye, or that have the index `hit`.
 fn objects_within(
     scene: &Scene,
     view: &Projection,
@@ -189,8 +194,9 @@ fn objects_within(
     around.filter(is_within).take(MOST_OBJECTS).collect()
 }
 
-/// Returns lines of the boards beneath what is drawn: every second or third one if they would be
-/// many.
+/// Returns the lines between the squares of the boards below the drawn `points`. If there would be
+/// too many, returns only every second one, every third one, and so on. Adds the corners of the
+/// drawn part of each board to `points`.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

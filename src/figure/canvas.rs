@@ -1,11 +1,12 @@
-//! A drawing, as SVG.
+//! Writes a drawing as SVG.
 //!
 //! In: marks in the order in which they are drawn, and labels with the points that they name. Out:
-//! the file. Labels are placed last, where they cover neither marks nor each other. Every length
+//! the file. Labels are placed last, so that they cover neither marks nor each other. Every length
 //! is written with one decimal, so that the bytes are the same on every machine.
 //!
-//! The style sheet has no variables, which printing programs such as librsvg do not know. The
-//! colours are those of Okabe and Ito, darkened on white until letters have a contrast of 4.5 to 1.
+//! The style sheet has no CSS variables, which printing programs such as librsvg do not support.
+//! The colours are those of Okabe and Ito. On white they are darkened until letters have a contrast
+//! of 4.5 to 1.
 
 use std::fmt::Write;
 
@@ -13,13 +14,15 @@ use glam::DVec2;
 
 use crate::{color::Color, editor::viewport::clip, numbers};
 
-/// Width of every figure: half a point each where a page shows it 12 cm wide.
+/// Width of every figure, in SVG units. A unit is half a point if a page shows the figure 12 cm
+/// wide.
 pub const WIDTH: f64 = 680.0;
 
-/// Size of the letters: 9 points on such a page.
+/// Font size, in SVG units: 9 points on a page that shows the figure 12 cm wide.
 const LETTERS: f64 = 18.0;
 
-/// Width of a letter, on average, of wide typefaces such as DejaVu Sans; and the height of a line.
+/// Mean width of a letter in wide typefaces such as DejaVu Sans, and height of a line, in SVG
+/// units. The sizes of labels are estimated with them.
 const LETTER: DVec2 = DVec2::new(10.2, 21.0);
 
 const STYLE: &str = "\
@@ -33,21 +36,22 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 @media(prefers-color-scheme:dark){.paper{fill:#15181d}.fill{fill-opacity:.65}text{stroke:#15181d}.ink{color:#eceff4}.faint{color:#a3adb8}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
-/// Cost of a label over a mark; a step farther away costs 6.
+/// Cost of a label that covers a mark. For comparison, a step farther away from the label's point
+/// costs 6. A label is placed where its total cost is least.
 const MARK: f64 = 40.0;
 
-/// Drawing, as it grows.
+/// A drawing that is being built.
 pub struct Canvas {
     size: DVec2,
     marks: String,
-    /// What labels should not cover, with the cost of doing it.
+    /// Segments that labels should not cover, each with the cost of covering it.
     obstacles: Vec<([DVec2; 2], f64)>,
-    /// Texts beside points: class, point, preferred side and text.
+    /// Labels beside points: CSS class, point, preferred side and text.
     labels: Vec<(&'static str, DVec2, DVec2, String)>,
 }
 
 impl Canvas {
-    /// Returns an empty drawing of a height.
+    /// Returns an empty drawing of the given height, in SVG units.
     pub fn new(height: f64) -> Self {
         Self {
             size: DVec2::new(WIDTH, height),
@@ -57,7 +61,7 @@ impl Canvas {
         }
     }
 
-    /// Draws a line through some points.
+    /// Draws a polygonal line through `points`, in the CSS class `class`. Labels avoid it.
     pub fn line(&mut self, class: &str, points: &[DVec2]) {
         let cost = if class.contains("faint") { 1.5 } else { MARK };
         let segments = points.windows(2).map(|ends| ([ends[0], ends[1]], cost));
@@ -78,7 +82,7 @@ impl Canvas {
         self.raw_path(class, &path, more);
     }
 
-    /// Draws a path in the notation of SVG, which labels may cover.
+    /// Draws a path in SVG notation. Labels may cover it.
     pub fn raw_path(&mut self, class: &str, path: &str, more: &str) {
         if !path.is_empty() {
             let _ = writeln!(self.marks, "<path class=\"{class}\"{more} d=\"{path}\"/>");
@@ -116,15 +120,15 @@ impl Canvas {
         );
     }
 
-    /// Names a point, if possible on the side that points away from another; what stands between
-    /// asterisks is italic.
+    /// Adds a label to the point `at`, if possible on the side that points away from `from`. Text
+    /// between asterisks is italic.
     pub fn label(&mut self, class: &'static str, [at, from]: [DVec2; 2], text: impl Into<String>) {
         let away = (at - from).normalize_or_zero();
         self.labels.push((class, at, away, text.into()));
     }
 
-    /// Writes a text at a place of its own: `at` is the `start`, the `middle` or the `end` of its
-    /// base line.
+    /// Writes a text at a fixed position. `anchor` says whether `at` is the `start`, the `middle`
+    /// or the `end` of its base line.
     pub fn text(&mut self, class: &str, anchor: &str, at: DVec2, text: &str) {
         let mut spans = String::new();
         for (part, text) in text.split('*').enumerate() {
@@ -154,7 +158,7 @@ impl Canvas {
         )
     }
 
-    /// Writes each label on that side of its point, and as far from it, where it covers least.
+    /// Writes each label at the side and the distance from its point with the least cost.
     fn place_labels(&mut self) {
         let mut taken: Vec<[DVec2; 2]> = Vec::new();
         for (class, at, away, text) in std::mem::take(&mut self.labels) {
@@ -185,8 +189,8 @@ impl Canvas {
         }
     }
 
-    /// Returns the cost of a label in a rectangle: outside of the drawing, over other labels, over
-    /// marks.
+    /// Returns the cost of a label in a rectangle: high outside of the drawing, less over other
+    /// labels, and low over marks.
     fn cost(&self, rectangle: [DVec2; 2], taken: &[[DVec2; 2]]) -> f64 {
         let [min, max] = rectangle;
         let is_outside = min.cmplt(DVec2::splat(4.0)).any() || max.cmpgt(self.size - 4.0).any();
@@ -202,7 +206,7 @@ impl Canvas {
     }
 }
 
-/// The sides of a point where its label may stand, those that are preferred first.
+/// Directions from a point to its label, the preferred ones first.
 const SIDES: [[f64; 2]; 8] = [
     [1.0, 0.0],
     [1.0, -0.6],
@@ -214,14 +218,15 @@ const SIDES: [[f64; 2]; 8] = [
     [-1.0, 0.6],
 ];
 
-/// Returns a number for people, with four significant digits.
+/// Formats a number with four significant digits, for people to read.
 pub fn number(x: f64) -> String {
     numbers::short(numbers::significant(x, 4)).replace('-', "−")
 }
 
-/// Returns a length with one decimal.
+/// Formats a length with at most one decimal.
 pub fn length(x: f64) -> String {
-    // What is no number, or very large, is not seen anyway; the conversion keeps within bounds.
+    // The clamp avoids an overflow. Marks with NaN or very large coordinates are not visible
+    // anyway.
     let tenths = (x.clamp(-1e6, 1e6) * 10.0).round() as i64;
     let sign = if tenths < 0 { "-" } else { "" };
     match (tenths.abs() / 10, tenths.abs() % 10) {

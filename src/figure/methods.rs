@@ -1,4 +1,4 @@
-//! `methods`: the patterns of all methods with the same number of samples.
+//! Draws the figure `methods`: the sample patterns of all methods with the same number of samples.
 
 use glam::DVec2;
 
@@ -9,17 +9,21 @@ use crate::{
     scene::{Count, Method, Sampler, Scene},
 };
 
-/// Maximum number of samples of a pixel: more are a grey area.
+/// Maximum number of samples of a pixel in a figure; more are refused, since they would form a grey
+/// area.
 const MOST: u64 = 1024;
 
-/// Maximum number of rows or columns whose lines are drawn.
+/// Maximum number of rows or columns of strata whose lines are drawn. More lines would form a grey
+/// area.
 const MOST_LINES: usize = 64;
 
-/// Side of a square, and from one square to the next.
+/// Side of the square that shows a pixel, in SVG units.
 const SIDE: f64 = 196.0;
+
+/// Distance from the corner of a square to the corner of the next one, in SVG units.
 const PITCH: DVec2 = DVec2::new(226.0, 262.0);
 
-/// Refuses numbers of samples that nobody can tell apart.
+/// Returns an error if a figure cannot show `count` samples, since nobody could tell them apart.
 pub fn most(count: u64) -> Result<(), String> {
     if count <= MOST {
         Ok(())
@@ -30,7 +34,7 @@ pub fn most(count: u64) -> Result<(), String> {
     }
 }
 
-/// Draws the figure of a pixel.
+/// Draws the figure, with the samples of the pixel in column `x` and row `y`.
 pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
     let count = Sampling::new(
         &Sampler {
@@ -78,14 +82,14 @@ pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
     ))
 }
 
-/// Returns the strata that hold one sample each, in words.
+/// Describes in words the strata that contain one sample each.
 fn kept(method: Method, n: u64) -> String {
     let tilings = tilings(method, n);
     if tilings.len() > 3 {
         return format!("every box of 1/{n}");
     }
     let words = tilings.iter().map(|tiling| match tiling {
-        // A grid is the same in every pixel, a single sample is anywhere.
+        // With `regular`, each sample is exactly in the middle of its cell.
         _ if method == Method::Regular => "middles of cells",
         tiling if tiling.is_columns() && tiling.is_rows() => "anywhere",
         tiling if tiling.is_columns() => "columns",
@@ -98,8 +102,9 @@ fn kept(method: Method, n: u64) -> String {
     }
 }
 
-/// Draws the strata of a method in a square: thin lines, and those of the first tiling a little
-/// stronger if others are finer.
+/// Draws the strata of a method as thin lines in a square with the corner `corner` and the given
+/// side. The strata form one or more [`Tiling`]s of the square. The lines of the first tiling are a
+/// little stronger, unless it consists of rows or columns alone.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };

@@ -1,13 +1,13 @@
-//! Figures for a page of a course, drawn from what the program knows of a scene.
+//! Draws figures for a page of a course.
 //!
 //! In: a scene and the kind of figure. Out: an SVG file, the same bytes on every machine. A figure
-//! has one idea and few marks, each named where it stands. Nothing is computed here that another
-//! part of the program knows: samples come from [`sampling`](crate::sampling), what is seen from
-//! the tracer, outlines from the editor's overlays, axes and angles from
+//! has one idea and few marks, and each mark is labelled where it stands. Nothing is computed here
+//! that another part of the program computes: samples come from [`sampling`](crate::sampling),
+//! visible objects from the tracer, outlines from the editor's overlays, axes and angles from
 //! [`inspect`](crate::inspect).
 //!
-//! A file for each kind. `canvas` writes the file and places the labels; `outside` looks at the
-//! scene from beside its camera.
+//! Each kind of figure has a file. `canvas` writes the SVG and places the labels; `outside` shows
+//! the scene from a point beside its camera.
 
 mod camera;
 mod canvas;
@@ -25,11 +25,11 @@ use crate::{
 /// Kind of figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The camera from outside.
+    /// The camera, seen from outside.
     Camera,
     /// A pixel with its samples.
     Pixel,
-    /// A triangle with its measures.
+    /// A triangle with its sides, centroid, normal and spin.
     Triangle,
     /// The frame of the picture before and after the camera's roll.
     Roll,
@@ -46,7 +46,7 @@ pub const KINDS: [(&str, Kind); 5] = [
     ("methods", Kind::Methods),
 ];
 
-/// The part of the scene that a figure shows; a field that is `None` leaves the choice to it.
+/// The part of the scene that a figure shows. If a field is `None`, the figure chooses.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
     /// The column and the row of a pixel, for figures of cameras, pixels and methods.
@@ -55,11 +55,11 @@ pub struct Choice<'a> {
     pub object: Option<&'a str>,
 }
 
-/// Draws a figure of a scene, as the text of an SVG file.
+/// Draws a figure of a scene. Returns the text of an SVG file.
 ///
 /// # Errors
 ///
-/// Why the scene has no such figure, and which it has, in a sentence.
+/// Returns a sentence that says why the scene has no such figure, and which figures it has.
 ///
 /// # Panics
 ///
@@ -92,7 +92,7 @@ pub fn figure(scene: &Scene, kind: Kind, choice: Choice<'_>) -> Result<String, S
     }
 }
 
-/// The triangle of a name, or else the first one.
+/// Returns the triangle named `wanted`, or the first triangle if no name is given.
 fn triangle_of<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s Triangle, String> {
     let objects = scene.objects.iter();
     let triangles = objects.filter_map(|object| match &object.shape {

@@ -1,8 +1,8 @@
-//! A scene seen from outside: the view that fits some points into a rectangle of the drawing.
+//! Shows a scene from outside, in a view that fits given points into a rectangle of the drawing.
 //!
-//! In: points, and the side from which they are seen. Out: where points of the world lie in the
-//! drawing. The observer is a camera of the language as any other, so that
-//! [`Projection`] and the editor's outlines serve here too.
+//! In: points, and the side from which they are seen. Out: the positions of points in the drawing.
+//! The observer is an ordinary camera of the language, so that [`Projection`] and the editor's
+//! outlines can be used here, too.
 
 use std::sync::Arc;
 
@@ -17,13 +17,15 @@ use crate::{
     scene::{Camera, Image, Lens, Scene, Shape, View},
 };
 
-/// Distance of the observer, in radii of what is looked at: parallels are nearly parallel.
+/// Distance of the observer from the middle of the shown points, relative to the radius of a sphere
+/// around them. At this distance, parallel lines look almost parallel.
 const DISTANCE: f64 = 6.0;
 
-/// Largest coordinates that are drawn.
+/// Maximum absolute value of the coordinates that determine the view. It prevents overflows in sums
+/// and squares.
 const MOST: f64 = 1e100;
 
-/// View of the world from outside of the camera, in a rectangle of the drawing.
+/// View of a scene from outside of its camera, in a rectangle of the drawing.
 pub struct Outside {
     camera: Camera,
     image: Image,
@@ -34,10 +36,11 @@ pub struct Outside {
 }
 
 impl Outside {
-    /// Fits some points into a panel, seen from a side of them with a direction up.
+    /// Makes the view that fits `points` into the rectangle `panel`. The observer looks from the
+    /// direction `side`, with `up` upwards.
     pub fn new(points: &[DVec3], [side, up]: [DVec3; 2], panel: [DVec2; 2]) -> Self {
         let (min, max) = bounds3(points);
-        // Scenes may have numbers of any size, of which no sums are made.
+        // Coordinates may be so large that sums would overflow.
         let within = |v: DVec3| v.clamp(DVec3::splat(-MOST), DVec3::splat(MOST));
         let (min, max) = (within(min), within(max));
         let radius = ((max - min).length() / 2.0).max(1.0 / MOST);
@@ -73,12 +76,12 @@ impl Outside {
         }
     }
 
-    /// Returns the place of a point of the world in the drawing.
+    /// Returns the position in the drawing of a point in space.
     pub fn at(&self, point: DVec3) -> DVec2 {
         self.projection.projected(point) * self.scale + self.offset
     }
 
-    /// Draws a line through points of the world.
+    /// Draws the polygonal line through `points` in space.
     pub fn line(&self, canvas: &mut Canvas, class: &str, points: &[DVec3]) {
         for line in self.projection.line(points) {
             let line: Vec<DVec2> = line
@@ -89,7 +92,7 @@ impl Outside {
         }
     }
 
-    /// Draws the outlines of some objects of a scene, filled with their colours.
+    /// Draws the outlines of the objects with the given indices, filled with their colours.
     pub fn objects(&self, canvas: &mut Canvas, scene: &Scene, indices: Vec<usize>) {
         let scene = Scene {
             camera: self.camera,
@@ -103,8 +106,9 @@ impl Outside {
     }
 }
 
-/// Draws the outlines of a picture, whose points `place` puts into the drawing. Skips boards, of
-/// which the editor outlines a single square.
+/// Draws the outlines of the objects in a picture, filled with their colours. `place` maps a point
+/// of the picture to the drawing. Skips boards, since the editor outlines only one of their
+/// squares.
 pub fn draw_objects(
     canvas: &mut Canvas,
     scene: &Scene,
@@ -130,8 +134,8 @@ pub fn draw_objects(
     }
 }
 
-/// Leaves out points of a line that are nearer than one unit to the point before: small spheres
-/// would fill the file.
+/// Removes points of a line that are nearer than one unit to the previous point. Otherwise, a scene
+/// with many small spheres would make a large file.
 fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
     let end = line.last().copied();
     line.dedup_by(|next, kept| next.distance_squared(*kept) < 1.0);
@@ -139,7 +143,7 @@ fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
     line
 }
 
-/// Draws the parts of a line that lie in a panel.
+/// Draws the parts of a polygonal line that lie in the rectangle `panel`.
 pub fn draw_within(canvas: &mut Canvas, class: &str, line: &[DVec2], panel: [DVec2; 2]) {
     let mut part: Vec<DVec2> = Vec::new();
     for ends in line.windows(2) {
@@ -155,7 +159,7 @@ pub fn draw_within(canvas: &mut Canvas, class: &str, line: &[DVec2], panel: [DVe
     canvas.line(class, &part);
 }
 
-/// Returns the scale and the offset that put points into the middle of a panel.
+/// Returns the scale and the offset that fit points into the middle of the rectangle `panel`.
 pub fn fit(points: &[DVec2], panel: [DVec2; 2]) -> (f64, DVec2) {
     let least = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let greatest = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
@@ -173,7 +177,7 @@ pub fn bounds3(points: &[DVec3]) -> (DVec3, DVec3) {
     (least, greatest)
 }
 
-/// Returns the convex polygon around some points (Andrew's monotone chain).
+/// Returns the convex hull of points (Andrew's monotone chain).
 fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let chain = |points: &mut dyn Iterator<Item = &DVec2>| {

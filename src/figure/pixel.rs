@@ -1,4 +1,5 @@
-//! `pixel`: one pixel with its strata, its samples and what each of them sees.
+//! Draws the figure `pixel`: one pixel with its strata, its samples, and the object that each of
+//! them hits.
 
 use glam::DVec2;
 
@@ -16,18 +17,20 @@ use crate::{
     tracer::World,
 };
 
-/// Where the pixel is drawn, and its side there.
+/// Top left corner of the drawn pixel, in SVG units.
 const CORNER: DVec2 = DVec2::new(16.0, 16.0);
+
+/// Side of the drawn pixel, in SVG units.
 const SIDE: f64 = 360.0;
 
-/// Number of rows of points that show the regions between the samples. A whole number of them goes
-/// into the side, so that rounding leaves no gaps.
+/// Number of rows and columns of points at which the pixel's regions of one colour are sampled. It
+/// divides [`SIDE`], so that rounding to one decimal leaves no gaps.
 const ROWS: u32 = 120;
 
-/// Maximum number of colours that are told apart beside the pixel.
+/// Maximum number of colours that are listed beside the pixel, those with the largest areas.
 const COLORS: usize = 4;
 
-/// Draws the figure of a pixel.
+/// Draws the figure of `pixel`, or of a pixel with several colours if it is `None`.
 pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     let world = World::new(scene);
     let [x, y] = pixel.unwrap_or_else(|| most_colors(scene, &world));
@@ -132,8 +135,9 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     ))
 }
 
-/// Fills the pixel with what is seen in it; returns the colours by their slots in the palette, each
-/// with a point where it is seen, those with the largest areas first.
+/// Fills the drawn pixel with the visible colours. Returns the indices of at most [`COLORS`] of
+/// them in the world's palette, each with a point of the picture where the colour is visible, the
+/// largest areas first.
 fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, DVec2)> {
     let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(ROWS) - 0.5;
     let step = SIDE / f64::from(ROWS);
@@ -169,7 +173,7 @@ fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, 
     seen.take(COLORS).collect()
 }
 
-/// Returns the exact shares of a pixel that show some colours.
+/// Returns the exact share of the pixel's area that each of `colors` covers.
 fn shares(world: &World, [x, y]: [u32; 2], colors: &[(usize, DVec2)]) -> [f64; COLORS] {
     let shown: Vec<Color> = colors
         .iter()
@@ -184,7 +188,8 @@ fn shares(world: &World, [x, y]: [u32; 2], colors: &[(usize, DVec2)]) -> [f64; C
         .map_or([0.0; COLORS], |pixel| pixel.mean)
 }
 
-/// Returns the name of what is seen at a point of the picture, for people.
+/// Returns the name of the object that is visible at a point of the picture, or "background". A
+/// name is cut to 12 characters.
 fn name(scene: &Scene, world: &World, at: DVec2) -> String {
     let Some((Some(hit), _)) = pick(scene, world, at) else {
         return "background".to_owned();
@@ -197,8 +202,8 @@ fn name(scene: &Scene, world: &World, at: DVec2) -> String {
     }
 }
 
-/// Returns the pixel with the most colours and the evenest shares of them, of those on edges
-/// between neighbours in a coarse grid over the picture.
+/// Returns the pixel with the highest score by [`evenness`]. Candidates are pixels on edges between
+/// two colours, which are searched along the rows of a coarse grid over the picture.
 fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     let (width, height) = (scene.image.width, scene.image.height);
     let (columns, rows) = (width.min(64), height.min(90));
@@ -228,9 +233,9 @@ fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     best.1
 }
 
-/// Returns a score of a pixel: higher for more colours, up to three, and for evener shares (less
-/// Simpson's index); lower for each change of colour in a row, of which there are many near the
-/// horizon.
+/// Returns a score of a pixel from a grid of 8 × 8 points. It is higher for more colours, up to
+/// three, and for more equal shares of the colours (low Simpson index). It is lower for each change
+/// of colour along the points, since there are many changes near the horizon.
 fn evenness(world: &World, [x, y]: [u32; 2]) -> f64 {
     let at = |i: u32| (f64::from(i) + 0.5) / 8.0 - 0.5;
     let slot = |cell: u32| world.slot_at(x, y, DVec2::new(at(cell % 8), at(cell / 8)));

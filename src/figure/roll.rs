@@ -1,4 +1,4 @@
-//! `roll`: the frame of the picture before and after the camera's roll.
+//! Draws the figure `roll`: the frame of the picture before and after the camera's roll.
 
 use glam::DVec2;
 
@@ -15,7 +15,7 @@ use crate::{
 
 const HEIGHT: f64 = 400.0;
 
-/// Points of the arc that shows the angle.
+/// Number of segments of the arc that shows the angle.
 const ARC: u32 = 24;
 
 /// Draws the figure.
@@ -35,7 +35,7 @@ pub fn draw(scene: &Scene) -> String {
     )
 }
 
-/// Draws both frames over what the camera without roll sees.
+/// Draws the frames with and without roll over the picture of the camera without roll.
 fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     let rolled = |roll: Angle| {
         let camera = Camera {
@@ -46,8 +46,8 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     };
     let (level_camera, level) = rolled(Angle::default());
     let roll = scene.camera.roll;
-    // Returns where a point of the rolled camera's picture lies in the picture of the camera
-    // without roll: both show the same ray.
+    // Returns the point of the picture without roll that shows the same ray as a point of the
+    // rolled picture.
     let seen = |roll: Angle, point: DVec2| {
         let (_, view) = rolled(roll);
         level.projected(view.at_depth(point, 1.0))
@@ -111,7 +111,7 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     canvas.label("blue", [lowest(&after), eye], "after");
 }
 
-/// Draws the picture in its own frame.
+/// Draws the rolled picture in its own frame.
 fn picture(canvas: &mut Canvas, scene: &Scene) {
     let found = overlays(scene, &ShownObjects::First(None));
     let size = DVec2::from(found.size.map(f64::from));

@@ -1,4 +1,4 @@
-//! `triangle`: a triangle with its sides, centroid, normal and spin.
+//! Draws the figure `triangle`: a triangle with its sides, centroid, normal and spin.
 
 use glam::{DVec2, DVec3};
 
@@ -15,7 +15,7 @@ use crate::{
 
 const HEIGHT: f64 = 430.0;
 
-/// Points of the arc that shows the spin.
+/// Number of segments of the arc that shows the spin.
 const ARC: u32 = 24;
 
 /// Draws the figure.
@@ -66,7 +66,8 @@ pub fn draw(triangle: &Triangle) -> String {
     if is_spun {
         let [a, b, c] = unspun;
         outside.line(&mut canvas, "faint dash", &[a, b, c, a]);
-        // Where the way from the centroid to the base's right end has turned to.
+        // The arc follows the midpoint between the centroid and the base's right end as the
+        // triangle is spun.
         let on_way = |i: u32| {
             let [_, right, _] = spun(spin * (f64::from(i) / f64::from(ARC)));
             outside.at(centroid.midpoint(right))

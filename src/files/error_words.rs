@@ -13,7 +13,7 @@ pub fn in_words(error: io::Error) -> io::Error {
     let kind = error.kind();
     let words = match kind {
         ErrorKind::NotFound => "there is no such file or folder",
-        // This is EPERM, as for an immutable file.
+        // On Unix, error 1 is EPERM, which for example an immutable file causes.
         ErrorKind::PermissionDenied if cfg!(unix) && number.starts_with("1)") => {
             "the system protects it from being changed"
         }

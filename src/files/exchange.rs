@@ -13,11 +13,12 @@ use super::{
     original::{Original, changed, id},
 };
 
-/// Replaces the file at `path`, which was read as `original`, by the temporary file.
+/// Replaces the file at `path`, which was read as `original`, by the temporary file. Fails if the
+/// file at `path` is no longer what was read.
 ///
-/// Another program may save the file between the last check and the replacement. Therefore the two
-/// files exchange their names, and the replaced file is checked once more: if it is not what was
-/// read, the original state is restored and the result is an error. On systems that cannot exchange
+/// Another program may save the file between the check and the replacement. Therefore, the two
+/// files exchange their names, and the replaced file is checked once more. If it is not what was
+/// read, the names are exchanged back, and the result is an error. On systems that cannot exchange
 /// names, the file is replaced without the second check.
 pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io::Result<()> {
     // After the exchange, the old file has a temporary name. The lock keeps other processes from
@@ -39,8 +40,9 @@ pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io
     }
 }
 
-/// Gives the file that now has the temporary name its path back. If another program has saved a
-/// file at the path in the meantime, that file is newer and keeps the path.
+/// Exchanges the names back: the file that now has the temporary name gets its path again. If
+/// another program has saved a file at the path in the meantime, that file is newer and keeps the
+/// path.
 fn bring_back(temporary: &NamedTempFile, path: &Path) -> io::Result<()> {
     let mut at_path = id(&temporary.as_file().metadata()?);
     loop {
@@ -82,11 +84,11 @@ mod tests {
 
     use super::*;
 
-    /// Index of the last round of the test.
+    /// Index of the last round of [`what_is_saved_meanwhile_stays`].
     const LAST: u32 = 400;
 
-    /// Another program saves the file at moments from before the replacement to after it; what it
-    /// saved must never be lost.
+    /// Another program saves the file, in each round at another moment from before the replacement
+    /// to after it. What it saved must never be lost.
     #[test]
     fn what_is_saved_meanwhile_stays() {
         let folder = tempdir().unwrap();
@@ -100,8 +102,9 @@ mod tests {
             let theirs = folder.path().join("theirs");
             fs::write(&theirs, "theirs").unwrap();
             let save = || fs::rename(&theirs, &path).unwrap();
-            // The first round saves before the replacement and the last round after it: on a busy
-            // machine, the thread of the other rounds may never run in between.
+            // In the first round, the file is saved before the replacement, and in the last round
+            // after it. On a busy machine, the thread of the rounds between may never run at the
+            // right moment.
             let done = match round {
                 0 => {
                     save();
@@ -137,7 +140,8 @@ mod tests {
         let folder = tempdir().unwrap();
         let path = folder.path().join("a.scn");
         let temporary = NamedTempFile::new_in(folder.path()).unwrap();
-        // The older file has the temporary name; the newer one at the path is another program's.
+        // The older file has the temporary name, and another program has saved a newer one at the
+        // path.
         fs::remove_file(temporary.path()).unwrap();
         fs::write(temporary.path(), "older").unwrap();
         fs::write(&path, "newer").unwrap();

@@ -54,7 +54,7 @@ impl FileKind {
         Self::File
     }
 
-    /// Returns the error for a file of this kind where a regular file is needed.
+    /// Returns the error for a file of this kind if a regular file is needed.
     pub fn refused(self) -> io::Error {
         let kind = match self {
             Self::Folder => io::ErrorKind::IsADirectory,
@@ -85,8 +85,8 @@ pub fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Opens a regular file for reading, and follows links. Fails for any other kind of file, and never
-/// blocks.
+/// Opens a regular file for reading, and follows links. Fails for any other kind of file. Opening a
+/// pipe does not block.
 pub fn open(path: &Path) -> io::Result<File> {
     open_if(path, |kind| kind == FileKind::File)
 }
@@ -100,14 +100,14 @@ fn is_argument(path: &Path) -> bool {
             .any(|folder| path.parent() == Some(folder))
 }
 
-/// Opens an argument of the command line for reading: a regular file, or anything except a folder
-/// if the path names a descriptor that the shell has opened.
+/// Opens an argument of the command line for reading. If the path names a descriptor that the shell
+/// has opened, it may be anything except a folder; otherwise it must be a regular file.
 pub fn open_argument(path: &Path) -> io::Result<File> {
     if !is_argument(path) {
         return open(path);
     }
     let file = open_if(path, |kind| kind != FileKind::Folder)?;
-    // Whoever connected a pipe expects the program to wait for its data.
+    // A program is expected to wait for the data of a pipe that it got as an argument.
     wait_for_it(&file)?;
     Ok(file)
 }
@@ -123,7 +123,7 @@ fn open_at_once(path: &Path, is_wanted: impl Fn(FileKind) -> bool) -> io::Result
     };
     check(&fs::metadata(path)?)?;
     let file = without_waiting(OpenOptions::new().read(true)).open(path)?;
-    // Another program may have replaced the file since the first check.
+    // Another program may have replaced the file between the check and opening it.
     check(&file.metadata()?)?;
     Ok(file)
 }
@@ -142,7 +142,7 @@ pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// Makes reads and writes of an open pipe blocking again.
+/// Makes reads and writes of an open pipe blocking.
 #[cfg(unix)]
 pub(super) fn wait_for_it(file: &File) -> io::Result<()> {
     use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
@@ -164,8 +164,8 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a text file of the system, such as `/proc/meminfo`. Returns `None` if the file cannot be
 /// read.
 pub fn read_system_text(path: impl AsRef<Path>) -> Option<String> {
-    /// Maximum length in bytes. The longest file that is read, `/proc/cpuinfo`, has at most a few
-    /// thousand bytes for each processor.
+    /// Maximum length of the file, in bytes. A longer file is not read. The longest that is needed,
+    /// `/proc/cpuinfo`, has at most a few thousand bytes for each processor.
     const LIMIT: u64 = 16 << 20;
     String::from_utf8(read(path.as_ref(), LIMIT).ok()?).ok()
 }

@@ -2,12 +2,12 @@
 //!
 //! In: a path and a purpose. Out: a file, or an error in words. `kind` checks what kind of file a
 //! path names before it is opened, so that nothing blocks on a pipe. `original` recognises a file
-//! that was read. `write` writes every file completely or not at all, through a `temporary` one.
-//! The two `exchange` their names if another program may save the old one meanwhile; a file that
-//! cannot be replaced is written `in_place`. `output_folder` replaces only files that Pinhole
-//! itself wrote into a folder. `user_files` stores small files for the user alone in the `state`
-//! folder. `error_words` expresses the system's errors in plain words. Other modules decide what
-//! files contain.
+//! that was read. `write` writes every file completely or not at all, through a `temporary` file
+//! that then replaces the old one. In `exchange`, the two files exchange their names if another
+//! program may save the old one meanwhile. A file that cannot be replaced is written `in_place`.
+//! `output_folder` replaces only files that Pinhole itself wrote into a folder. `user_files` stores
+//! small files for the user alone in the `state` folder. `error_words` expresses the system's
+//! errors in plain words. Other modules decide what files contain.
 #![allow(
     clippy::disallowed_methods,
     reason = "everything else opens, makes and replaces files by this module"

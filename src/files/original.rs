@@ -1,4 +1,4 @@
-//! A file as it was read. Before the file is replaced, it is compared with this, since another
+//! A file as it was read. Before the file is replaced, it is compared with this copy, since another
 //! program may have saved it meanwhile.
 
 use std::{
@@ -10,8 +10,8 @@ use std::{
 
 use super::{error_words::in_words, kind::read};
 
-/// Identity of a file: its device and its inode number there. If another file replaces it, the
-/// identity at the path changes.
+/// Identity of a file: the number of its device and its inode number there. If another file
+/// replaces the file, the identity at the path changes.
 pub type FileId = (u64, u64);
 
 /// Returns the identity of the file that the metadata describe.
@@ -32,10 +32,10 @@ pub fn id(_: &Metadata) -> FileId {
 pub struct Original(Option<(FileId, Vec<u8>)>);
 
 impl Original {
-    /// Reads the file at `path` with the function `read`.
+    /// Reads the file at `path` with the function `read`, and remembers its identity.
     pub fn read(path: &Path, read: impl FnOnce(&Path) -> io::Result<Vec<u8>>) -> io::Result<Self> {
-        // If another file replaces this one between the two calls, the identity differs later, and
-        // the file counts as changed.
+        // Another file may replace this one between the two calls. The identity that is stored here
+        // then differs from that of the new file, which counts as changed.
         let found = fs::metadata(path).map_err(in_words)?;
         Ok(Self(Some((id(&found), read(path)?))))
     }
@@ -50,10 +50,10 @@ impl Original {
         self.0.as_ref().map(|(_, bytes)| bytes.as_slice())
     }
 
-    /// Fails if the file at the path is not the one that was read. If there was none, does nothing.
+    /// Fails if the file at `path` is not the file that was read. Does nothing if no file was read.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
-            // Creating the new file fails if there is a file by then.
+            // If a file exists by then, creating the new one fails.
             return Ok(());
         };
         let is_same = || {

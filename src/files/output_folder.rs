@@ -1,8 +1,8 @@
 //! A folder for the output files of a command, in which the user's own files are never replaced.
 //!
 //! The folder contains a list, `.pinhole`, of the files that Pinhole wrote there, with the SHA-256
-//! of each content, in the format that `sha256sum --check` reads. A file belongs to the user if it
-//! is not in the list, or if its hash is none of those in the list.
+//! of each content, in the format that `sha256sum --check` reads. A file that is not in the list,
+//! or has another hash, belongs to the user.
 
 use std::{
     collections::BTreeMap,
@@ -20,16 +20,17 @@ use super::{
     write::{Purpose, check_writable, write},
 };
 
-/// File name of the list.
+/// File name of the list of Pinhole's files.
 const LIST: &str = ".pinhole";
 
-/// First line of the list.
+/// First line of the list of Pinhole's files.
 const HEAD: &str = "# Files that pinhole made here, and replaces unless they were changed\n";
 
-/// Maximum length of the list, in bytes.
+/// Maximum length of the list of Pinhole's files, in bytes. A longer list is an error.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// Maximum length, in bytes, of a file that Pinhole wrote into the folder.
+/// Maximum length, in bytes, of a file that Pinhole wrote into the folder. A longer file cannot be
+/// Pinhole's, so it is not replaced.
 const FILE_LIMIT: u64 = 256 << 20;
 
 /// A folder for the files of a command.
@@ -41,12 +42,12 @@ pub struct OutputFolder {
     hashes: BTreeMap<String, Vec<String>>,
 }
 
-/// Error: a file or folder prevents the files from being written.
+/// Error that a file or a folder prevents the files from being written.
 #[derive(Debug)]
 pub struct NotWritten {
-    /// The file or folder.
+    /// Path of the file or folder.
     pub path: PathBuf,
-    /// The cause, in words.
+    /// The cause of the error, in words.
     pub error: io::Error,
 }
 
@@ -66,7 +67,7 @@ impl OutputFolder {
     /// # Errors
     ///
     /// The folder cannot be created or written to, or one of the names is taken by a file of the
-    /// user. No file was written then.
+    /// user. In both cases, no file was written.
     pub fn open<'n>(
         path: &Path,
         names: impl IntoIterator<Item = &'n str>,
@@ -104,16 +105,17 @@ impl OutputFolder {
     ///
     /// # Errors
     ///
-    /// A file of the user is in the way, or a file cannot be written. The first is usually found
-    /// before any file is written. Otherwise the files after the failing one are missing.
+    /// A file of the user is in the way, or a file cannot be written. All files of the user are
+    /// usually found before any file is written. Otherwise, the files after the failing one are
+    /// missing.
     pub fn write<T: AsRef<[u8]>>(&mut self, files: &[(String, T)]) -> Result<(), NotWritten> {
         // Another run may have written other files here since the folder was opened.
         let list = self.read_list()?;
         for (name, _) in files {
             self.check(name)?;
         }
-        // The list first gets all new hashes. So whenever this process is ended, the list contains
-        // the hash of each file's content, old or new.
+        // The new hashes are added to the list before any file is written. If this process is ended
+        // at any time, the list therefore contains the hash of each file's content, old or new.
         for (name, text) in files {
             let hashes = self.hashes.entry(name.clone()).or_default();
             let hash = hash(text.as_ref());
@@ -123,7 +125,7 @@ impl OutputFolder {
         }
         self.write_list(&list)?;
         for (name, text) in files {
-            // Another program may have created a file there while the previous files were written.
+            // Another program may have created a file of this name while other files were written.
             let original = self.check(name)?;
             let path = self.path.join(name);
             let folder = folder(&path);
@@ -137,7 +139,7 @@ impl OutputFolder {
         self.write_list(&list)
     }
 
-    /// Writes a file if the file at its path is still `original`.
+    /// Writes the file `name` if the file at its path is still `original`.
     fn write_one(&self, name: &str, original: &Original, bytes: &[u8]) -> Result<(), NotWritten> {
         let path = self.path.join(name);
         let go_on = AtomicBool::new(false);
@@ -149,8 +151,8 @@ impl OutputFolder {
             .map_err(|error| NotWritten { path, error })
     }
 
-    /// Reads the list from the folder, and replaces the hashes by those in it. Returns the list as
-    /// it was read.
+    /// Reads the list from the folder, and replaces `hashes` by those in the list. Returns the
+    /// list's file as it was read.
     fn read_list(&mut self) -> Result<Original, NotWritten> {
         let path = self.path.join(LIST);
         let list = read_list_file(&path).map_err(|error| NotWritten::new(&path, error))?;
@@ -158,7 +160,7 @@ impl OutputFolder {
         Ok(list)
     }
 
-    /// Replaces the list, if it has changed and its file is still `original`.
+    /// Writes the list if it has changed. Fails if its file is no longer `original`.
     fn write_list(&self, original: &Original) -> Result<(), NotWritten> {
         let text = self.list();
         if original.bytes() == Some(text.as_bytes()) {
@@ -175,8 +177,8 @@ impl OutputFolder {
         HEAD.to_owned() + &lines.collect::<String>()
     }
 
-    /// Reads the file of a name, if it exists. Fails if Pinhole did not write the file or it was
-    /// changed since, or if a part of the path to it is not a folder.
+    /// Reads the file `name`, if it exists. Fails if Pinhole did not write the file, if it was
+    /// changed since, or if a part of its path is not a folder.
     fn check(&self, name: &str) -> Result<Original, NotWritten> {
         let mut path = self.path.clone();
         let mut parts = name.split('/').peekable();
@@ -236,7 +238,7 @@ fn refused(message: &str) -> io::Error {
 
 const LINK: &str = "it is a symbolic link, and nothing is written outside of the folder";
 
-/// Reads the list at a path, if it exists. Fails if the path is a symbolic link.
+/// Reads the list's file at a path, if it exists. Fails if the path is a symbolic link.
 fn read_list_file(path: &Path) -> io::Result<Original> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => return Err(io::Error::other(LINK)),
@@ -247,7 +249,7 @@ fn read_list_file(path: &Path) -> io::Result<Original> {
     Original::read(path, |path| read(path, LIST_LIMIT))
 }
 
-/// Parses a list into the names of the files and their hashes.
+/// Parses the list of Pinhole's files. Returns the hashes of each file by its name.
 fn parse_list(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
     let Some(bytes) = list.bytes() else {
         return Ok(BTreeMap::new());

@@ -1,4 +1,4 @@
-//! The folder in which programs keep state for each user.
+//! The folder in which programs store a user's state, such as `~/.local/state`.
 
 use std::{
     env, fs, io,
@@ -21,8 +21,8 @@ pub(super) fn state_folder() -> Option<PathBuf> {
     Some(base.join("pinhole"))
 }
 
-/// Creates the state folder, or a folder in it, if it is missing, so that no other user can read
-/// it.
+/// Creates the state folder, or a folder in it, if it is missing. No other user can read the
+/// folder.
 pub(super) fn make(folder: &Path) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
     builder.recursive(true);
@@ -31,7 +31,8 @@ pub(super) fn make(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
-/// Returns the first 128 bits of the SHA-256 of `long` in hexadecimal, for use in a file's name.
+/// Returns a short text for `long`, to be used in a file's name: the first 128 bits of its SHA-256
+/// in hexadecimal.
 pub(super) fn digest(long: &[u8]) -> String {
     let digest = hmac_sha256::Hash::hash(long);
     let digits = digest[..16].iter().map(|byte| format!("{byte:02x}"));

@@ -1,5 +1,5 @@
-//! Temporary files that stand beside the final ones until their content is complete. Each is locked
-//! as long as it is open, so one without a lock was left by a process that was killed.
+//! Temporary files, which lie beside the final ones until their content is complete. Each is locked
+//! as long as it is open. Therefore, one without a lock was left by a process that was killed.
 
 use std::{
     ffi::OsString,
@@ -12,8 +12,9 @@ use tempfile::NamedTempFile;
 
 use super::kind;
 
-/// Maximum number of files that are created until one of them can be locked. Other processes may
-/// lock a new file while they look for leftovers, but not this many times in a row.
+/// Maximum number of files that are created until one of them can be locked; then writing fails.
+/// Other processes may lock a new file while they look for leftovers, but not this many times in a
+/// row.
 const MOST_TRIES: usize = 100;
 
 /// Calls `make` until it creates a file that can be locked, at most [`MOST_TRIES`] times. Does not
@@ -21,9 +22,10 @@ const MOST_TRIES: usize = 100;
 pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
     for _ in 0..MOST_TRIES {
         let file = make()?;
-        // If the file system has no locks, no process can lock the file as a leftover either.
+        // On a file system without locks, no process can lock the file as a leftover, so it counts
+        // as locked.
         let is_locked = !matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
-        // Before the file was locked, another process may have removed it as a leftover.
+        // Another process may have removed the file as a leftover before it was locked.
         if is_locked && file.path().exists() {
             return Ok(file);
         }
@@ -33,7 +35,7 @@ pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result
 }
 
 /// Returns the unlocked files in a folder whose names consist of `prefix`, six random characters,
-/// and `suffix`. Each is returned with its name, and stays locked as long as it is open.
+/// and `suffix`, each with its name. The returned files are locked until they are closed.
 pub fn left(folder: &Path, prefix: &str, suffix: &str) -> Vec<(OsString, File)> {
     let is_ours = |name: &OsString| {
         let name = name.to_str();

@@ -31,7 +31,7 @@ pub fn keep(path: &Path, text: &str) -> io::Result<()> {
     })
 }
 
-/// Removes a kept file, if it exists. Errors are ignored.
+/// Removes a file that [`keep`] wrote, if it exists. Errors are ignored.
 pub fn forget(path: &Path) {
     let _ = fs::remove_file(path);
 }

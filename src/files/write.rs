@@ -18,7 +18,7 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Destination of a file's content.
+/// Destination of a file's content, which can be written at any position.
 pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
@@ -29,27 +29,28 @@ pub enum Purpose<'a> {
     /// The user named the file. An existing file is replaced, and a link is followed. A pipe or a
     /// device gets the content once the content is complete.
     Named,
-    /// Pinhole chose the name, in or below this folder. An existing file is replaced, also at the
-    /// end of a link, but never outside of the folder.
+    /// Pinhole chose the name, in or below a folder. An existing file is replaced, also at the end
+    /// of a link, but never outside of the folder.
     Within(&'a Path),
-    /// As `Within`, but only if the file is still what was read, or still missing.
+    /// Pinhole chose the name, in or below a folder. The file is replaced only if it is still what
+    /// was read, or created if there was none.
     Again {
         /// The folder that a link must not lead out of.
         within: &'a Path,
         /// The file as it was read.
         original: &'a Original,
     },
-    /// As `Within`, but no other user can read the file.
+    /// As [`Within`](Self::Within), but no other user can read the file.
     Private(&'a Path),
     /// The file is new. If a file exists, it is left unchanged, and writing fails.
     New,
-    /// The file was read and is changed. It is replaced only if it is still what was read; a link
-    /// is followed.
+    /// The file was read, and its text is changed. The file is replaced only if it is still what
+    /// was read; a link is followed.
     Change(&'a Original),
 }
 
 impl<'a> Purpose<'a> {
-    /// Returns the folder that a link must not lead out of, if there is one.
+    /// Returns the folder that a link must not lead out of, or `None` if links may lead anywhere.
     fn outer(self) -> Option<&'a Path> {
         match self {
             Self::Within(outer) | Self::Private(outer) | Self::Again { within: outer, .. } => {
@@ -59,7 +60,8 @@ impl<'a> Purpose<'a> {
         }
     }
 
-    /// Returns the original that the file at the path must still be equal to, if there is one.
+    /// Returns the original that the file at the path must still be equal to, or `None` if the file
+    /// was not read.
     fn original(self) -> Option<&'a Original> {
         match self {
             Self::Change(original) | Self::Again { original, .. } => Some(original),
@@ -115,7 +117,7 @@ fn write_at_once(
 }
 
 /// Writes the content that the function `write` produces to a stream, such as standard output.
-/// Fails once `cancel` is set; bytes that were written by then cannot be taken back.
+/// Fails once `cancel` is set; the bytes written before then stay written.
 pub fn write_stream(
     sink: impl Write,
     cancel: &AtomicBool,
@@ -147,10 +149,10 @@ fn writing_error(path: &Path, error: io::Error) -> io::Error {
     }
 }
 
-/// Where the content is written.
+/// Destination of the content.
 enum WriteTarget {
     File(FileTarget),
-    /// A pipe or a device, which is written to and not replaced.
+    /// A pipe or a device, to which the content is written.
     Stream,
 }
 
@@ -185,7 +187,8 @@ fn target(path: &Path, purpose: Purpose<'_>) -> io::Result<WriteTarget> {
     Ok(target)
 }
 
-/// Fails if the target now lies outside of the folder that its purpose allows.
+/// Fails if the target lies outside of the folder that `purpose` allows. A link may have been
+/// changed since the last check.
 fn check_folder(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<()> {
     let Some(outer) = purpose.outer() else {
         return Ok(());
@@ -202,8 +205,9 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
     match fs::metadata(path) {
         Ok(found) => match FileKind::of(&found) {
             FileKind::File => {
-                // Replacing a file requires only the permission to write to its folder, but its
-                // owner expects that a write-protected file is not changed.
+                // To replace a file, only the permission to write to its folder is needed. However,
+                // the owner of a write-protected file expects that it is not changed, so the file
+                // itself must be writable.
                 without_waiting(OpenOptions::new().write(true)).open(path)?;
                 Ok(WriteTarget::File(FileTarget {
                     path: fs::canonicalize(path)?,
@@ -214,8 +218,8 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
             kind => Err(kind.refused()),
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
-            // For a dangling link, the target is the file that the link names. A cycle of links is
-            // another error.
+            // A dangling link is followed: the file that it names is created. A cycle of links
+            // causes another error.
             Ok(target) => behind_links(&folder(path).join(target)),
             Err(_) => Ok(WriteTarget::File(FileTarget {
                 path: path.to_owned(),
@@ -226,7 +230,7 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
     }
 }
 
-/// Writes a temporary file, and replaces the target by it.
+/// Writes a temporary file, which then replaces the target.
 fn replace(
     target: &FileTarget,
     purpose: Purpose<'_>,
@@ -234,14 +238,14 @@ fn replace(
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
     let temporary = temporary(target, purpose)?;
-    // The sink is the `File` rather than the `NamedTempFile`, whose errors would name the temporary
+    // The sink is the [`File`], since errors of the [`NamedTempFile`] would name the temporary
     // path.
     let sink = temporary.as_file();
     let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
     write(&mut out)?;
     out.flush()?;
     drop(out);
-    // Only syncing reveals whether there was room for all of the content.
+    // Only syncing shows whether the disk had room for all of the content.
     temporary.as_file().sync_all()?;
     check(cancel)?;
     check_folder(target, purpose)?;
@@ -270,8 +274,8 @@ fn exists() -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, message)
 }
 
-/// Writes to a pipe or a device once the content is complete. Does not wait until another program
-/// opens the other end of a pipe. If one has, writing takes as long as that program reads.
+/// Writes to a pipe or a device once the content is complete. Fails if no program has opened the
+/// other end of a pipe. Otherwise, writing takes as long as that program reads.
 fn write_device(
     path: &Path,
     cancel: &AtomicBool,
@@ -307,17 +311,19 @@ const SUFFIX: &str = ".tmp";
 fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempFile> {
     let FileTarget { path, found } = target;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // On most systems a name has at most 255 bytes, and each character may take four bytes.
+    // On most systems, a name has at most 255 bytes. Each of the 50 characters may take four bytes.
     let name: String = name.chars().take(50).collect();
     let prefix = format!(".pinhole-{name}-");
     remove_leftovers(folder(path), &prefix);
-    // By default, no other user can read a temporary file.
+    // Temporary files are created so that no other user can read them, unless `permissions` is
+    // called.
     let is_private = matches!(purpose, Purpose::Private(_));
     let mut builder = Builder::new();
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     if found.is_none() && !is_private {
-        // These are the usual permissions of a new file; the system removes those in the umask.
+        // These are the usual permissions of a new file, from which the system removes those in the
+        // umask.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = locked(|| builder.tempfile_in(folder(path)))?;
@@ -351,7 +357,8 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
         .or_else(|_| fchown(file, None, group))
         .is_ok();
     let mode = found.mode() & 0o777;
-    // If the group could not be kept, the new group gets no more permissions than all other users.
+    // If the file has another group than before, this group gets no more permissions than all other
+    // users have.
     let allowed = if has_group {
         mode
     } else {
@@ -365,7 +372,7 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     file.set_permissions(found.permissions())
 }
 
-/// A sink that fails once `cancel` is set.
+/// A sink whose writes fail once `cancel` is set.
 struct Checked<'a, S> {
     sink: S,
     cancel: &'a AtomicBool,
@@ -373,7 +380,7 @@ struct Checked<'a, S> {
 
 fn check(cancel: &AtomicBool) -> io::Result<()> {
     if cancel.load(Ordering::Relaxed) {
-        // The error is not `Interrupted`, since writers try again after that.
+        // The error's kind is not `Interrupted`, since writers would try again.
         return Err(io::Error::other("interrupted"));
     }
     Ok(())

@@ -1,9 +1,9 @@
 //! The difference of two pictures, and its position.
 //!
-//! In: two films. Out: the root mean square of their differences in linear light, in which means
-//! are taken. Also, in steps of 8-bit sRGB, in which differences are visible, the largest
-//! difference and the number of pixels beyond a tolerance. A step is 1/255 of the way from black to
-//! white.
+//! In: two films. Out: the root mean square of their differences in linear light, the largest
+//! difference, and the number of pixels that differ by more than a tolerance. The last two are in
+//! steps of 8-bit sRGB, since equal steps look about equally large. A step is 1/255 of the way from
+//! black to white.
 
 use thiserror::Error;
 
@@ -13,28 +13,32 @@ use crate::color::linear_to_srgb;
 /// Number of steps of 8-bit sRGB between black and white.
 const STEPS: f64 = 255.0;
 
-/// Error bound of decoding and encoding, in steps of 8-bit sRGB. It covers a few roundings of
-/// numbers up to 255, and the two pieces of the curve, which meet within 3e-8 of the whole range.
+/// Bound of the rounding errors of decoding and encoding a channel, in steps of 8-bit sRGB. A
+/// difference counts as larger than a tolerance only if it exceeds it by more than this bound. It
+/// covers a few roundings of numbers up to 255, and the gap of at most 3e-8 of the range between
+/// the two pieces of the sRGB curve.
 const SLACK: f64 = 1e-5;
 
-/// Steps of 8-bit sRGB per unit of linear light in the dark, where the curve is steepest.
+/// Maximum slope of the sRGB curve, which it has at black, in steps of 8-bit sRGB per unit of
+/// linear light. It converts a bound of linear light to a bound in steps.
 const STEEPEST: f64 = 12.92 * STEPS;
 
 /// Names of a pixel's channels.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// The largest difference that is ignored.
+/// Largest difference of a channel that still counts as equal.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<'a> {
     /// Tolerance of every channel, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// Error bound of each pixel of a picture, in linear light, if known. Converted to steps, it
-    /// is added to `steps`.
+    /// Error bound of each pixel's mean, in linear light, row by row; `None` if it is unknown. The
+    /// bound of a pixel, converted to steps, is added to `steps`.
     pub bounds: Option<&'a [f32]>,
 }
 
 impl Tolerance<'_> {
-    /// Extra tolerance of the pixel with index `at`, in steps of 8-bit sRGB, from its error bound.
+    /// Returns the extra tolerance of the pixel with index `at`, in steps of 8-bit sRGB, from its
+    /// error bound.
     fn slack(&self, at: usize) -> f64 {
         let bound = self.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
         bound * STEEPEST
@@ -50,12 +54,12 @@ pub struct Comparison {
     pub height: u32,
     /// Root mean square of the differences of all channels of all pixels, in linear light, 0 to 1.
     pub rmse: f64,
-    /// The largest difference. Of equal differences, it is the first one, row by row.
+    /// The largest difference. If several are equally large, it is the first of them, row by row.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
-    /// Number of pixels that may or may not differ by more than the tolerance, depending on their
-    /// error bounds.
+    /// Number of pixels whose error bounds leave open whether they differ by more than the
+    /// tolerance.
     pub undecided: u64,
 }
 
@@ -95,7 +99,7 @@ impl SizesDiffer {
 }
 
 impl Comparison {
-    /// Returns whether no pixel certainly differs by more than the tolerance.
+    /// Returns whether `beyond` is 0. Pixels that are only `undecided` do not count.
     pub fn is_equal(&self) -> bool {
         self.beyond == 0
     }
@@ -152,7 +156,7 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
 }
 
 /// Returns the channel in which two pixels differ most, and the difference in steps of 8-bit sRGB.
-/// Of equal differences, the first channel is returned.
+/// If several channels differ equally, the first of them is returned.
 fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
     let differences = [0, 1, 2].map(|channel| {
         let difference = (steps(p[channel]) - steps(q[channel])).abs();
@@ -219,7 +223,7 @@ fn heat(steps: f64) -> [f64; 3] {
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
 }
 
-/// Converts linear light to steps of 8-bit sRGB. Light from 0 to 1 gives 0 to 255.
+/// Converts linear light to steps of 8-bit sRGB: from 0 to 1 to the range from 0 to 255.
 fn steps(light: f64) -> f64 {
     STEPS * linear_to_srgb(light)
 }

@@ -36,7 +36,7 @@ use super::{
 };
 use crate::{area::Area, files::Sink};
 
-/// A film of linear light.
+/// A film of linear light, in either precision.
 #[derive(Clone, Copy, Debug)]
 pub enum LinearFilm<'a> {
     /// Means in `f64`.
@@ -80,8 +80,8 @@ impl LinearFilm<'_> {
     }
 }
 
-/// Writes `film`, which shows `part` of the picture `whole`, as an OpenEXR file. `part` may be all
-/// of it.
+/// Writes `film` as an OpenEXR file. `part` is the area of the picture `whole` that `film` shows;
+/// it may be all of it.
 ///
 /// # Errors
 ///
@@ -107,7 +107,7 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
     let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
-        // A picture has at most 2^20 columns and rows.
+        // Columns and rows are below 2^20, so the conversions to `u32` are exact.
         <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
     });
     let encoding = Encoding {
@@ -159,7 +159,7 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
         // The size is checked before anything is decompressed.
         let Vec2(width, height) = header.layer_size;
         let channels = &header.channels.list;
-        // Channels other than the usual four are decoded, too.
+        // All channels of the file are decoded, not only R, G, B and A, so all of them count.
         let sizes = channels
             .iter()
             .map(|channel| channel.sample_type.bytes_per_sample());

@@ -1,16 +1,17 @@
 //! The compression of a JPEG file, and its effect on another picture.
 //!
 //! In: a file. Out: its quantization tables of luma and of chroma, and its chroma subsampling. The
-//! tables are the first two in the file, as programs write them, or the only one for both. A lossy
-//! WebP is treated as a JPEG with 2 × 2 subsampling and sufficiently large steps.
+//! tables are the first two in the file, in the order in which programs write them; a single table
+//! counts for both. A lossy WebP is treated as a JPEG with 2 × 2 subsampling whose steps are all
+//! [`WEBP_STEP`].
 
 use image::ImageFormat;
 use jpeg_encoder::{
     ChromaSubsamplingMethod, ColorType, Encoder, QuantizationTableType, SamplingFactor,
 };
 
-/// Quantization step that is assumed for all coefficients of a lossy WebP: that of a quality of
-/// about 75.
+/// Quantization step that is assumed for every coefficient of a lossy WebP. It is about the step of
+/// a JPEG of quality 75.
 const WEBP_STEP: u16 = 16;
 
 /// The lossy coding of a JPEG file (ITU-T T.81).
@@ -24,11 +25,11 @@ pub struct Jpeg {
     pub shared: [u8; 2],
 }
 
-/// A quantization table of 64 steps. Each coefficient of a block is rounded to a multiple of its
-/// step; the first step belongs to the block's mean.
+/// A quantization table: a step for each of the 64 coefficients of a block of 8 × 8 pixels. Each
+/// coefficient is rounded to a multiple of its step. The first step belongs to the block's mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
-    /// Square of the first step.
+    /// Square of the first step, which is that of the block's mean.
     pub first: f64,
     /// Mean of the squares of the steps.
     pub mean: f64,
@@ -40,7 +41,7 @@ impl JpegTable {
     /// Builds a table from its steps in zigzag order, as files contain them.
     fn new(zigzag: [u16; 64]) -> Self {
         let mut order: Vec<usize> = (0..64).collect();
-        // The zigzag runs diagonal by diagonal, in alternating directions.
+        // The zigzag runs along the diagonals of the block, in alternating directions.
         order.sort_by_key(|at| {
             let (x, y) = (at % 8, at / 8);
             (x + y, if (x + y) % 2 == 0 { x } else { y })
@@ -142,7 +143,7 @@ pub fn is_whole(bytes: &[u8]) -> bool {
     /// The marker in front of entropy-coded data.
     const SCAN: u8 = 0xda;
     const END: u8 = 0xd9;
-    // The position after the start marker.
+    // This is the position after the start marker of the file.
     let mut at = 2;
     loop {
         // In entropy-coded data, a byte of 255 is followed by a 0. The markers 0xd0 to 0xd7, which

@@ -5,8 +5,8 @@ use crate::math::{Double, Real, two_product};
 /// Returns the mean of a pixel's samples, Σ count · colour / n, rounded once, where n is the sum of
 /// the counts.
 ///
-/// `seen` contains the counts and colours in the order of the palette, so that the same counts
-/// always give the same bits. The sum and the quotient are double-doubles with errors of about
+/// `seen` contains the count of each colour. Its order is always that of the palette, so that the
+/// same counts give the same bits. The sum and the quotient are double-doubles with errors of about
 /// 2^−100 of the mean. A single colour is returned unchanged.
 pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     let mut samples = 0;
@@ -21,9 +21,9 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     sums.map(|sum| quotient(&sum, samples as f64))
 }
 
-/// Returns sum/count by two steps of long division. The first remainder is exact except for the
-/// rounding when `lo` is added. A quotient halfway between two `f64` is therefore also exact before
-/// its only rounding.
+/// Returns sum/count by two steps of long division. The remainder of the first step is exact,
+/// except for the rounding when `lo` is added. Therefore, a quotient halfway between two `f64` is
+/// exact before it is rounded for the only time.
 fn quotient(sum: &Double, count: f64) -> f64 {
     let first = sum.hi / count;
     let product = two_product(first, count);

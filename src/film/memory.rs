@@ -40,8 +40,8 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
     }
 }
 
-/// Fails as `check` does, or if the system does not allocate the needed bytes. The allocation
-/// that tests this is freed at once.
+/// Checks the available memory, then tries to allocate the needed bytes, and frees them at once.
+/// Fails if there is too little memory or the system refuses the allocation.
 pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
     let needed = check(width, height, bytes_per_pixel)?;
     let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();
@@ -66,12 +66,12 @@ fn available() -> Option<u64> {
 
 fn machine() -> Option<u64> {
     let table = read_system_text("/proc/meminfo")?;
-    // The table is in KiB.
+    // The table gives numbers of KiB.
     Some(entry(&table, "MemAvailable:")? * 1024)
 }
 
-/// Returns the least number of bytes that one of the control groups around this process may still
-/// allocate. Returns `None` if there is no limit.
+/// Returns how many bytes the control groups around this process still allow it to allocate: the
+/// least number of all groups. Returns `None` if no group has a limit.
 fn control_group() -> Option<u64> {
     const ROOT: &str = "/sys/fs/cgroup";
     let groups = read_system_text("/proc/self/cgroup")?;
@@ -96,7 +96,7 @@ fn left(group: &Path) -> Option<u64> {
     Some(limit.saturating_sub(usage.saturating_sub(cache)))
 }
 
-/// Returns the number after `name` at the beginning of a line of a table.
+/// Returns the number after `name` in the first line of `table` that begins with `name`.
 fn entry(table: &str, name: &str) -> Option<u64> {
     let entry = table.lines().find_map(|line| line.strip_prefix(name))?;
     entry.split_whitespace().next()?.parse().ok()

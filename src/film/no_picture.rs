@@ -1,6 +1,6 @@
 //! Files that are no pictures although one is expected: what they are, and what to do about it.
 
-/// First bytes of files that are no pictures, and the message about each kind.
+/// Kinds of files that are no pictures: the first bytes, and the message for users.
 const BEGINNINGS: [(&[u8], &str); 8] = [
     (
         b"version https://git-lfs",

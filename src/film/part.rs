@@ -3,15 +3,17 @@
 use super::pixels::Film;
 use crate::area::Area;
 
-/// Maximum number of pixels that are compared, summed over all positions.
+/// Maximum number of pixels that are compared, summed over all positions. If the part has more,
+/// only some of its pixels are compared, at equal distances.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum ratio of the difference at the part's position to the mean difference over all
-/// positions. Sampling noise leaves less.
+/// Maximum ratio of the difference at the best position to the mean difference over all positions.
+/// Above it, the position counts as unknown. Sampling noise leaves a smaller ratio at the right
+/// position.
 const MAX_LEFT: f64 = 0.2;
 
-/// Minimum ratio of the part's area to that of the whole picture. A smaller part resembles too many
-/// positions.
+/// Minimum ratio of the part's area to that of the whole picture. The position of a smaller part
+/// counts as unknown, since it resembles the picture at too many positions.
 const MIN_SHARE: f64 = 0.05;
 
 /// Finds the position in a whole picture where a part differs far less than elsewhere. Returns the
@@ -26,8 +28,8 @@ pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     }
     let places = u64::from(columns) * u64::from(rows);
     let compared = (MAX_COMPARED / places).clamp(16, 400).min(area.pixels());
-    // One of every `step` pixels is compared. The step is odd, so that it rarely divides the width,
-    // and the compared columns vary from row to row.
+    // Of the part's pixels, row by row, one of every `step` is compared. The step is odd, so that
+    // it rarely divides the width; then, the compared columns vary from row to row.
     let step = (area.pixels() / compared).max(1) | 1;
     let points: Vec<(u32, u32)> = (0..area.pixels())
         .step_by(step as usize)

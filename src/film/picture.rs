@@ -6,8 +6,8 @@ use thiserror::Error;
 use super::{memory::TooLarge, pixels::Film};
 use crate::area::Area;
 
-/// Maximum number of bytes that a picture is decoded to, unless the caller allows more. It suffices
-/// for 2^26 pixels of four bytes, whose film takes 1.5 GiB.
+/// Maximum number of bytes that a picture is decoded to, unless the caller allows more. A larger
+/// picture is rejected. The limit suffices for 2^26 pixels of four bytes, whose film takes 1.5 GiB.
 pub const DECODED_LIMIT: u64 = 1 << 28;
 
 /// A picture as a file contains it.
@@ -17,11 +17,11 @@ pub struct Picture {
     pub film: Film,
     /// The rounding of the file's numbers.
     pub rounding: Rounding,
-    /// Other changes that the file's coding makes to colours.
+    /// Changes of colours by the file's coding, besides rounding.
     pub coding: Coding,
-    /// The part of a whole picture that the file shows, if the file contains this.
+    /// Part of a whole picture that the file shows, if the file says so.
     pub crop: Option<Area>,
-    /// The opacity; `None` for an opaque picture.
+    /// Opacity of the pixels; `None` for an opaque picture.
     pub opacity: Option<Opacity>,
 }
 
@@ -43,11 +43,11 @@ impl Picture {
 pub struct Opacity {
     /// Least and greatest opacity of the pixels, from 0 to 1.
     pub range: [f64; 2],
-    /// The colours of the picture, in linear light, if its opacity is ignored.
+    /// Colours of the picture, in linear light, without regard to the opacity.
     pub film: Film,
 }
 
-/// The kind of numbers to which a file's values are rounded.
+/// Format to which a file's values are rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
     /// Bytes of sRGB, or fewer bits.
@@ -64,9 +64,9 @@ impl Rounding {
     /// Returns the maximum rounding error of a number between 0 and 1, in steps of 8-bit sRGB; a
     /// step is 1/255 of the way from black to white.
     ///
-    /// For floats, it is the relative rounding error of the light, 2^−11 or 2^−24, times the 255 ·
-    /// 1.055/2.4 steps per unit of light at white, rounded up. The error in steps is greatest at
-    /// white.
+    /// A float has a relative rounding error of 2^−11 or 2^−24. The error in steps is greatest at
+    /// white, where the sRGB curve has 255 · 1.055/2.4 steps per unit of light. The product is
+    /// rounded up.
     pub fn steps(self) -> f64 {
         match self {
             Self::Byte => 0.5,
@@ -82,9 +82,9 @@ impl Rounding {
 pub enum Coding {
     /// No effect.
     Exact,
-    /// Colours change where it is hardly visible: JPEG and lossy WebP.
+    /// JPEG or lossy WebP: colours are changed where this is hardly visible.
     Lossy,
-    /// Colours are replaced by the nearest of at most 256: GIF.
+    /// GIF: colours are replaced by the nearest of at most 256.
     Palette,
     /// The file declares a curve other than sRGB's, by a PNG's `gAMA` or `iCCP`, but is read as
     /// sRGB.
@@ -137,7 +137,7 @@ pub enum Unreadable {
         .0.map_or(String::new(), |format| format!(", but seems to be {}", name(format)))
     )]
     Format(Option<ImageFormat>),
-    /// The file is something else, which is recognised.
+    /// The file is no picture, but of another known kind, which the text names.
     #[error("it is no picture, but {0}")]
     Other(&'static str),
     /// The file does not follow its format.
@@ -146,20 +146,20 @@ pub enum Unreadable {
         shortened(cause)
     )]
     Damaged {
-        /// The format's name.
+        /// Name of the file's format.
         format: String,
-        /// The defect.
+        /// Description of the defect.
         cause: String,
     },
     /// The file uses a part of its format that is not supported here.
     #[error("it is {format} of a kind that is not read here: {}", shortened(cause))]
     Unsupported {
-        /// The format's name.
+        /// Name of the file's format.
         format: String,
-        /// The part that is not supported.
+        /// Description of the part that is not supported.
         cause: String,
     },
-    /// Decompression takes too much memory besides the picture itself.
+    /// Decompression takes more memory besides the picture than the limit allows.
     #[error("unpacking it takes more than 512 MiB of memory")]
     Unpacking,
     /// The picture is larger than the limit.
@@ -183,9 +183,9 @@ pub enum Unreadable {
     /// A value is infinite or NaN.
     #[error("its pixel ({x}, {y}) holds a value that is no finite number")]
     NotFinite {
-        /// The column.
+        /// Column of the pixel.
         x: u32,
-        /// The row.
+        /// Row of the pixel.
         y: u32,
     },
 }

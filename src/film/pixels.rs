@@ -9,17 +9,19 @@ use crate::area::Area;
 /// The value that a film stores for a pixel: its mean in linear light, the mean rounded to 32-bit
 /// floats, or the bytes of sRGB, which take an eighth of the memory.
 pub trait Pixel: Copy + Default + Send + Sync {
-    /// Converts a mean in linear light.
+    /// Converts the mean `light`, in linear light, to this kind of pixel.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
     /// Returns whether all means that differ from `light` by at most `bound` in each channel are
-    /// converted to the same value. For `f64` means, the conversion to 32-bit floats counts.
+    /// converted to the same value. For means in `f64`, the value is the 32-bit float that an EXR
+    /// file stores.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
 /// A pixel that can be converted to bytes of sRGB.
 pub trait AsBytes: Pixel {
-    /// Returns the bytes of sRGB of a row. If they must be computed, `buffer` stores them.
+    /// Returns the bytes of sRGB of a row of pixels. If they have to be computed, they are stored
+    /// in `buffer`.
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, buffer: &'a mut Vec<u8>) -> &'a [u8];
 }
 
@@ -29,7 +31,7 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // The floats of 32 bits in an EXR file decide.
+        // An EXR file stores the mean as a 32-bit float, so this rounding must be certain.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -50,7 +52,7 @@ impl AsBytes for [f64; 3] {
         buffer.clear();
         let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
         for &light in row {
-            // Most pixels equal the pixel before, so the last conversion is kept.
+            // Most pixels equal the pixel before, so the last conversion is used again.
             if light != before {
                 (before, last) = (light, encoder.pixel(light));
             }
@@ -208,8 +210,8 @@ impl<P: Pixel> Film<P> {
     }
 }
 
-/// Counts the pixels of a film whose bytes are certainly those of the true mean. `bounds` is the
-/// error bound of each pixel's mean.
+/// Counts the pixels of `film` whose bytes of sRGB are certainly those of the exact mean. `bounds`
+/// contains the error bound of each pixel's mean, in linear light.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {

@@ -20,10 +20,11 @@ use crate::area::Area;
 /// The first bytes of every PNG.
 pub const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// Maximum number of bytes of a recipe's text. A recipe with more text is not stored in a picture.
+/// Maximum number of bytes of all texts of a [`Recipe`]. A longer recipe is not stored in a
+/// picture.
 pub const TEXT_LIMIT: usize = 1 << 20;
 
-/// Maximum number of a recipe's overrides. A recipe with more overrides is not stored in a picture.
+/// Maximum number of overrides of a [`Recipe`]. A recipe with more is not stored in a picture.
 pub const OVERRIDES_LIMIT: usize = 1000;
 
 const SOFTWARE: &str = "Software";
@@ -45,7 +46,7 @@ pub struct Recipe {
 /// Why a picture's recipe cannot be read.
 #[derive(Debug, Error)]
 pub enum NotOurs {
-    /// The file does not follow the format.
+    /// The file does not follow the PNG format.
     #[error("it begins as a PNG does, but is damaged or no picture")]
     Damaged,
     /// The picture contains no scene.
@@ -99,9 +100,9 @@ pub fn write_png<P: AsBytes>(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    // Rows of flat colours repeat. They compress better unfiltered than as the differences of
-    // neighbours that the format's filters store. A higher level makes files of such pictures
-    // smaller by a few hundredths, and takes three times as long.
+    // The rows of flat colours repeat. They compress better unfiltered than as the differences of
+    // neighbours that the format's filters store. Levels above 3 make the files of such pictures
+    // smaller by a few hundredths, but take three times as long.
     encoder.set_filter(Filter::NoFilter);
     encoder.set_deflate_compression(DeflateCompression::Level(3));
     let mut writer = encoder.write_header()?;
@@ -128,8 +129,8 @@ pub fn write_png<P: AsBytes>(
     Ok(())
 }
 
-/// Reads the recipe from a picture. Only the chunks before the pixels are read, and at most
-/// [`TEXT_LIMIT`] bytes are decompressed.
+/// Reads the recipe from the bytes of a PNG file. Only the chunks before the pixels are read, and
+/// at most [`TEXT_LIMIT`] bytes are decompressed.
 ///
 /// # Errors
 ///

@@ -12,17 +12,18 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Maximum number of bytes of other output in front of a picture.
+/// Maximum number of bytes of other output in front of a picture. A picture that begins later is
+/// not found.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
-/// The beginning of a PNM file.
+/// How a PNM file begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// The letter P, after this number of bytes: 0, or the 3 of a byte order mark.
+    /// In bytes; the letter P follows after this number of them: 0, or the 3 of a byte order mark.
     Plain(usize),
-    /// UTF-16.
+    /// In UTF-16.
     Utf16 {
         /// Length of the byte order mark, in bytes.
         mark: usize,
@@ -31,7 +32,8 @@ pub enum Start {
     },
 }
 
-/// Returns how a file begins, if it is a PNM without text in front. Returns `None` for other files.
+/// Returns how a PNM file begins. Returns `None` for other files, and for a PNM after lines of
+/// text.
 pub fn start(bytes: &[u8]) -> Option<Start> {
     let mark = if bytes.starts_with(BOM) { 3 } else { 0 };
     if is_head(&bytes[mark..]) {
@@ -169,7 +171,7 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     })
 }
 
-/// The expected contents of a raster.
+/// Size of a raster, and the greatest value of its numbers.
 struct Raster {
     width: usize,
     height: usize,
@@ -213,8 +215,8 @@ impl Raster {
         ))
     }
 
-    /// Reads numbers with white space between them. For bits, white space is optional, and 1 is
-    /// black.
+    /// Reads numbers with white space between them. Bits (`is_bits`) need no white space; a bit of
+    /// 1 is black.
     fn in_text(&self, reader: &mut PnmReader, is_bits: bool) -> Result<Vec<u16>, Unreadable> {
         let mut numbers = Vec::with_capacity(self.count());
         for index in 0..self.count() {
@@ -250,8 +252,8 @@ impl Raster {
         (0..self.count()).map(bit).collect()
     }
 
-    /// Reads numbers of one byte, or of two bytes with the high one first. Also returns which
-    /// damage was repaired.
+    /// Reads numbers of `length` bytes, one or two, with the high byte first. Also returns the kind
+    /// of damage that was repaired.
     fn in_bytes(
         &self,
         reader: &PnmReader,
@@ -282,8 +284,8 @@ impl Raster {
     }
 }
 
-/// Repairs a raster that was written as text. Returns the bytes and the kind of damage, or `None`
-/// if no repair gives the wanted length.
+/// Repairs a raster that was written as text instead of bytes. Returns the bytes and the kind of
+/// damage, or `None` if no repair gives `wanted` bytes.
 fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     let of_lines = |raster: &[u8]| without_returns(raster, wanted);
     if let Some(raster) = of_lines(raster) {
@@ -327,7 +329,7 @@ struct PnmReader<'b> {
 }
 
 impl<'b> PnmReader<'b> {
-    /// Starts behind the two letters of the format.
+    /// Makes a reader that starts after the two letters of the format.
     fn new(bytes: &'b [u8]) -> Self {
         Self { bytes, at: 2 }
     }
@@ -336,7 +338,7 @@ impl<'b> PnmReader<'b> {
         self.at >= self.bytes.len()
     }
 
-    /// Returns the current line number, from 1.
+    /// Returns the number of the current line, from 1.
     fn line(&self) -> usize {
         let before = &self.bytes[..self.at];
         1 + before.iter().filter(|&&byte| byte == b'\n').count()
@@ -386,7 +388,7 @@ impl<'b> PnmReader<'b> {
         }))
     }
 
-    /// Reads a digit, 0 or 1.
+    /// Reads one digit, which must be 0 or 1.
     fn bit(&mut self) -> Result<u64, Unreadable> {
         let byte = self.bytes[self.at];
         self.at += 1;

@@ -1,8 +1,8 @@
 //! Reads picture files of any program into films.
 //!
-//! In: the bytes of a picture in PNG, in OpenEXR, or in any other format that `image` reads here.
-//! Out: linear means, the kind of the file's rounding, and the other effects of its coding on
-//! colours.
+//! In: the bytes of a picture in PNG, OpenEXR, or any other format that `image` is built to read.
+//! Out: means in linear light, the rounding of the file's numbers, and other effects of the file's
+//! coding on colours.
 //!
 //! Whole numbers are read as sRGB, whatever a `gAMA` chunk or a colour profile says: pictures of a
 //! scene are meant as sRGB, and most programs write them so without a declaration. Floats are read
@@ -24,8 +24,8 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Maximum number of bytes that the PNG decoder may allocate besides the picture: the default of
-/// `image`.
+/// Maximum number of bytes that the PNG decoder may allocate besides the picture. A picture that
+/// needs more is rejected. The limit is the default of `image`.
 const UNPACKING: usize = 512 << 20;
 
 /// Returns whether a file begins as a picture does, even if its format is not supported.
@@ -40,7 +40,8 @@ pub fn is_picture_behind_lines(bytes: &[u8]) -> bool {
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {
     let format = image::guess_format(bytes).ok()?;
-    // A name in a scene may begin with the two letters of a PNM.
+    // Only white space or a comment may follow the two letters of a PNM. A word, such as a name in
+    // a scene, may begin with the same letters.
     let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
     if format == ImageFormat::Pnm && bytes.get(2).is_some_and(is_word) {
         return None;
@@ -69,7 +70,8 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
         Some(ImageFormat::Png) => read_png(bytes, limit)?,
         Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
-        // A byte order mark, UTF-16 or lines of text may come first.
+        // A PNM is not recognised by its first bytes if a byte order mark or lines of text come
+        // first, or if it is in UTF-16.
         None => pnm::read(bytes, limit).map_err(|error| match (error, no_picture::of(bytes)) {
             (Unreadable::Format(None), Some(what)) => Unreadable::Other(what),
             (error, _) => error,
@@ -95,7 +97,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     if limit > DECODED_LIMIT {
-        // The available memory is checked below instead.
+        // Instead of the decoder's limit, the available memory is checked below.
         reader.no_limits();
     }
     let decoder = reader.into_decoder().map_err(unreadable)?;
@@ -155,7 +157,7 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     };
     let limits = png::Limits { bytes: UNPACKING };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    // The decoder then returns bytes or words of gray or of colours, with opacity.
+    // With these settings, the decoder returns bytes or words of gray or of colours, with opacity.
     decoder.set_transformations(Transformations::EXPAND | Transformations::ALPHA);
     let header = decoder.read_header_info().map_err(unreadable)?;
     let (width, height) = (header.width, header.height);
@@ -230,8 +232,8 @@ fn is_other_profile(profile: &[u8]) -> Option<bool> {
         (b"curv", 1) => libm::pow(0.5, f64::from(word(at + 12)?) / 256.0),
         (b"curv", count) => f64::from(word(at + 12 + 2 * (count as usize / 2))?) / 65535.0,
         (b"para", 0) => libm::pow(0.5, fixed(0)?),
-        // At one half, the other functions are (a·x + b)^g. Two of them add a constant, which is
-        // ignored.
+        // At one half, the parametric functions of types 1 to 4 are (a·x + b)^g. Those of two types
+        // add a constant, which is ignored.
         (b"para", _) => libm::pow(0.5 * fixed(1)? + fixed(2)?, fixed(0)?),
         _ => return None,
     };
@@ -249,7 +251,8 @@ fn light_of_words() -> Vec<f64> {
     words.map(|word| srgb_to_linear(part(word))).collect()
 }
 
-/// Fills a film as [`mix`] does, from samples of red, green, blue and opacity in turn.
+/// Fills a film as [`mix`] does, from a flat list of samples: red, green, blue and opacity of each
+/// pixel.
 fn fill<T: Copy>(
     film: &mut Film,
     samples: &[T],

@@ -1,26 +1,28 @@
 //! Linear light as bytes of sRGB.
 //!
-//! Encoding and rounding are done by one comparison with thresholds: byte k stands for the light
-//! from that of k − 1/2 up to that of k + 1/2. The thresholds are exact, so every light gets the
-//! nearest byte. An unmixed colour of the scene is encoded as
-//! [`Color::to_bytes`](crate::color::Color::to_bytes) does, ties included.
+//! Encoding and rounding are a comparison with thresholds: byte k stands for the range of light
+//! from the threshold k − 1/2 to the threshold k + 1/2, both decoded to linear light. The
+//! thresholds are exact, so every light gets the nearest byte. An unmixed colour of the scene gets
+//! the same bytes as by [`Color::to_bytes`](crate::color::Color::to_bytes), also if a channel is
+//! halfway between two bytes.
 
 use std::array;
 
 use crate::color::half_byte;
 
-/// Number of equal intervals of linear light in the table [`Encoder::start`].
+/// Number of equal intervals of linear light in the table [`Encoder::start`], in which encoding
+/// begins its search.
 const PARTS: usize = 4096;
 
 /// An encoder of linear light as bytes.
 pub struct Encoder {
-    /// The linear light of k + 1/2, for each byte k below 255.
+    /// For each byte k below 255, the linear light of k + 1/2.
     thresholds: [f64; 255],
-    /// The byte of the light at the dark end of each interval.
+    /// For each interval of linear light, the byte of the light at its dark end.
     start: [u8; PARTS + 1],
 }
 
-/// Computes the thresholds and the table.
+/// Computes the thresholds and the table of intervals.
 impl Default for Encoder {
     fn default() -> Self {
         let thresholds = array::from_fn(|k| half_byte(k as u8));
@@ -38,7 +40,7 @@ impl Encoder {
         light.map(|channel| self.encode(channel))
     }
 
-    /// Encodes one channel. Light below 0 counts as 0, and above 1 as 1.
+    /// Encodes one channel. Light below 0 is encoded as 0, and light above 1 as 255.
     pub fn encode(&self, light: f64) -> u8 {
         // The scaling is exact, and the conversion saturates on both sides.
         let part = ((light * PARTS as f64) as usize).min(PARTS);

@@ -1,11 +1,14 @@
 //! Alignment of the entries in columns.
 //!
-//! A group is a sequence of lines without a blank line. Within a group these are aligned: the `=`
-//! of definitions; the names and braces of objects that each stand on one line; the values of a
-//! block's fields; and the fields of objects of one kind, up to the first field whose name differs.
+//! A group is a sequence of lines without a blank line. In a group, four things are aligned:
+//! - the `=` of definitions,
+//! - the names and braces of objects that each stand on one line,
+//! - the values of a block's fields,
+//! - the fields of objects of one kind, up to the first field whose name differs.
+//!
 //! A line of comments separates groups of objects. The braces of `image`, `camera` and `sampler`
 //! are aligned wherever these blocks stand, since they belong together by their meaning. Lines that
-//! would need many blanks do not share a column.
+//! would need many blanks to be aligned are not in the same column.
 
 use super::{
     entries::{BlockEntry, Entry, EntryKind},
@@ -13,13 +16,15 @@ use super::{
 };
 use crate::schema;
 
-/// Maximum difference in width, in characters, between parts that share a column.
+/// Maximum difference in width, in characters, between parts of lines that are aligned. If parts
+/// differ by more, a new column begins.
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
-/// Minimum number of consecutive blocks of one kind that form a table.
+/// Minimum number of consecutive blocks of one kind that form a table, whose rows may be slightly
+/// too wide.
 const MIN_TABLE_ROWS: usize = 3;
 
-/// Sets the columns of a file's entries, and of the entries in its blocks.
+/// Sets the columns to which the parts of a file's entries are aligned, also within blocks.
 pub fn align(entries: &mut [Entry<'_>]) {
     keep_rows(entries);
     settings(entries);
@@ -44,8 +49,9 @@ pub fn align(entries: &mut [Entry<'_>]) {
     }
 }
 
-/// Keeps neighbouring blocks of one kind on one line each if they were written so, even if some
-/// lines are slightly too wide: such a table is readable at a glance.
+/// Keeps neighbouring blocks of one kind on one line each, if they were written like this and there
+/// are at least [`MIN_TABLE_ROWS`]. Some lines may then be slightly too wide, but such a table is
+/// readable at a glance.
 fn keep_rows(entries: &mut [Entry<'_>]) {
     for rows in entries.chunk_by_mut(|a, b| !b.blank && is_row_beside(a, b)) {
         if rows.len() < MIN_TABLE_ROWS {
@@ -68,15 +74,15 @@ fn is_row_beside(a: &Entry<'_>, b: &Entry<'_>) -> bool {
     }
 }
 
-/// Class of an entry: which other entries it is aligned with.
+/// Class of an entry. Entries of the same class in a group are aligned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Alignment {
     Definition,
     Object,
     Field,
-    /// The entry is not aligned, but the entries around it may be aligned with each other.
+    /// The entry is not aligned, but does not end a group.
     Unaligned,
-    /// The entry ends a group.
+    /// The entry ends a group: entries before and after it are not aligned with each other.
     End,
 }
 
@@ -95,8 +101,8 @@ fn alignment_in_file(entry: &Entry<'_>) -> Alignment {
     }
 }
 
-/// Classifies an entry for the alignment of objects. A line of comments or an object of another
-/// layout ends a group, since the objects before and after it are too far apart.
+/// Classifies an entry for the alignment of objects. A line of comments or an object that takes
+/// several lines ends a group, since the objects before and after it are too far apart.
 fn alignment_of_objects(entry: &Entry<'_>) -> Alignment {
     match alignment_in_file(entry) {
         Alignment::Unaligned => Alignment::End,
@@ -115,16 +121,16 @@ fn is_setting(block: &BlockEntry<'_>) -> bool {
     schema::block(block.kind).is_some_and(|block| !block.is_object)
 }
 
-/// Returns whether only the kind and the name stand before a block's `{`, and no comments.
+/// Returns whether a block's head consists of its kind and name only, without comments.
 fn is_plain(entry: &Entry<'_>, block: &BlockEntry<'_>) -> bool {
     let words = 1 + usize::from(block.name.is_some());
     entry.leading.is_empty() && block.head.len() == words
 }
 
-/// Returns the groups of entries of one class, as indices of the entries.
+/// Returns the groups of entries of one class. A group is a list of indices of entries.
 fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
-    // Class of the last group while the group can be extended.
+    // Class of the last group as long as the group can be extended; then `End`.
     let mut open = Alignment::End;
     for (index, entry) in entries.iter().enumerate() {
         if entry.blank {
@@ -149,7 +155,7 @@ fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<us
 
 /// Splits a list into parts, each as long as possible, whose widths differ by at most
 /// [`MAX_WIDTH_DIFFERENCE`]. Returns each part with its greatest width. Elements without a width
-/// fit any part.
+/// belong to the part before them.
 pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
     let mut parts = Vec::new();
     let (mut from, mut least, mut most) = (0, usize::MAX, 0);
@@ -165,7 +171,7 @@ pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[
     parts
 }
 
-/// Aligns the second parts of entries: values, `=` or `{`.
+/// Aligns the second part of each entry: its value, `=` or `{`.
 fn starts(entries: &mut [Entry<'_>], run: &[usize]) {
     let width = |entry: &Entry<'_>| match &entry.what {
         EntryKind::Definition(head, _) => width(head),
@@ -220,9 +226,9 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     }
 }
 
-/// Aligns the field after the one with index `field` in `rows`, objects whose earlier fields are
-/// aligned. Only consecutive objects of one kind in which the field `field` has the same name are
-/// aligned.
+/// Aligns the fields after the field with index `field` in `rows`, which are objects whose earlier
+/// fields are aligned. Consecutive objects are aligned if they have the same kind and the same name
+/// of the field `field`.
 fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     let alike = |&a: &usize, &b: &usize| {
         let (a, b) = (cell(&entries[a], field), cell(&entries[b], field));
@@ -245,8 +251,8 @@ fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     }
 }
 
-/// Returns the kind of an object, and the name and width of its field with index `field`. Returns
-/// `None` if the object has no later field.
+/// Returns an object's kind, and the name and width of its field with index `field`. Returns `None`
+/// if this is the last field.
 fn cell<'a>(entry: &'a Entry<'_>, field: usize) -> Option<(&'a str, &'a str, usize)> {
     let block = block(entry)?;
     block.entries.get(field + 1)?;

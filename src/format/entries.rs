@@ -10,63 +10,63 @@ use crate::{
     syntax::tree::{self, Item},
 };
 
-/// An entry of a file or a block: one or more lines.
+/// An entry of a file or of a block, which takes one or more lines.
 #[derive(Debug)]
 pub struct Entry<'s> {
     /// Whether a blank line precedes the entry.
     pub blank: bool,
-    /// The comments before the entry on its line; for an entry of comments, all of them.
+    /// The comments before the entry on its line; all comments if the entry consists of comments.
     pub leading: Vec<&'s str>,
     /// The kind of the entry, with its parts.
     pub what: EntryKind<'s>,
     /// The comments after the entry on its line.
     pub trailing: Vec<&'s str>,
-    /// Column to which the second part (`=`, `{` or value) is aligned, counted in characters from
-    /// the entry's start; 0 if it is not aligned.
+    /// Column of the second part (`=`, `{` or value), in characters from the entry's start; 0 if
+    /// the part is not aligned.
     pub column: usize,
-    /// Column of the next field on the same line, counted in characters from this field's start; 0
-    /// if it is not aligned.
+    /// Column of the next field on the same line, in characters from this field's start; 0 if the
+    /// next field is not aligned.
     pub next: usize,
 }
 
 /// Kind of an entry.
 #[derive(Debug)]
 pub enum EntryKind<'s> {
-    /// Only comments.
+    /// A line of comments.
     Comments,
-    /// The words of `let NAME`, and those of `= VALUE`.
+    /// A definition: the words of `let NAME`, and those of `= VALUE`.
     Definition(Vec<Word<'s>>, Vec<Word<'s>>),
-    /// A field's name, and its value.
+    /// A field: its name, and the words of its value.
     Field(&'s str, Vec<Word<'s>>),
     /// A block.
     Block(BlockEntry<'s>),
 }
 
-/// A block.
+/// A block of a scene, with its layout.
 #[derive(Debug)]
 pub struct BlockEntry<'s> {
-    /// The words before the `{`.
+    /// Words before the `{`.
     pub head: Vec<Word<'s>>,
-    /// The kind.
+    /// Kind of the block, such as `sphere`.
     pub kind: &'s str,
-    /// The name, if the block has one.
+    /// Name of the block, if it has one.
     pub name: Option<&'s str>,
-    /// Column to which the name is aligned; 0 if it is not aligned.
+    /// Column of the name, in characters from the block's start; 0 if the name is not aligned.
     pub name_column: usize,
     /// Whether the `{` must stand on a new line, because a `//` comment precedes it.
     pub open_on_new_line: bool,
     /// The comments after the `{`, on its line.
     pub after_open: Vec<&'s str>,
-    /// The fields, and comments between them.
+    /// The fields, and the lines of comments between them.
     pub entries: Vec<Entry<'s>>,
     /// Whether the block is laid out on one line.
     pub on_one_line: bool,
-    /// Whether the block was written on one line that is only slightly too wide.
+    /// Whether the block was written on one line and is only slightly too wide to be laid out so.
     pub is_nearly_one_line: bool,
 }
 
 impl BlockEntry<'_> {
-    /// Returns whether the block is `{}`, without fields and comments.
+    /// Returns whether the block is `{}`: without fields and without comments.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty() && self.after_open.is_empty()
     }
@@ -84,7 +84,7 @@ impl Entry<'_> {
     }
 }
 
-/// Returns the entries of a file. If `items` gives ownership, each item is dropped as soon as its
+/// Returns the entries of a file. If `items` owns its elements, each item is dropped as soon as its
 /// entry is made, because trees take much memory.
 pub fn of_file<'s, 't>(
     source: &'s Source,
@@ -105,8 +105,8 @@ enum Container {
 }
 
 impl<'s> TokenReader<'_, 's> {
-    /// Returns the entries of `nodes` up to the offset `end`, and the comments after the `{` before
-    /// the first of them.
+    /// Returns the entries of `nodes`, which end before the offset `end`, and the comments after
+    /// the `{` on its line.
     fn entries<N>(
         &mut self,
         nodes: impl IntoIterator<Item = impl Borrow<N>>,
@@ -195,7 +195,7 @@ impl<'s> TokenReader<'_, 's> {
             Self::field,
         );
         self.skip(close);
-        // The width adds ` { `, ` }`, and two blanks between fields.
+        // The blanks and braces of ` { ` and ` }`, and two blanks between fields, are counted here.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
         let is_empty = entries.is_empty() && after_open.is_empty();
         let width = width(&head) + 3 + fields;
@@ -232,12 +232,13 @@ fn entry(what: EntryKind<'_>) -> Entry<'_> {
     }
 }
 
-/// Comments of one line, after whether a blank line precedes them.
+/// The comments of one line, and whether a blank line precedes them.
 type CommentLine<'s> = (bool, Vec<&'s str>);
 
-/// Assigns the comments of a gap to lines. Comments on the line of the previous entry are added to
-/// the entry's end; the others get lines of their own. Returns the last of these lines without
-/// adding it, because the next entry may stand on it.
+/// Assigns the comments of `gap`, the text between two tokens, to lines. Comments on the line of
+/// the previous entry are added to that entry. The other comments become entries of their own,
+/// except those of the last line, which are returned, because the next entry may stand on the same
+/// line.
 fn comments<'s>(
     gap: Gap<'s>,
     container: Container,

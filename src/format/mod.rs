@@ -60,8 +60,8 @@ pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     (!parsed.is_doubtful || is_right_text(&formatted)).then_some(formatted)
 }
 
-/// Returns whether a formatted text has no syntax errors either. The new line ends may change which
-/// explanation recovery finds for something doubtful.
+/// Returns whether a formatted text has no syntax errors. In a doubtful text, recovery may decide
+/// by the line ends, so that the new ones cause an error.
 fn is_right_text(text: &str) -> bool {
     let source = Source::from_text("", text);
     is_right(&source, &syntax::parse(&source, SourceId::File))
@@ -72,7 +72,7 @@ fn is_right(source: &Source, parsed: &Parsed<'_>) -> bool {
     parsed.problems.is_empty() && source.invalid_utf8().is_empty() && is_whole(&parsed.tree)
 }
 
-/// Returns the canonical layout of a text with these entries.
+/// Returns the canonical layout of a text whose entries are `entries`.
 fn layout(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
     columns::align(&mut entries);
     let written = writer::written(&entries);
@@ -86,8 +86,8 @@ fn layout(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
     formatted
 }
 
-/// Returns whether every item was understood and every field has a value. Parsing itself does not
-/// report a missing value.
+/// Returns whether every item was understood and every field has a value. The parser itself does
+/// not report a missing value.
 fn is_whole(tree: &Tree<'_>) -> bool {
     tree.items.iter().all(|item| match item {
         Item::Definition(_) => true,
@@ -99,9 +99,9 @@ fn is_whole(tree: &Tree<'_>) -> bool {
     })
 }
 
-/// Returns the mistakes that prevent a text from being formatted, as `check` reports them, and no
-/// other problems of the scene. The scene is analyzed because the report of a missing value depends
-/// on which names are known.
+/// Returns the mistakes that prevent a text from being formatted, as `check` reports them, without
+/// other problems of the scene. The scene is analyzed, because the report of a missing value
+/// depends on which names are known.
 fn mistakes(source: &Source) -> Vec<Diagnostic> {
     let sources = Sources::new(source.clone());
     let SemanticModel {
@@ -110,7 +110,8 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
         ..
     } = scene::analyze(&sources);
     let of_syntax = diagnostics.iter().filter(|it| it.is_of_syntax);
-    // If a field or kind is unknown, `check` reports only that, and not its missing value.
+    // For an unknown field or kind, `check` reports only that it is unknown, not that its value is
+    // missing.
     let codes = ["pinhole::unknown_field", "pinhole::unknown_kind"];
     let is_unknown = |it: &&Diagnostic| codes.contains(&it.code.as_str());
     let unknown = diagnostics.iter().filter(is_unknown);
@@ -120,8 +121,9 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
     lists.next().unwrap_or_default()
 }
 
-/// Returns `written` with the byte order mark and the line ends of the original `text`: CRLF if all
-/// of its line ends are CRLF, otherwise LF. Removes blanks at the ends of lines, also in comments.
+/// Returns `written` with the byte order mark and the line ends of the original `text`. The line
+/// ends are CRLF if all of the original are CRLF, otherwise LF. Blanks at the ends of lines are
+/// removed, also in comments.
 fn with_line_ends(written: &str, text: &str, bom: usize) -> String {
     let mut ends = text.split('\n');
     let last = ends.next_back();

@@ -19,15 +19,15 @@ pub struct Word<'s> {
 /// White space before a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Before {
-    /// Nothing.
+    /// No white space.
     Nothing,
     /// One blank.
     Space,
     /// A blank, or a line end if the line would be too long. A line is broken first at the words
-    /// with the lowest number. The number grows with the depth of parentheses around the word and
-    /// with the precedence of the operator.
+    /// with the lowest number. The number grows with the number of parentheses around the word, and
+    /// is greater at products than at sums.
     Fold(usize),
-    /// A line end within the entry.
+    /// A line end.
     Line,
 }
 
@@ -40,7 +40,7 @@ pub struct Comment<'s> {
     pub breaks: usize,
 }
 
-/// Returns whether a line must end after `text`, since it is a `//` comment.
+/// Returns whether `text` is a `//` comment, after which the line must end.
 pub fn ends_line(text: &str) -> bool {
     text.starts_with("//")
 }
@@ -50,7 +50,7 @@ pub fn is_comment(text: &str) -> bool {
     text.starts_with("//") || text.starts_with("/*")
 }
 
-/// Comments and line ends between two tokens.
+/// The comments and line ends between two tokens.
 #[derive(Debug)]
 pub struct Gap<'s> {
     /// The comments.
@@ -67,7 +67,7 @@ pub struct TokenReader<'a, 's> {
 }
 
 impl<'a, 's> TokenReader<'a, 's> {
-    /// Makes a reader at the beginning of a text, after its byte order mark.
+    /// Makes a reader that starts at the beginning of a text, after its byte order mark.
     pub fn new(source: &'s Source, comments: &'a [Span]) -> Self {
         Self {
             text: source.text(),
@@ -76,7 +76,8 @@ impl<'a, 's> TokenReader<'a, 's> {
         }
     }
 
-    /// Moves to the offset `to`, and returns the comments and line ends before it.
+    /// Moves to the offset `to`. Returns the comments and line ends between the old offset and
+    /// `to`.
     pub fn gap(&mut self, to: usize) -> Gap<'s> {
         let mut comments = Vec::new();
         while let Some(comment) = self.comments.as_slice().first()
@@ -94,7 +95,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         Gap { comments, breaks }
     }
 
-    /// Moves to the end of a token.
+    /// Moves to the end of `token`.
     pub fn skip(&mut self, token: Span) {
         self.at = token.end;
     }
@@ -117,8 +118,8 @@ impl<'a, 's> TokenReader<'a, 's> {
         self.text.get(span.range()).unwrap_or_default()
     }
 
-    /// Adds the comments before the token at the offset `to`. A comment that started a line still
-    /// does. Returns the white space that must precede the token.
+    /// Adds the comments before the token at the offset `to` to `words`. A comment that started a
+    /// line also starts a line in the layout. Returns the white space that must precede the token.
     pub fn comments(&mut self, to: usize, before: Before, words: &mut Vec<Word<'s>>) -> Before {
         let gap = self.gap(to);
         for comment in &gap.comments {
@@ -140,7 +141,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         }
     }
 
-    /// Adds the comments before a token, and the token.
+    /// Adds the comments before the token `span`, and the token itself, to `words`.
     pub fn token(&mut self, span: Span, before: Before, words: &mut Vec<Word<'s>>) {
         let text = self.under(span);
         let mut behind = self.comments(span.start, before, words);
@@ -154,7 +155,7 @@ impl<'a, 's> TokenReader<'a, 's> {
         self.skip(span);
     }
 
-    /// Adds the words of a value that stands in `depth` parentheses.
+    /// Adds the words of a value that is inside of `depth` parentheses.
     pub fn value(
         &mut self,
         value: &Value<'_>,
@@ -183,7 +184,7 @@ impl<'a, 's> TokenReader<'a, 's> {
             ValueKind::Chain { first, rest } => {
                 self.value(first, before, depth, words);
                 for step in rest {
-                    // Operators of products get a higher number, so lines are broken at sums first.
+                    // Products get a higher number than sums, so lines are broken at sums first.
                     let tightness = 2 * depth + usize::from(step.operator.is_of_product());
                     self.token(step.sign, Before::Fold(tightness), words);
                     self.value(&step.operand, Before::Space, depth, words);
@@ -215,8 +216,9 @@ impl<'a, 's> TokenReader<'a, 's> {
     }
 }
 
-/// Maximum width of a line, in characters, if there are places to break it. The width is measured
-/// before alignment and without the comments at the end of a line.
+/// Maximum width of a line, in characters. Longer lines are broken if there are words before which
+/// they can be broken. The width is measured before alignment and without the comments at the
+/// line's end.
 pub const WIDTH: usize = 100;
 
 /// Returns the width of words on one line, in characters. If a comment has several lines, only its

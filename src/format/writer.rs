@@ -22,8 +22,8 @@ pub fn written(entries: &[Entry<'_>]) -> String {
 #[derive(Default)]
 struct LayoutWriter {
     text: String,
-    /// Lines that wait for their alignment, each with its comments at the end. They are written
-    /// when their group is complete.
+    /// Lines of the current group, each with the comments at its end. They are written, with the
+    /// comments aligned, when the group is complete.
     waiting: Vec<(String, String)>,
 }
 
@@ -95,13 +95,13 @@ impl LayoutWriter {
     }
 
     /// Writes words, broken into lines where a line end is required or a line would be too long.
-    /// The last line remains open in `line`.
+    /// The last line is not ended; it is in `line` afterwards.
     fn words(&mut self, line: &mut String, words: &[Word<'_>], margin: usize) {
         let last = self.lines(line, words, margin);
         push_flat(line, last);
     }
 
-    /// Writes all lines of the words except the last one, and returns the words of the last line.
+    /// Writes all lines that `words` take except the last one. Returns the words of the last line.
     fn lines<'w, 's>(
         &mut self,
         line: &mut String,
@@ -119,14 +119,15 @@ impl LayoutWriter {
         rest
     }
 
-    /// Ends a line with `words`. Comments at its end are kept for alignment in a column.
+    /// Ends a line with `words`. The comments at the end of `words` are stored separately, to be
+    /// aligned in a column.
     fn end_line(&mut self, mut line: String, words: &[Word<'_>]) {
         let is_behind = |word: &&Word<'_>| word.before == Before::Space && is_comment(word.text);
         let behind = words.iter().rev().take_while(is_behind).count();
         let (words, behind) = words.split_at(words.len() - behind);
         let behind: Vec<&str> = behind.iter().map(|word| word.text).collect();
         push_flat(&mut line, words);
-        // Comments after a comment that has a line of its own stay beside it.
+        // If the line itself consists of a comment, the comments after it stay beside it.
         if words.len() == 1 && words.iter().all(|word| is_comment(word.text)) {
             for comment in &behind {
                 line.push(' ');
@@ -159,7 +160,7 @@ impl LayoutWriter {
         }
     }
 
-    /// Writes the waiting lines, with their comments aligned in columns.
+    /// Writes the lines of the current group, with the comments at their ends aligned in columns.
     fn flush(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);
         let lines: Vec<usize> = (0..waiting.len()).collect();
@@ -216,7 +217,7 @@ fn push_fields(line: &mut String, entries: &[Entry<'_>]) {
     line.push_str(" }");
 }
 
-/// Appends words to a line without breaking it.
+/// Appends words to a line, without line ends between them.
 fn push_flat(line: &mut String, words: &[Word<'_>]) {
     let is_start = line.trim_start().is_empty();
     for (index, word) in words.iter().enumerate() {
@@ -228,8 +229,8 @@ fn push_flat(line: &mut String, words: &[Word<'_>]) {
     }
 }
 
-/// Returns the indices of the words that start new lines. A line that is too long is broken where
-/// it is least nested, and of several such places at the last one that fits.
+/// Returns the indices of the words that start new lines. A line that is too long is broken at a
+/// word with the lowest [`Fold`](Before::Fold) number, and of several at the last one that fits.
 fn line_starts(words: &[Word<'_>], start: usize, margin: usize) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut column = start;

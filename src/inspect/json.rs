@@ -1,4 +1,4 @@
-//! The output of `inspect` as JSON: the object of the command line's contract.
+//! The output of `inspect` as JSON: one object.
 
 use std::io::{self, Write};
 

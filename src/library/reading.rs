@@ -4,7 +4,6 @@ use std::{borrow::Cow, path::Path, sync::Arc};
 
 use super::{Error, Picture, Scene, picture::Content};
 use crate::{
-    area::Area,
     cancel, files,
     film::{self, DECODED_LIMIT, Jpeg, Rounding, SizesDiffer},
     grading::{Reference, Verdict},

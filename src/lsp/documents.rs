@@ -1,4 +1,5 @@
-//! Texts that are open in the editor, and positions in them by line and column.
+//! Keeps the texts that are open in the editor, and converts between byte offsets and positions by
+//! line and column.
 
 use line_index::{LineCol, LineIndex, WideEncoding, WideLineCol};
 
@@ -31,7 +32,7 @@ pub type LineColumn = (u32, u32);
 pub struct Document {
     /// The version of the text, as the client numbers them.
     pub version: i32,
-    /// The text.
+    /// The text, as the file of a scene without `--set` arguments.
     pub sources: Sources,
     encoding: Encoding,
 }
@@ -45,8 +46,8 @@ pub struct TextChange {
 }
 
 impl Document {
-    /// Makes the document of a text that the client has opened, with columns in the client's
-    /// encoding.
+    /// Makes the document of a text that the client has opened. `encoding` is the client's unit for
+    /// columns.
     pub fn new(name: &str, version: i32, text: String, encoding: Encoding) -> Self {
         Self {
             version,
@@ -56,11 +57,11 @@ impl Document {
     }
 
     /// Applies changes in order. The positions of each change refer to the text after the previous
-    /// changes. If one of them is invalid, the text stays unchanged.
+    /// changes. If a change is invalid, the text stays as it was before all changes.
     ///
     /// # Errors
     ///
-    /// A change begins or ends after the last line.
+    /// Returns a message if a change begins or ends after the last line.
     pub fn change(&mut self, version: i32, changes: &[TextChange]) -> Result<(), String> {
         let mut text = self.text().to_owned();
         let mut lines = self.sources.file.lines().clone();
@@ -89,9 +90,9 @@ impl Document {
         self.sources.file.text()
     }
 
-    /// Returns the byte offset of a position. A position after the end of a line counts as the end
-    /// of that line, one within a character as the character's start, and one after the last line
-    /// as the end of the text.
+    /// Returns the byte offset of a position. A column beyond the end of a line is treated as the
+    /// line's end, a position within a character as the character's start, and a line beyond the
+    /// last one as the end of the text.
     pub fn offset(&self, place: LineColumn) -> usize {
         let text = self.text();
         offset(text, self.sources.file.lines(), self.encoding, place).unwrap_or(text.len())
@@ -110,8 +111,8 @@ impl Document {
     }
 }
 
-/// Returns the byte offset of a position in a text with these lines. The line after the last one is
-/// the end of the text; returns `None` for later lines.
+/// Returns the byte offset of a position in the text whose line index is `lines`. The start of the
+/// line after the last one is the end of the text. Returns `None` for later lines.
 fn offset(
     text: &str,
     lines: &LineIndex,

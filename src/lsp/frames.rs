@@ -1,5 +1,5 @@
-//! Frames: pictures of an open text that are rendered in slices, so that other messages are
-//! answered between slices.
+//! Renders frames, i.e. pictures of an open text for a page. A frame is rendered in slices, so that
+//! other messages are answered between slices.
 //!
 //! A frame that is no longer needed is dropped between two slices.
 
@@ -22,11 +22,11 @@ use crate::{
     scene::{Count, Method, Sampler},
 };
 
-/// Maximum number of pixels of a frame. A page cannot show more; larger pictures are rendered to
-/// files.
+/// Maximum number of pixels of a frame; requests for more are refused. A page cannot show more, and
+/// larger pictures are rendered to files.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// The requested frames that are not finished, the oldest first.
+/// Queue of the requested frames that are not finished, the oldest first.
 #[derive(Debug, Default)]
 pub struct Frames(Vec<Frame>);
 
@@ -45,7 +45,11 @@ struct Frame {
 
 impl Frames {
     /// Adds a frame. Returns the requests that it supersedes: the previous request for the same
-    /// frame, or all requests for other versions of the text. Fails if the parameters are invalid.
+    /// frame, or all requests for other versions of the text.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the parameters are invalid.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -56,7 +60,7 @@ impl Frames {
         let new = Frame::new(id, uri, params, version)?;
         let what = |frame: &Frame| (frame.version, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
-        // A frame that is requested again is continued under the new request.
+        // A frame that is already being rendered is continued for the new request.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }
@@ -70,7 +74,7 @@ impl Frames {
         self.0.is_empty()
     }
 
-    /// Drops the frame of a request. Returns whether there was such a frame.
+    /// Drops the frame of the request `id`. Returns whether there was such a frame.
     pub fn cancel(&mut self, id: &RequestId) -> bool {
         !self.remove(|frame| frame.id == *id).is_empty()
     }
@@ -135,7 +139,7 @@ impl Frame {
             most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
                 && longest.is_none_or(|longest| width.max(height) <= longest)
         };
-        // At the largest scale, a frame has one pixel, so some scale fits.
+        // With the greatest scale, a frame has one pixel, so some scale always fits.
         let scale = (scale..).find(fits).unwrap_or(u32::MAX);
         let (width, height) = version.size(scale);
         let whole = Area::whole(width, height);

@@ -4,14 +4,15 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response,
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Maximum number of values in a message. An object takes about 400 bytes of memory, but possibly
-/// only eight bytes of text. The limit allows 40 000 changes of a text in one message.
+/// Maximum number of JSON values in a message; a longer message is refused. A JSON object takes
+/// about 400 bytes of memory, but possibly only eight bytes of text. The limit allows 40 000
+/// changes of a text in one message.
 const MOST_VALUES: usize = 1 << 19;
 
 /// Error: a text is not a valid message.
 #[derive(Debug)]
 pub enum Malformed {
-    /// The text is answered with this response.
+    /// The text must be answered with this response.
     Answered(Value),
     /// The text is a malformed response, which is not answered; this message goes to the log.
     Unanswered(String),
@@ -21,10 +22,11 @@ pub enum Malformed {
 ///
 /// # Errors
 ///
-/// The text is not a message.
+/// Returns [`Malformed`] if the text is not a message.
 pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     let malformed = |id, code: ErrorCode, message: String| {
-        // lsp-server's type of responses cannot have the id null, so the response is made here.
+        // A response in lsp-server's type cannot have the id null, so the JSON of the response is
+        // made here.
         let error = json!({ "code": code as i32, "message": message });
         let response = json!({ "jsonrpc": "2.0", "id": id, "error": error });
         Err(Malformed::Answered(response))
@@ -58,8 +60,9 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     }
 }
 
-/// Converts a JSON value to a message; `None` if it is none. lsp-server's own conversion would copy
-/// each text in the value, and would take a request with an invalid identifier for a notification.
+/// Converts a JSON value to a message. Returns `None` if the value is not a message. lsp-server's
+/// own conversion is not used: it would copy each text in the value, and treat a request with an
+/// invalid identifier as a notification.
 fn message(mut value: Value) -> Option<Message> {
     let mut take = |name: &str| value.get_mut(name).map(Value::take);
     let id = match take("id") {
@@ -108,20 +111,20 @@ fn value_bound(text: &[u8]) -> usize {
     values
 }
 
-/// Returns the identifier of a request that cannot be parsed as a whole, so that the sender gets an
-/// answer; null if there is none. Such a request occurs: browsers may send half of a surrogate pair
-/// as an escape, which no Rust string can hold.
+/// Returns the identifier of a request whose other parts cannot be parsed, so that the sender gets
+/// an answer. Returns null if there is none. Browsers do send such requests: an escape may contain
+/// half of a surrogate pair, which a Rust string cannot hold.
 fn request_id(text: &[u8]) -> Value {
     #[derive(Deserialize)]
     struct Asked {
         id: Value,
     }
-    // Other fields are skipped without being converted to texts and numbers.
+    // Only the field `id` is parsed. The other fields are skipped.
     let asked = serde_json::from_slice(text).ok();
     identifier(asked.map(|asked: Asked| asked.id))
 }
 
-/// Returns the identifier if a response can have it, and null otherwise.
+/// Returns the identifier if it is allowed in a response, and otherwise null.
 fn identifier(id: Option<Value>) -> Value {
     id.filter(|id| id.is_string() || id.is_number())
         .unwrap_or_default()
@@ -185,7 +188,7 @@ mod tests {
             assert_eq!(response["id"], 7);
             assert_eq!(response["error"]["code"], ErrorCode::InvalidRequest as i32);
         }
-        // A text counts as one value, even if it contains `[`, `,` and `:`.
+        // A string counts as one value, even if it contains `[`, `,` and `:`.
         let text = r#"\"[,:\\"#.repeat(MOST_VALUES);
         let place = r#"{ "line": 1, "character": 2 }"#;
         let change =

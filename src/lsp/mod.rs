@@ -1,11 +1,11 @@
 //! Language server: provides the answers of the editor module by the Language Server Protocol.
 //!
-//! In: messages. Out: messages. [`Server`] is a value that holds the open texts (`documents`) and
-//! knows neither threads nor streams, so that any host can run it; [`stdio`] runs it on standard
-//! input and output. [`crate::editor`] computes the answers, `text_requests` calls it, and
-//! `convert` turns its answers into the types of the protocol (`protocol`). `picture_requests` and
+//! In: messages. Out: messages. [`Server`] is a value that holds the open texts (`documents`). It
+//! uses neither threads nor streams, so that any host can run it; [`stdio`] runs it on standard
+//! input and output. `text_requests` calls [`crate::editor`], which computes the answers, and
+//! `convert` converts these to the types of the protocol (`protocol`). `picture_requests` and
 //! `frames` answer Pinhole's own requests about a text's picture, which docs/protocol.md describes;
-//! `scene_version` caches what they need.
+//! `scene_version` caches the data that they need.
 
 mod convert;
 mod documents;

@@ -1,4 +1,4 @@
-//! Reads parameters of requests from JSON, and makes answers and errors.
+//! Reads parameters of requests from JSON, and makes responses and errors.
 
 use lsp_server::{ErrorCode, Message, RequestId, Response};
 use serde_json::Value;
@@ -33,7 +33,7 @@ impl Refusal {
 /// The answer to a request, as JSON, or the error.
 pub type Answer = Result<Value, Refusal>;
 
-/// Reads the value at the JSON pointer `path` in the parameters.
+/// Reads the value at the JSON pointer `path` in the parameters. A missing value is read as null.
 pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<T, Refusal> {
     let found = params.pointer(path).cloned().unwrap_or_default();
     serde_json::from_value(found).map_err(Refusal::invalid)

@@ -22,8 +22,8 @@ use crate::{
 /// Prefix of the methods of Pinhole's own requests.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// Answers the request `about`, except one for a frame. If the text has errors, most answers are
-/// null. The analysis is computed only if the request needs it.
+/// Answers the request with the method [`NAMESPACE`] + `about`, except one for a frame. If the text
+/// has errors, most answers are null. `analysis` is computed only if the request needs it.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,
@@ -50,7 +50,7 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     }
 }
 
-/// Answers with the limits of the number at a position, also in texts with errors.
+/// Answers with the limits of the number at a position. The text may have errors.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
     Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
@@ -66,7 +66,7 @@ fn written_limits(limits: editor::Limits) -> Value {
     })
 }
 
-/// Answers with the numbers and angles that `let`s define, also in texts with errors.
+/// Answers with the sliders of all definitions of numbers and angles. The text may have errors.
 fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let sliders = editor::sliders(analysis).into_iter();
     let written = |slider: editor::Slider<'_>| {
@@ -80,8 +80,8 @@ fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     Ok(sliders.map(written).collect())
 }
 
-/// Answers with the edits that add a new block or duplicate an object. In a text with errors, the
-/// position of a new block depends on which parts can be read.
+/// Answers with the edits that add a new block or duplicate an object. The text may have errors;
+/// the position of a new block then depends on the parts that can be read.
 fn add(
     params: &Value,
     converter: Converter<'_>,

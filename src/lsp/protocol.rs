@@ -1,5 +1,6 @@
-//! Types of the protocol that are read, or that several answers share. Other answers are made as
-//! JSON directly: a crate with all types of the protocol took nine seconds to compile.
+//! Types of the protocol that the server reads or that several answers share. Other answers are
+//! made directly as JSON, because a crate with all types of the protocol took nine seconds to
+//! compile.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -31,7 +32,7 @@ pub struct Color {
     pub alpha: f32,
 }
 
-/// Removes the fields of an object that are null, since the protocol leaves out missing values.
+/// Removes the fields of a JSON object that are null, since the protocol omits missing values.
 pub fn without_nulls(mut object: Value) -> Value {
     if let Value::Object(fields) = &mut object {
         fields.retain(|_, field| !field.is_null());

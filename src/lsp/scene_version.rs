@@ -1,7 +1,8 @@
-//! The scene of a version of a text, and the worlds in which its pictures and rays are traced.
+//! Caches the scene of one version of a text, and the worlds in which its pictures and rays are
+//! traced.
 //!
-//! Everything is computed once for a version, so that a pick in a scene of 100 000 spheres does
-//! not read the spheres again.
+//! Each is computed once for a version, so that picking an object in a scene of 100 000 spheres
+//! does not read the spheres again.
 
 use std::collections::VecDeque;
 
@@ -15,8 +16,9 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of picture sizes for which worlds are cached: the picture's own size, and the
-/// sizes of the coarse frames that are shown until the picture is finished.
+/// Maximum number of picture sizes for which worlds are cached; for a further size, the oldest
+/// world is dropped. Four suffice for the picture's own size and the sizes of the coarse frames
+/// that are shown until the picture is finished.
 const WORLDS: usize = 4;
 
 /// A version of a text that has no errors.
@@ -29,7 +31,8 @@ pub struct SceneVersion {
     /// The span of each object's name or, if it has none, of its keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
-    /// The text with only the object that was dragged last, after the index of that object.
+    /// The index of the object that was dragged last (`None` for the camera), and the text with
+    /// only this object.
     alone: Option<(Option<usize>, Sources)>,
 }
 
@@ -68,8 +71,9 @@ impl SceneVersion {
         (&self.scene, &self.worlds[index].1)
     }
 
-    /// Returns the scene, and the text with only the object `object`, or none for `None`, in which
-    /// a drag is evaluated. The text is cached, since each step of a drag needs it.
+    /// Returns the scene, and the text with only the object `object` or, for `None`, without any
+    /// object. A drag is evaluated in this text. The text is cached, since each step of a drag
+    /// needs it.
     pub fn alone(&mut self, sources: &Sources, object: Option<usize>) -> (&Scene, &Sources) {
         let known = self.alone.take_if(|(known, _)| *known == object);
         let made = || (object, viewport::alone(sources, &self.scene, object));

@@ -1,11 +1,11 @@
-//! The language server as a value: messages in, messages out.
+//! The language server as a value that receives and returns messages.
 //!
-//! Notifications are handled at once. Requests are put into a queue, from which [`Server::advance`]
-//! answers some at a time, so that a host can pass in other messages in between, such as a
-//! cancellation. Each answer is about the text as it was when the request came: before a text
-//! changes, the waiting requests about it are answered. Diagnostics are computed only for the last
-//! version of a text. A frame takes longer than everything else, so it is rendered in slices when
-//! there is no other work. It is dropped if its text changes, unless it was requested with `last`.
+//! Notifications are handled at once. Requests enter a queue, and [`Server::advance`] answers some
+//! of them at a time, so that a host can pass in other messages in between, such as a cancellation.
+//! Each answer is about the text at the time of the request: before a text changes, the waiting
+//! requests about it are answered. Diagnostics are computed only for the last version of a text. A
+//! frame, which takes longer than anything else, is rendered in slices when there is no other work.
+//! It is dropped if its text changes, unless its request has the parameter `last`.
 
 use std::{
     cell::LazyCell,
@@ -52,15 +52,15 @@ pub struct Server {
     changed: BTreeSet<String>,
     /// Scenes of the documents whose picture was requested; `None` for a text with errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// The last version without errors of each text that has changed since that version.
+    /// For each text that has changed since its last version without errors, that version.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
 }
 
 impl Server {
-    /// Makes a server that waits for `initialize`. Malformed notifications are reported by calling
-    /// `log`.
+    /// Makes a server that waits for `initialize`. It calls `log` with a message about each
+    /// malformed notification.
     pub fn new(log: fn(&str)) -> Self {
         Self {
             phase: Phase::Silent,
@@ -83,7 +83,8 @@ impl Server {
         }
     }
 
-    /// Handles a message. Returns the messages that must be sent before any others.
+    /// Handles a message. Returns the messages that the host must send at once, before those of
+    /// [`Self::advance`].
     pub fn handle(&mut self, message: Message) -> Vec<Message> {
         match (message, &self.phase) {
             (Message::Request(request), Phase::Talking(_)) if !is_lifecycle(&request) => {
@@ -97,7 +98,7 @@ impl Server {
                 outgoing
             }
             (Message::Notification(notification), _) => self.handle_notification(notification),
-            // The server sends no requests.
+            // The server sends no requests, so a response is ignored.
             (Message::Response(_), _) => Vec::new(),
         }
     }
@@ -107,8 +108,9 @@ impl Server {
         !self.waiting.is_empty() || !self.changed.is_empty() || !self.frames.is_empty()
     }
 
-    /// Does a part of the work, and returns the messages to send. A part is either all waiting
-    /// requests about one text and its diagnostics or, if nothing else is left, a slice of a frame.
+    /// Does a part of the work, and returns the messages to send. A part consists of all waiting
+    /// requests about one text together with its diagnostics. If there is no such work, a part is a
+    /// slice of a frame.
     pub fn advance(&mut self) -> Vec<Message> {
         let asked = self.waiting.front().map(uri);
         let changed = || self.changed.first().map(|uri| Some(Uri(uri.clone())));
@@ -207,11 +209,11 @@ impl Server {
         Some(response(id, answer))
     }
 
-    /// Moves the scene of a text that has changed to `last`, if that text had no errors. Returns
-    /// the answers to the requests for frames that are dropped.
+    /// Moves the scene of a changed text to `last`, if the text had no errors, and drops its
+    /// frames. Returns the answers to the requests for these frames.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
-            // The unfinished frames show an earlier version, and are continued.
+            // The unfinished frames show the last version without errors, and are continued.
             return Vec::new();
         };
         self.last.insert(uri.clone(), version);

@@ -1,9 +1,10 @@
 //! Runs the server on standard input and output, as editors start it.
 //!
-//! A separate thread reads, so that all messages that have arrived are handled before the next part
-//! of the work: requests that were cancelled meanwhile are not computed, and diagnostics are
-//! computed only for the last of several versions. lsp-server is not used for reading, since it
-//! allocates memory of any announced length and stops at the first malformed message.
+//! A separate thread reads the input, so that the server handles all messages that have arrived
+//! before it does the next part of its work. Requests that were cancelled meanwhile are not
+//! computed, and of several versions, only the last one gets diagnostics. lsp-server is not used
+//! for reading, since it allocates memory of any announced length and stops at the first malformed
+//! message.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -27,7 +28,7 @@ type Incoming = Result<Message, Value>;
 ///
 /// # Errors
 ///
-/// Writing to the output fails.
+/// Returns an error if writing to the output fails.
 pub fn serve(
     mut server: Server,
     input: impl Read + Send + 'static,
@@ -56,7 +57,7 @@ pub fn serve(
     Ok(false)
 }
 
-/// Returns the next message as soon as it arrives. The server works meanwhile, and its messages are
+/// Waits for the next message and returns it. Meanwhile, the server works, and its messages are
 /// sent. Returns `None` if the input has ended and no work is left.
 fn next_message(
     messages: &Receiver<Incoming>,
@@ -85,7 +86,7 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
             Ok(Some(message)) => {
                 let is_exit =
                     matches!(&message, Ok(Message::Notification(n)) if n.method == "exit");
-                // Nothing is read after `exit`.
+                // Reading ends with `exit`.
                 if sender.send(message).is_err() || is_exit {
                     return;
                 }
@@ -100,11 +101,12 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
     }
 }
 
-/// Maximum length of a message, in bytes. If a longer one is announced, the input is invalid, and
-/// the start of the next message is unknown.
+/// Maximum length of a message, in bytes. A greater announced length is treated as invalid input,
+/// after which the start of the next message is unknown, so reading ends.
 const LONGEST: u64 = 1 << 30;
 
-/// Maximum length of a line of a header, in bytes. Usual lines have about thirty.
+/// Maximum length of a header line, in bytes; a longer line is invalid input. Usual lines have
+/// about thirty bytes.
 const LONGEST_HEADER: u64 = 4096;
 
 /// Error of reading a message.
@@ -140,7 +142,8 @@ fn next(input: &mut impl BufRead) -> Result<Option<Incoming>, Failed> {
     }
 }
 
-/// Reads a header. Returns the announced length of the message, or `None` at the end of the input.
+/// Reads the header of a message. Returns the announced length of the message, or `None` at the end
+/// of the input.
 fn length(input: &mut impl BufRead) -> Result<Option<u64>, Failed> {
     let mut length = None;
     loop {

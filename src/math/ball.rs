@@ -25,9 +25,9 @@ pub struct Ball<T: Real> {
 /// computed in `f64` with fewer than 2^12 roundings of 2^−53 each, together less than 2^−40.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
-/// Radius of a rounding, in [`UNIT`](Real::UNIT)s of the computed number. The error is at most one
-/// unit of the true number, which is less than two of the computed one. Twice as much costs nothing
-/// except an occasional decision in the next precision.
+/// Maximum rounding error of a computed number, in [`UNIT`](Real::UNIT)s of this number. The error
+/// is at most one unit of the true number, which is less than two units of the computed one. Twice
+/// as much costs nothing except an occasional decision in the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
@@ -39,8 +39,8 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Returns the ball about a computed number. Its radius is `inherited` from the operands, plus
-    /// that of the number's rounding.
+    /// Returns the ball about the computed number `mid`. Its radius is `inherited`, the error from
+    /// the operands, plus the rounding error of `mid`.
     fn rounded(mid: T, inherited: T::Radius) -> Self {
         let rounding = if mid.is_zero() {
             T::Radius::ZERO
@@ -58,7 +58,7 @@ impl<T: Real> Ball<T> {
         Self::rounded(T::difference(a, b), T::Radius::ZERO)
     }
 
-    /// Rounds `x` to this precision; the radius covers the rounding.
+    /// Rounds `x` to this precision. The radius covers the rounding error.
     pub fn from_big(x: &Big) -> Self {
         Self::rounded(T::from_big(x), underflow_loss::<T>(x.is_zero()))
     }
@@ -69,21 +69,23 @@ impl<T: Real> Ball<T> {
     }
 
     /// Returns whether the relative error is at most 2^−80, far below the precision of `f64`. A
-    /// higher precision would then help only with decisions so close that [`Double`](super::Double)
-    /// leaves them in doubt, and these decisions allow for this error.
+    /// computation in a higher precision is then not worthwhile: it would help only with decisions
+    /// that [`Double`](super::Double) leaves in doubt, and these decisions allow for such an error.
     pub fn is_precise(&self) -> bool {
-        /// Relative error 2^−80, 27 bits below the 53 of an `f64`.
+        /// Maximum relative error of a precise ball: 2^−80, which is 27 bits below the unit
+        /// roundoff of `f64`.
         const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
         self.rad <= self.size() * PRECISE
     }
 
-    /// Returns whether the sign is certainly positive or certainly negative; `false` for NaN.
+    /// Returns whether the sign is certainly positive or certainly negative. Returns `false` for
+    /// NaN.
     fn is_clear(&self) -> bool {
         self.size() > self.rad * UP
     }
 
-    /// Compares with zero. Returns a [`Doubt`] if the sign is uncertain. In the highest precision
-    /// there is no doubt: a number that cannot be distinguished from zero is zero.
+    /// Compares with zero. Returns a [`Doubt`] if the sign is uncertain. In the highest precision,
+    /// there is never a doubt: a number that cannot be distinguished from zero counts as zero.
     #[inline]
     pub fn sign(&self) -> Result<Ordering, Doubt> {
         if self.is_clear() {
@@ -126,8 +128,7 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Computes the square root of a number that is not negative, or negative only within its
-    /// radius.
+    /// Computes the square root. The number must not be negative, except within its radius.
     #[inline]
     pub fn sqrt(&self) -> Self {
         if !self.is_clear() {
@@ -143,9 +144,9 @@ impl<T: Real> Ball<T> {
         Self::rounded(root, inherited)
     }
 
-    /// Returns the floor, the greatest integer that is not greater, and whether it is odd. Returns
-    /// a [`Doubt`] if the number may lie on either side of an integer. In the highest precision
-    /// there is no doubt: a number that cannot be distinguished from an integer is that integer.
+    /// Returns the floor, that is the greatest integer at most as large, and whether it is odd.
+    /// Returns a [`Doubt`] if an integer lies within the ball. In the highest precision, there is
+    /// never a doubt: a number that cannot be distinguished from an integer counts as this integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
         let ceiling = floor.plus(&T::from_f64(1.0));
@@ -195,8 +196,8 @@ impl<T: Real> Ball<T> {
             };
         }
         let mid = self.mid.over(&other.mid);
-        // |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|. |b'| is at least |b| minus the radius
-        // of b.
+        // The denominator is bounded from below: |b'| is at least |b| minus the radius of b. The
+        // error is then at most |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|.
         let least = other.size().without(other.rad * UP);
         let lost = underflow_loss::<T>(self.mid.is_zero());
         let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;
@@ -246,7 +247,7 @@ operator!(Sub, sub);
 operator!(Mul, mul);
 operator!(Div, div);
 
-/// Returns the maximum error by an underflow: 0 if the exact result `is_zero`, otherwise
+/// Returns the maximum error by an underflow: 0 if the exact result is 0 (`is_zero`), otherwise
 /// [`TINY`](Real::TINY).
 #[inline]
 fn underflow_loss<T: Real>(is_zero: bool) -> T::Radius {

@@ -11,22 +11,22 @@ use super::Angle;
 #[derive(Clone, Debug)]
 pub struct Big(pub(super) Float);
 
-/// A binary float of any precision. A result has the precision of its operands. A precision of 0
-/// means unlimited: all operations except divisions are exact.
+/// A binary floating-point number of any precision. A result has the precision of its operands. The
+/// precision 0 means that all operations except divisions are exact.
 pub(super) type Float = FBig<HalfEven, 2>;
 
-/// Number of bits of a [`Big`]. If [`Double`](super::Double) leaves a doubt, the difference to be
-/// decided is less than about 2^−90. The remaining bits are far more than any formula here loses in
-/// its intermediate steps. A difference that is still not resolved counts as a tie.
+/// Number of bits of a [`Big`]. A difference about which [`Double`](super::Double) leaves a doubt
+/// is less than about 2^−90. The remaining bits are far more than any formula here loses in its
+/// intermediate steps. A difference that 320 bits do not resolve counts as 0.
 pub(super) const PRECISION: usize = 320;
 
-/// Number of additional bits for the few steps that cancel. Even if as many bits cancel as a result
-/// has, the result is accurate.
+/// Number of additional bits for the few steps that subtract nearly equal numbers. Even if 320 bits
+/// cancel, 320 correct bits remain.
 const GUARD: usize = 320;
 
 impl Big {
-    /// Number of bits of a big number. An integer with more bits is rounded to the nearest number
-    /// with this many bits, which is even.
+    /// Number of bits of a big number. An integer with more bits is rounded to a multiple of a
+    /// power of two, which is even.
     pub const BITS: i32 = PRECISION as i32;
 
     /// Rounds `x` to the nearest big number.
@@ -34,7 +34,7 @@ impl Big {
         Self(x.with_precision(PRECISION).value())
     }
 
-    /// Returns the sine and the cosine of an angle. For a multiple of 90° they are exactly 0 and
+    /// Returns the sine and the cosine of an angle. For a multiple of 90°, they are exactly 0 and
     /// ±1.
     pub fn sin_cos(angle: Angle) -> (Self, Self) {
         let (sin, cos) = sin_cos(angle, 1.0);
@@ -52,8 +52,8 @@ impl Big {
         Self::round(sin / cos)
     }
 
-    /// Rounds to the nearest finite `f64`. The result is 0 only if the number is exactly 0; smaller
-    /// numbers become the smallest subnormal one.
+    /// Rounds to the nearest finite `f64`. The result is 0 only if the number is exactly 0; other
+    /// numbers too small for an `f64` become the smallest subnormal number.
     pub fn to_finite(&self) -> f64 {
         let x = self.0.to_f64().value().clamp(f64::MIN, f64::MAX);
         if x != 0.0 || is_zero(&self.0) {
@@ -71,8 +71,8 @@ impl Big {
 }
 
 /// Compares an angle with `half_turns` half turns (180° each). If the angle's part in radians is 0,
-/// degrees are compared exactly. Otherwise the irrational number π is involved: the difference is
-/// never zero, and it has more digits than can cancel.
+/// degrees are compared exactly. Otherwise, the comparison involves the irrational number π. The
+/// difference is then never zero, and 640 bits are more than can cancel.
 pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
     if angle.radians == 0.0 {
@@ -114,8 +114,8 @@ fn wide(x: f64) -> Float {
 /// Converts a finite `f64` to a float of unlimited precision, whose sums, differences and products
 /// are exact. Any other number becomes 0.
 pub(super) fn exact(x: f64) -> Float {
-    // The numbers of a scene and of sample points are finite. Anything else would be a bug; zero
-    // keeps the bug from becoming a panic in a release build.
+    // The numbers of a scene and of sample points are finite. Any other number would be a bug,
+    // which must not become a panic in a release build.
     debug_assert!(x.is_finite());
     let x = if x.is_finite() { x } else { 0.0 };
     let float = Float::try_from(x).unwrap_or(Float::ZERO);

@@ -6,11 +6,11 @@ use super::{Big, Real};
 /// last place of the first.
 ///
 /// The algorithms are Dekker's and Knuth's error-free transformations. Sum and product are the
-/// accurate ones analysed by Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic
-/// building blocks of double-word arithmetic" (2017). Their relative errors are at most 3u² and
-/// 5u², u = 2^−53. The quotient is a long division and the root is a step of Newton's method, each
-/// with its residual in double-double. Products are split as by Dekker instead of using a fused
-/// multiply-add, which is a slow function call on processors without that instruction; both ways
+/// accurate versions analysed by Joldes, Muller and Popescu, "Tight and rigorous error bounds for
+/// basic building blocks of double-word arithmetic" (2017). Their relative errors are at most 3u²
+/// and 5u², u = 2^−53. The quotient is a long division and the root is a step of Newton's method,
+/// each with its residual in double-double. Products are split as by Dekker instead of using a
+/// fused multiply-add, which is a slow function call on processors without this instruction; both
 /// are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Double {
@@ -43,8 +43,8 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
 /// splitting).
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> Double {
-    /// Veltkamp's factor 2^27 + 1: the upper part of a number of 53 bits gets 26 bits, and the
-    /// lower part 26 bits and a sign.
+    /// Veltkamp's factor 2^27 + 1. It splits a number of 53 bits into an upper part of 26 bits and
+    /// a lower part of 26 bits and a sign.
     const SPLIT: f64 = ((1u64 << 27) + 1) as f64;
     fn split(x: f64) -> (f64, f64) {
         let scaled = x * SPLIT;
@@ -68,9 +68,10 @@ impl Double {
 impl Real for Double {
     type Radius = f64;
 
-    /// 2^−102, more than the error 10u² of a quotient, the largest of all operations.
+    /// Maximum relative error of one operation: 2^−102. The largest is 10u², that of a quotient.
     const UNIT: f64 = 1.0 / (1u128 << 102) as f64;
-    /// 2^−1022. Splitting loses bits below the subnormal numbers, a few times 2^−1074.
+    /// Maximum absolute error of an operation that underflows: 2^−1022. Splitting a number loses
+    /// bits below the subnormal numbers, a few times 2^−1074.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -130,7 +131,7 @@ impl Real for Double {
         if self.hi == 0.0 {
             return *self;
         }
-        // One step of Newton's method from the f64 root; the residual is accurate to double-double.
+        // One step of Newton's method from the root in `f64`; the residual is in double-double.
         let root = f64::sqrt(self.hi);
         let rest = self.minus(&two_product(root, root));
         quick_two_sum(root, rest.hi / (2.0 * root))

@@ -2,7 +2,7 @@
 //! sum, difference and product of dyadic numbers, so that nothing is rounded.
 //!
 //! They decide the few questions that must not depend on rounding at all: whether the eye lies in a
-//! plane or on a sphere, and whether the up vector is parallel to the view direction. Each decision
+//! plane or on a sphere, and whether the up vector is parallel to the view direction. A decision
 //! takes some microseconds.
 
 use std::{cmp::Ordering, ops};

@@ -112,9 +112,9 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may not be an `f64`, so that (2a +
-/// b)/2 is computed: if the sum is rounded, it is not subnormal, and halving it is exact. If the
-/// sum overflows, a + b/2 is computed; `b`/2 is then exact or too small to matter.
+/// Returns `a` + `b`/2, rounded once. Half of a subnormal number need not be an `f64`; therefore
+/// (2a + b)/2 is computed. If this sum is rounded, it is not subnormal, and halving it is exact. If
+/// the sum overflows, a + b/2 is computed; `b`/2 is then exact or too small to matter.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {
@@ -167,8 +167,8 @@ mod tests {
 
     #[test]
     fn sides_of_triangles() {
-        // In the fourth case the sum rounds to the third side but is slightly greater; in the fifth
-        // it was rounded up.
+        // In the fourth case, the sum is slightly greater than the third side but rounds to it. In
+        // the fifth, the sum is rounded up to the third side.
         let little = f64::EPSILON / 4.0;
         for (sides, is_triangle) in [
             ([2.0, 2.0, 1.0], true),

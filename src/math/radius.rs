@@ -1,5 +1,5 @@
-//! Error bounds: non-negative numbers, which for big numbers have a wider range than `f64`. Their
-//! operations round to nearest. Where it matters, callers multiply the result by [`UP`](super::UP).
+//! Error bounds: non-negative numbers. Those of big numbers have a wider range than `f64`.
+//! Operations round to nearest. Where it matters, callers multiply the result by [`UP`](super::UP).
 
 use std::ops::{Add, Div, Mul};
 
@@ -46,8 +46,7 @@ impl Radius for f64 {
     #[inline]
     fn scaled(self, exponent: i32) -> Self {
         match exponent {
-            // The power of two is a normal number, and the product is rounded exactly as `ldexp`
-            // rounds it.
+            // The power of two is a normal number, and the product is rounded as `ldexp` rounds it.
             -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
             _ => libm::ldexp(self, exponent),
         }
@@ -65,8 +64,8 @@ impl Radius for f64 {
     }
 }
 
-/// A non-negative number with a range that does not overflow: mantissa · 2^exponent. The mantissa
-/// is 0, infinite, or at least 1 and less than 2.
+/// A non-negative number that does not overflow: mantissa · 2^exponent. The mantissa is 0,
+/// infinite, or at least 1 and less than 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wide {
     mantissa: f64,
@@ -74,8 +73,9 @@ pub struct Wide {
 }
 
 impl Wide {
-    /// Exponent difference above which a summand is treated as 2^1000 times smaller than the other.
-    /// This is far less than [`UP`](super::UP) adds, and the summand's mantissa does not underflow.
+    /// Maximum exponent difference of two summands. If it is greater, the smaller summand is
+    /// replaced by a number 2^1000 times smaller than the larger. This changes the sum far less
+    /// than [`UP`](super::UP) does, and the mantissa does not underflow.
     const FAR: i64 = 1000;
 
     /// Returns `mantissa` · 2^`exponent`, where the mantissa may be any number that is not
@@ -176,7 +176,7 @@ impl Radius for Wide {
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
         /// Maximum absolute value of the result. It is far beyond the exponents of `f64`, so that
-        /// no number scaled by it is an `f64`. It is small enough to be added and negated without
+        /// scaling by it leaves the range of `f64`, and it can be added and negated without
         /// overflow.
         const LIMIT: i64 = 1 << 20;
         (self.exponent + of_mantissa).clamp(-LIMIT, LIMIT) as i32
@@ -187,7 +187,7 @@ impl Radius for Wide {
         Self::new(rest.max(0.0), self.exponent)
     }
     fn to_f64(self) -> f64 {
-        /// Maximum absolute value of the exponent, beyond those of `f64`, which are −1074 to 1023.
+        /// Maximum absolute value of the exponent. It is beyond those of `f64`, −1074 to 1023.
         const LIMIT: i64 = 1100;
         libm::ldexp(self.mantissa, self.exponent.clamp(-LIMIT, LIMIT) as i32)
     }

@@ -21,7 +21,8 @@ pub trait Real: Clone + Debug + Sized {
     type Radius: Radius;
     /// Maximum relative error of one operation.
     const UNIT: f64;
-    /// Maximum absolute error of one operation that underflows, including that of its radius.
+    /// Maximum absolute error of one operation that underflows. It also covers an underflow of the
+    /// result's radius.
     const TINY: Self::Radius;
     /// Whether this is the highest precision, in which a value that cannot be distinguished from
     /// zero counts as zero.
@@ -39,7 +40,7 @@ pub trait Real: Clone + Debug + Sized {
     fn magnitude(&self) -> Self::Radius;
     /// Returns whether the number is less than zero.
     fn is_negative(&self) -> bool;
-    /// Returns whether the number is exactly zero, not merely too small for an `f64`.
+    /// Returns whether the number is exactly zero. A number too small for an `f64` is not zero.
     fn is_zero(&self) -> bool;
 
     /// Computes `self` + `other`.
@@ -65,10 +66,10 @@ pub trait Real: Clone + Debug + Sized {
 /// an integer. The last bit of the sum is the last bit of that integer.
 pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 
-/// Returns the floor of `x`, the greatest integer that is not greater. Requires |x| < 2^63.
+/// Returns the floor of `x`, that is the greatest integer at most as large. Requires |x| < 2^63.
 ///
 /// It replaces `f64::floor`, which is a function call on targets whose baseline has no instruction
-/// for it.
+/// for rounding down.
 #[inline]
 pub fn floor(x: f64) -> f64 {
     let towards_zero = x as i64 as f64;
@@ -81,9 +82,10 @@ pub fn floor(x: f64) -> f64 {
 
 impl Real for f64 {
     type Radius = f64;
-    /// Unit roundoff, 2^−53.
+    /// Maximum relative error of one operation: the unit roundoff, 2^−53.
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
-    /// 2^−1022. An underflow loses at most half of the smallest subnormal number, 2^−1075.
+    /// Maximum absolute error of an operation that underflows: 2^−1022. The exact maximum is half
+    /// of the smallest subnormal number, 2^−1075.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -154,7 +156,8 @@ impl Real for Big {
     type Radius = Wide;
 
     const UNIT: f64 = f64::from_bits((1023 - PRECISION as u64) << 52);
-    /// 0, because a big number does not underflow.
+    /// Maximum absolute error of an operation that underflows: 0, because big numbers do not
+    /// underflow.
     const TINY: Wide = Wide::ZERO;
     const LAST: bool = true;
 

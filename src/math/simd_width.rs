@@ -2,10 +2,10 @@
 //!
 //! A program for all processors of an architecture may only use the vectors that all of them have,
 //! which hold two `f64` on x86-64. The few loops that matter are therefore also compiled for wider
-//! vectors: four numbers (AVX2) and, where it gains a tenth, eight (AVX-512). At run time, the
-//! program detects once which of them the processor has. Vectors of any width compute the same
-//! bits: IEEE 754 rounds each sum and each product on its own, and nothing here may fuse two
-//! operations into one.
+//! vectors: four numbers (AVX2) and, where it gains 10 %, eight (AVX-512). At run time, the program
+//! detects once which vectors the processor has. Vectors of any width compute the same bits: IEEE
+//! 754 rounds each sum and each product separately, and nothing here may fuse two operations into
+//! one.
 
 /// Width of the SIMD vectors that a loop uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,6 +17,6 @@ pub enum SimdWidth {
     Baseline,
 }
 
-/// Whether loops are also compiled for wider vectors, which they are on x86-64. On other
-/// architectures a second copy would only enlarge the program.
+/// Whether loops are also compiled for wider vectors, as on x86-64. On other architectures, a
+/// second copy would only enlarge the program.
 pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

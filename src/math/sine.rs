@@ -9,17 +9,17 @@ use std::{array, ops::Neg, sync::LazyLock};
 use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
 /// Maximum angle, in radians, for which double-double series are used; above it, [`Big`] computes
-/// the result, whose π has enough digits for any angle. The limit is less than 2^20 quarter turns.
-/// For these, the truncation of π/2 amounts to 2^20·2^−163 = 2^−143, which is negligible beside the
-/// unit of double-double, 2^−102.
+/// the result, because its π has enough digits for any angle. The limit is less than 2^20 quarter
+/// turns. Up to it, the truncation of π/2 amounts to at most 2^20·2^−163 = 2^−143, which is
+/// negligible beside the unit of double-double, 2^−102.
 const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
-/// Number of terms of each series. The argument r is at most 0.8, more than π/4. The first omitted
-/// term of the cosine is then r³⁰/30! < 2^−117, and that of the sine, divided by r, is r³⁰/31! <
-/// 2^−122.
+/// Number of terms of the series of the sine and of the cosine. The argument r is at most 0.8, more
+/// than π/4. The first omitted term of the cosine is then r³⁰/30! < 2^−117, and that of the sine,
+/// divided by r, is r³⁰/31! < 2^−122.
 const TERMS: usize = 15;
-/// Maximum truncation error of a series. The terms alternate and decrease, so that the error is at
-/// most the first omitted term.
+/// Maximum truncation error of the series of the sine or of the cosine. The terms alternate and
+/// decrease, so that the error is at most the first omitted term.
 const TRUNCATION: f64 = 1.0 / (1u128 << 116) as f64;
 
 /// Constants for the reduction of angles and for the series.
@@ -58,9 +58,9 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     }
 });
 
-/// Returns the sine and the cosine of an angle. For a multiple of 90° they are exactly 0 and ±1. In
-/// double-double, series compute them (up to `MAX_RADIANS`); otherwise, they are rounded from a
-/// [`Big`].
+/// Returns the sine and the cosine of an angle. For a multiple of 90°, they are exactly 0 and ±1.
+/// In double-double, series compute them for angles up to 2^20 radians. Otherwise, they are rounded
+/// from a [`Big`].
 pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     if T::UNIT == Double::UNIT && angle.radians.abs() <= MAX_RADIANS {
         let (sin, cos) = by_series(angle);
@@ -70,8 +70,8 @@ pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     (Ball::from_big(&sin), Ball::from_big(&cos))
 }
 
-/// Converts to `T`, which must be [`Double`]. The conversion changes nothing, because the sum of
-/// the two parts is rounded to the same parts.
+/// Converts a ball of [`Double`] to a ball of `T`, which must be [`Double`], too. The sum of the
+/// two parts is rounded to the same parts, so that the conversion changes nothing.
 fn from_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
     let [hi, lo, rad] = [x.mid.hi, x.mid.lo, x.rad].map(T::from_f64);
     Ball {
@@ -117,8 +117,8 @@ fn sin_cos_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
 }
 
 /// Splits an angle in degrees into a rest, from −45 to 45 degrees, and a number of quarter turns.
-/// Every step is exact: remainders are, and so is the difference between 90 and a number from 45 to
-/// 90 (Sterbenz).
+/// Every step is exact: remainders are exact, and so is the difference between 90 and a number from
+/// 45 to 90 (Sterbenz).
 fn reduce_degrees(degrees: f64) -> (f64, f64) {
     let within_turn = degrees % 360.0;
     let mut rest = within_turn % 90.0;
@@ -133,8 +133,8 @@ fn reduce_degrees(degrees: f64) -> (f64, f64) {
     (rest, quarters)
 }
 
-/// Returns the sine and the cosine of an angle increased by `quarters` quarter turns, from those of
-/// the angle itself.
+/// Returns the sine and the cosine of an angle plus `quarters` quarter turns, from the sine `sin`
+/// and the cosine `cos` of the angle.
 fn add_quarter_turns<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (T, T) {
     match quarters.rem_euclid(4.0) as u8 {
         0 => (sin, cos),
@@ -171,11 +171,12 @@ mod tests {
     use super::*;
 
     /// Maximum radius of a ball, in units of double-double, for angles in degrees, in radians, and
-    /// in both. It follows from the rules of [`Ball`]. The reduced angle r has 8 units of r after
-    /// its product with a rounded constant (degrees), and at most 12·π/4 units after three
-    /// differences (radians). At |r| = π/4 the series then give 19.9 units of the sine and 19.6 of
-    /// the cosine for degrees, and 23.4 and 22.1 for radians. For both, two products of numbers
-    /// that are √½ are added: 2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1.
+    /// in both. It follows from the rules of [`Ball`]. The reduced angle r has an error of 8 units
+    /// of r after its product with a rounded constant (degrees), and of at most 12·π/4 units after
+    /// three differences (radians). At |r| = π/4, the series then give 19.9 units of the sine and
+    /// 19.6 of the cosine for degrees, and 23.4 and 22.1 for radians. For angles with both parts,
+    /// two products of numbers that are √½ are added: 2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) =
+    /// 68.1.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];
 
     /// Returns whether the balls of the sine and the cosine contain the true numbers and are no
@@ -219,7 +220,7 @@ mod tests {
 
     #[test]
     fn angles_far_away_and_the_widest_balls_are_right() {
-        // This ball is as wide as possible, because both parts of the angle are 45° off a quarter
+        // This ball is as wide as possible, because both parts of the angle are 45° from a quarter
         // turn.
         assert!(is_right(-302176.406925716, -675013.4458038831 / 64.0));
         for radians in [1e7, -3e20, MAX_RADIANS, 1e300] {

@@ -1,4 +1,4 @@
-//! A slot for one value, in which a newer value replaces an older one.
+//! A slot that passes values between threads and keeps only the newest one.
 
 use std::{
     sync::{
@@ -10,14 +10,14 @@ use std::{
 
 use crate::lock::{lock, unpoisoned};
 
-/// A slot that passes values from one thread to another. A new value replaces one that was not
-/// taken.
+/// Slot that passes values from one thread to another. A new value replaces an older one that was
+/// not taken.
 #[derive(Debug)]
 pub struct Latest<T> {
     state: Mutex<SlotState<T>>,
     news: Condvar,
-    /// Whether the value taken last is outdated. Written only while `state` is locked, so that
-    /// both agree.
+    /// Whether the value that was taken last is outdated. It is written only while `state` is
+    /// locked, so that it always agrees with `state`.
     stale: AtomicBool,
 }
 
@@ -41,20 +41,20 @@ impl<T> Default for Latest<T> {
 }
 
 impl<T> Latest<T> {
-    /// Takes the value in the slot. Returns `None` if there is none.
+    /// Takes the value in the slot. Returns `None` if the slot is empty.
     pub fn try_take(&self) -> Option<T> {
         let mut state = lock(&self.state);
         self.stale.store(state.is_over, Ordering::SeqCst);
         state.next.take()
     }
 
-    /// Waits for a value and takes it. Returns `None` after the end.
+    /// Waits for a value and takes it. Returns `None` if the slot has ended.
     pub fn take(&self) -> Option<T> {
         self.take_while(Duration::MAX, || {})
     }
 
-    /// Waits for a value as [`take`](Self::take) does, and calls `idle` whenever it has waited for
-    /// `pause`.
+    /// Waits for a value as [`take`](Self::take) does, and calls `idle` after each `pause` of
+    /// waiting.
     pub fn take_while(&self, pause: Duration, mut idle: impl FnMut()) -> Option<T> {
         let mut state = lock(&self.state);
         loop {
@@ -77,8 +77,8 @@ impl<T> Latest<T> {
         }
     }
 
-    /// Returns a flag that cancels work on the value taken last: it is set as soon as a newer value
-    /// is put or the slot ends.
+    /// Returns a flag that tells work on the value taken last to stop. It is set as soon as a newer
+    /// value is put into the slot or the slot ends.
     pub fn stale(&self) -> &AtomicBool {
         &self.stale
     }

@@ -1,19 +1,19 @@
-//! The content of a file, and its changes.
+//! Watches a file and reads its content after each change.
 //!
-//! The folder is watched, not the file: many editors save by writing another file and renaming it,
-//! which removes the old file together with its watch. For a symbolic link, the folder of the
-//! link's target is watched as well.
+//! The folder is watched rather than the file: many editors save by writing another file and
+//! renaming it, which removes the old file together with its watch. For a symbolic link, the folder
+//! of the link's target is watched as well.
 //!
-//! Events come in bursts, so the file is read after a short time without events. (notify's own
-//! debouncers do that, too. But the small one drops the kind of an event, so that our own reading
-//! would trigger it, and the large one tracks renamed files, which is not needed here.) In
-//! addition, the file's time and length are checked once a second. This covers folders without
-//! events, such as those on other machines, systems that have no watches left, and folders that are
-//! removed and created again.
+//! Events come in bursts, so the file is read after a short time without events. The debouncers of
+//! the crate notify are not used. The small one drops the kind of an event, so that our own reading
+//! would trigger it. The large one tracks renamed files, which is not needed here. In addition, the
+//! file's time and length are checked once a second. This detects changes in folders without
+//! events, such as those on other machines, on systems that have no watches left, and in folders
+//! that are removed and created again.
 //!
-//! A save is recognised by the file's time, length and identity, and not by its text alone: people
-//! who save an unchanged text expect a reaction. Other changes that an editor makes to a file after
-//! writing it change none of these three.
+//! A save is recognized by the file's time, length and identity, not only by its text, because
+//! people who save an unchanged text expect a reaction. Other changes that an editor makes to a
+//! file after writing it affect none of these three.
 
 use std::{
     collections::BTreeSet,
@@ -36,13 +36,14 @@ use notify::{
 use super::Latest;
 use crate::files;
 
-/// Time without events after which the file is read.
+/// Time without events after which a changed file is read.
 const QUIET_TIME: Duration = Duration::from_millis(10);
 
-/// Maximum time from the first event to reading the file, if events do not stop.
+/// Maximum time from the first event to reading the file, even if further events come.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
-/// Maximum time for which a missing or empty file counts as being saved, and is waited for.
+/// Maximum time to wait for a file that is missing or empty, since a program may be saving it.
+/// After that, the file counts as missing or empty.
 const ABSENCE: Duration = Duration::from_millis(300);
 
 /// Time between two checks of the file without an event.
@@ -57,13 +58,13 @@ pub struct FileContent {
     pub since: Instant,
 }
 
-/// Watches a file until the returned slot ends or is dropped. The slot contains the file's first
-/// content at once, and another content whenever the file was saved, even with unchanged text.
-/// `read` reads the file, and must not wait for other processes ([`files::open`]).
+/// Watches a file until the returned slot ends or is dropped. The slot contains the file's content
+/// at once, and again after each save, even of an unchanged text. `read` reads the file, and must
+/// not wait for other processes ([`files::open`]).
 ///
 /// # Errors
 ///
-/// The watcher's thread cannot be started.
+/// Returns an error if the watcher's thread cannot be started.
 pub fn watch(
     path: &Path,
     read: impl Fn(&Path) -> io::Result<Vec<u8>> + Send + 'static,
@@ -106,7 +107,7 @@ struct Watcher<R> {
     _sender: Sender<notify::Result<Event>>,
     /// The folders that are watched.
     folders: BTreeSet<PathBuf>,
-    /// Names of the file in the folders to watch.
+    /// Names of the file in the watched folders, also that of a link's target.
     names: Vec<OsString>,
     /// Stamp of the file when it was last read.
     stamp: Option<Stamp>,
@@ -126,12 +127,13 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             };
             match event {
                 Ok(event) if self.concerns(&event) => self.settle(),
-                // Even if other events keep coming, the file is checked once a second.
+                // Events about other files do not delay the check once a second.
                 Ok(_) if since < next_look => continue,
                 _ => {
                     next_look = since + POLL_INTERVAL;
                     if stamp(&self.path) == self.stamp {
-                        // A folder may exist again, or a link may have a new target.
+                        // Watch the current folders: one may exist again, or a link may have a new
+                        // target.
                         self.follow();
                         continue;
                     }
@@ -152,7 +154,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         };
         let written = AccessKind::Close(AccessMode::Write);
         match event.kind {
-            // Reading, which this watcher does, too, changes nothing.
+            // Reading causes events, too, but changes nothing.
             EventKind::Access(access) if access != written => false,
             _ if event.need_rescan() => true,
             _ => event.paths.iter().any(|path| {
@@ -214,7 +216,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             Ok(bytes) => Ok(bytes.clone()),
             Err(error) => Err(error.to_string()),
         };
-        // If the clock is coarse, or the file's time was set back, only the text reveals a save.
+        // If the clock is coarse, or the file's time was set back, only the text shows that the
+        // file was saved.
         if stamp != self.stamp || self.last_read.as_ref() != Some(&read) {
             self.stamp = stamp;
             self.last_read = Some(read);
@@ -222,9 +225,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file's content, with the stamp from before reading. If the file was written
-    /// meanwhile, it is read again. Otherwise, content read together with an old stamp would later
-    /// be mistaken for another save.
+    /// Reads the file's content, with the stamp from before reading. If the file was written during
+    /// reading, reads it again: new content with an old stamp would later be mistaken for another
+    /// save.
     fn read_when_still(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + LONGEST_BURST;
         loop {
@@ -238,7 +241,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 
     /// Reads the file's content, with the stamp from before reading. If the file is missing or
-    /// empty, waits for up to [`ABSENCE`] until it is there, except at the first reading.
+    /// empty, waits for up to [`ABSENCE`] until it has content, except at the first reading.
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + ABSENCE;
         loop {
@@ -261,8 +264,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 }
 
-/// Returns the folders to watch for a file, and the file's names in them, for the path and for the
-/// target of a link.
+/// Returns the folders to watch for a file, and the file's names in them. Includes those of a
+/// link's target.
 fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     let mut folders = BTreeSet::new();
     let mut names = BTreeSet::new();
@@ -274,11 +277,11 @@ fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     (folders, names.into_iter().collect())
 }
 
-/// Returns the canonical name of a file's folder. The system watches a folder only once, so for a
-/// folder with two names, removing the watch of one would also remove that of the other.
+/// Returns the canonical path of a file's folder. The system watches a folder only once, so with
+/// two paths for one folder, removing one watch would also remove the other.
 fn folder(path: &Path) -> PathBuf {
     let folder = files::folder(path);
-    // A folder that does not exist keeps the name by which it was given.
+    // A folder that does not exist has no canonical path.
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 

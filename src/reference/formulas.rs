@@ -3,9 +3,9 @@
 //!
 //! The camera's axes are normalised first. The sphere uses the discriminant b² − 4ac, the box three
 //! slabs with reciprocals (Kay and Kajiya 1986), and the triangle the method of Möller and Trumbore
-//! (1997). All of them are right in exact arithmetic, and the tracer uses none of them: `report`
-//! compares the tracer's decisions with theirs, and `grading` uses them to imitate students'
-//! programs.
+//! (1997). All formulas are right in exact arithmetic, and the tracer uses none of them: `report`
+//! compares the tracer's decisions with those by these formulas, and `grading` uses the formulas to
+//! imitate students' programs.
 
 use glam::{BVec3, DVec2, DVec3};
 
@@ -44,8 +44,8 @@ pub fn radians(angle: Angle) -> f64 {
     angle.degrees * std::f64::consts::PI / 180.0 + angle.radians
 }
 
-/// Returns the vertices of a triangle: those of the outline, or else left end of the base, right
-/// end of the base, and apex.
+/// Returns the vertices of a triangle. If the outline has no vertices, computes the left end of the
+/// base, the right end, and the apex.
 pub fn vertices(outline: &TriangleOutline) -> [DVec3; 3] {
     match outline {
         TriangleOutline::Vertices(vertices) => *vertices,
@@ -54,7 +54,7 @@ pub fn vertices(outline: &TriangleOutline) -> [DVec3; 3] {
 }
 
 /// Computes the vertices of a triangle from its sides, by the law of cosines and a rotation about
-/// the centroid.
+/// the centroid: the left end of the base, the right end, and the apex.
 fn centered(triangle: &CenteredTriangle) -> [DVec3; 3] {
     let n = triangle.normal.normalize();
     let reference = if n.x == 0.0 && n.z == 0.0 {
@@ -86,8 +86,8 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// Returns the shape with a triangle's outline replaced by its vertices, so that these are not
-/// computed for each ray.
+/// Returns the shape. The outline of a triangle is replaced by its vertices, which are then not
+/// computed again for each ray.
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {
@@ -98,8 +98,8 @@ pub fn by_vertices(shape: Shape) -> Shape {
     }
 }
 
-/// Intersects the line eye + t·d with a shape. Returns the two values of t, the smaller first; for
-/// a flat shape both are the same. Returns `None` if the line misses the shape. For a triangle, a
+/// Intersects the line `eye` + t·`d` with a shape. Returns the two values of t, the smaller first;
+/// for a flat shape, they are equal. Returns `None` if the line misses the shape. For a triangle, a
 /// determinant whose absolute value is less than `epsilon` counts as zero.
 #[inline(always)]
 pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
@@ -111,8 +111,8 @@ pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f
     }
 }
 
-/// Intersects the line with a sphere: returns the roots of a·t² + b·t + c, or `None` if there are
-/// none.
+/// Intersects the line `eye` + t·`d` with a sphere. Returns the roots of a·t² + b·t + c, the
+/// smaller first, or `None` if there are none.
 fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let f = eye - sphere.center;
     let a = d.dot(d);
@@ -126,8 +126,9 @@ fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     Some([(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)])
 }
 
-/// Intersects the line with a box: returns the t at which it enters the last of three slabs, and
-/// the t at which it leaves the first, or `None` if the line leaves before it has entered.
+/// Intersects the line `eye` + t·`d` with a box. Returns the t at which the line enters the last of
+/// the three slabs, and the t at which it leaves the first. Returns `None` if it leaves before it
+/// enters.
 fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let inverse = 1.0 / d;
     let a = (cuboid.min - eye) * inverse;
@@ -152,8 +153,8 @@ fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     Some([enter, leave])
 }
 
-/// Intersects the line with a triangle, by barycentric coordinates from Cramer's rule. Returns t
-/// twice, or `None` if the line misses the triangle or counts as parallel to it.
+/// Intersects the line `eye` + t·`d` with a triangle, by barycentric coordinates from Cramer's
+/// rule. Returns t twice, or `None` if the line misses the triangle or counts as parallel to it.
 fn triangle([a, b, c]: &[DVec3; 3], eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     let (one, other) = (b - a, c - a);
     let p = d.cross(other);

@@ -18,7 +18,7 @@ use crate::{
 /// Number of columns and of rows of a picture, unless a test sets others.
 pub const SIZE: u32 = 64;
 
-/// Returns a camera at `eye` that looks at `lookat` and otherwise has the language's defaults.
+/// Returns a camera at `eye` that looks at `lookat`. All else is the language's default.
 pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     Camera {
         eye,
@@ -32,8 +32,7 @@ pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     }
 }
 
-/// Returns a camera at `eye` that looks along `direction` and otherwise has the language's
-/// defaults.
+/// Returns a camera at `eye` that looks along `direction`. All else is the language's default.
 pub fn along(eye: DVec3, direction: DVec3) -> Camera {
     Camera {
         view: View::Direction(direction),
@@ -87,14 +86,14 @@ pub fn board(y: f64, square: f64) -> Shape {
     })
 }
 
-/// Returns the colour that identifies the object with index `object`. With `is_odd`, returns the
-/// second colour of the object, which is a checkerboard.
+/// Returns the colour that identifies the object with the index `object`. If `is_odd`, returns the
+/// second colour of this object, which must be a checkerboard.
 pub fn color(object: usize, is_odd: bool) -> Color {
     let [low, high] = (object as u16 + 1).to_le_bytes();
     Color::from_bytes([low, u8::from(is_odd), high])
 }
 
-/// Returns a scene of these shapes, whose colours identify them ([`color`]).
+/// Returns a scene of the shapes `shapes`. Each gets the colours that identify it ([`color`]).
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     let objects = shapes.iter().enumerate().map(|(object, shape)| {
         let own = [false, true].map(|is_odd| color(object, is_odd));

@@ -36,8 +36,9 @@ pub struct TextbookHit {
     pub point: DVec3,
 }
 
-/// Absolute value of the determinant below which a triangle counts as parallel to the ray. Möller
-/// and Trumbore's own program uses 10⁻⁶; most programs since then use 10⁻⁸.
+/// Minimum absolute value of the determinant at which a triangle is hit; below it, the triangle
+/// counts as parallel to the ray. Möller and Trumbore's own program uses 10⁻⁶; most later programs
+/// use 10⁻⁸.
 const EPSILON: f64 = 1e-8;
 
 impl Textbook {
@@ -66,8 +67,8 @@ impl Textbook {
         }
     }
 
-    /// Returns the visible intersection of the ray through a point of the picture, or `None` if the
-    /// ray hits nothing. `pixels` counts from the picture's top left corner.
+    /// Returns the visible intersection of the ray through the point `pixels` of the picture, in
+    /// pixels from the picture's top left corner. Returns `None` if the ray hits nothing.
     pub fn seen(&self, pixels: DVec2) -> Option<TextbookHit> {
         let [u, v, w] = self.axes;
         let x = self.pixel * (pixels.x - self.size.x / 2.0);

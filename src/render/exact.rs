@@ -16,30 +16,29 @@ use crate::{
 };
 
 /// Side of the tiles, in pixels. Pixels of a checkerboard are computed in batches of eight similar
-/// ones, and tiles are large enough to fill most batches: with squares of the grid alone, figure
-/// 9.9 takes a twentieth longer. Tiles are small enough that the threads end at about the same
-/// time.
+/// pixels, and tiles are large enough to fill most batches: with tiles half as long, figure 9.9
+/// takes 5 % longer. Tiles are small enough that the threads end at about the same time.
 const TILE: u32 = 2 * GRID;
 
 /// An exactly computed picture, with its error bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exact<P = [f64; 3]> {
-    /// The means, or another kind of pixel.
+    /// The pixels' means in linear light, or converted to another kind of pixel.
     pub film: Film<P>,
     /// Error bound of each pixel's mean, row by row. It holds for every channel.
     pub bounds: Vec<f32>,
-    /// Number of pixels that, rounded as in files, certainly equal the true means.
+    /// Number of pixels whose value in a file certainly equals the rounded true mean.
     pub certain: u64,
 }
 
 impl<P> Exact<P> {
-    /// Returns the greatest error bound of a pixel.
+    /// Returns the greatest of the pixels' error bounds.
     pub fn bound(&self) -> f64 {
         f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
     }
 
-    /// Returns the root mean square of the error bounds. The root mean square error over all pixels
-    /// and channels is at most as large.
+    /// Returns the root mean square of the error bounds, an upper bound of the root mean square
+    /// error over all pixels and channels.
     pub fn root_mean_square_bound(&self) -> f64 {
         let squares = self
             .bounds
@@ -66,8 +65,8 @@ pub(super) fn render_exact_as<P: film::Pixel>(
     render_numbers(&Integrator::new(world), part, control, &|_, _| ())
 }
 
-/// Computes a part of the picture with an integrator of `N` numbers, the first three of which are
-/// the channels. Calls `also` with each tile and all numbers of its pixels.
+/// Computes a part of the picture with an integrator of `N` numbers, of which the first three are
+/// the channels. Calls `also` with each tile and all numbers of the tile's pixels.
 ///
 /// # Errors
 ///
@@ -97,11 +96,12 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                 .iter()
                 .map(|pixel| match pixel.bound {
                     0.0 => 0.0,
-                    // The bound is rounded up. Light is between 0 and 1, so no bound exceeds 1.
+                    // The bound is rounded up. Light is between 0 and 1, so that no bound exceeds
+                    // 1.
                     bound => (bound as f32).next_up().min(1.0),
                 })
                 .collect();
-            // Most pixels equal the pixel before, so the last conversion is kept.
+            // Most pixels equal the pixel before, so that its conversion is used again.
             let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
             let means: Vec<P> = pixels
                 .iter()

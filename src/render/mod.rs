@@ -65,13 +65,13 @@ impl Default for Control<'_> {
     }
 }
 
-/// Why there is no picture.
+/// Reason why a render gives no picture.
 #[derive(Debug, Error)]
 pub enum RenderError {
-    /// There is not enough memory for it.
+    /// There is not enough memory for the picture.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// The system starts no threads.
+    /// The system cannot start threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] threads::NoThreads),
     /// The part is not one of the picture.
@@ -177,15 +177,14 @@ pub(crate) fn check_part(part: Area, whole: Area) -> Result<(), RenderError> {
 }
 
 /// Returns the tiles of a part of the picture: squares of side `side`, in pixels, in a grid from
-/// the picture's top left corner, clipped to the part. The iterator ends if the render is
-/// cancelled. Otherwise, iterating over millions of tiles that are not rendered would take a
-/// second.
+/// the picture's top left corner, clipped to the part. The iterator ends early if the render is
+/// cancelled, because iterating over millions of tiles without rendering them would take a second.
 fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
 }
 
-/// Returns the result, or an error if the render was cancelled.
+/// Returns the result, or [`RenderError::Cancelled`] if the render was cancelled.
 fn finished<T>(result: Mutex<T>, control: &Control) -> Result<T, RenderError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);

@@ -1,9 +1,10 @@
 //! Renders the tiles of a picture with samples.
 //!
-//! A pixel's samples are counted by colour, and counts do not depend on an order. Where one colour
-//! is certain, samples are neither placed nor traced: the mean of equal colours is that colour. In
-//! other pixels, many samples are traced at a time, only against the objects that may be seen
-//! there. Where finding these objects would cost more, samples are traced one by one.
+//! A pixel's samples are counted by colour, and the counts do not depend on the order of the
+//! samples. Where one colour is certain, samples are neither placed nor traced, because the mean of
+//! equal colours is this colour. In other pixels, many samples are traced at a time, only against
+//! the objects that may be seen there. Where finding these objects would cost more, samples are
+//! traced one by one.
 
 use std::{
     ops::{ControlFlow, Range},
@@ -26,22 +27,23 @@ use crate::{
     },
 };
 
-/// Minimum number of samples for which the widest vectors are used: their number of lanes.
+/// Minimum number of samples for which the widest vectors are used; they have as many lanes.
 const WIDE_SAMPLES: u64 = 8;
 
-/// Maximum number of samples per candidate for which a pixel's samples are traced one by one,
-/// without preparing the pixel. Measured: with 1 or 4, a picture takes up to a fiftieth longer.
+/// Maximum number of samples per candidate for which a pixel's samples are traced one by one; with
+/// more, the pixel is prepared and samples are traced many at a time. Not critical: with 1 or 4, a
+/// picture takes up to 2 % longer, as measured.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
-/// Maximum number of a pixel's samples that are traced between two checks for cancellation. They
-/// take 40 µs if batched, and 0.3 ms one by one.
+/// Maximum number of a pixel's samples that are traced between two checks for cancellation. So many
+/// take 40 µs if many are traced at a time, and 0.3 ms one by one.
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
-/// Side of the squares for which nearby objects are searched in crowded parts, in pixels.
+/// Side of the squares of crowded parts for which nearby objects are searched, in pixels.
 const CROWD_SIDE: u32 = 4;
 
-/// Minimum number of a pixel's samples for which the objects near its square are narrowed to those
-/// near the pixel.
+/// Minimum number of a pixel's samples for which the list of objects near its square is reduced to
+/// those near the pixel. With fewer samples, each is tested against the longer list.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
 /// Data that all tiles of a picture share.
@@ -122,7 +124,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
             return self.go_on();
         }
         let trace = match trace {
-            // Preparing the pixel would take longer than tracing its few samples.
+            // For few samples, preparing the pixel would take longer than tracing them one by one.
             Trace::Batched(candidates, _)
                 if samples <= SAMPLES_A_CANDIDATE * candidates.len() as u64 =>
             {
@@ -161,8 +163,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
         self.go_on()
     }
 
-    /// Traces those of a pixel's samples whose indices are in `some`, and counts their colours in
-    /// `tally`. `samples` is the number of all samples of the pixel.
+    /// Traces the samples of a pixel whose indices are in `some`, and counts their colours in
+    /// `tally`. `samples` is the total number of the pixel's samples.
     fn chunk(
         &self,
         [x, y]: [u32; 2],
@@ -179,12 +181,12 @@ impl<P: film::Pixel> Renderer<'_, P> {
         } = tally;
         let vectors = match trace {
             Trace::Batched(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
-            // Wide vectors take longer for few samples, and they slow down rays that are traced one
-            // by one afterwards.
+            // Wide vectors take longer for few samples, and they slow down the samples that are
+            // then traced one by one.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);
-        // Cancellation is checked for every sample, since each may take long.
+        // Cancellation is checked before every sample, because each may take long.
         let wanted = points.iter().take_while(|_| self.go_on().is_continue());
         match trace {
             Trace::Batched(..) => samples::count(
@@ -213,12 +215,12 @@ impl<P: film::Pixel> Renderer<'_, P> {
 /// How the samples of a pixel are traced.
 #[derive(Clone, Copy)]
 enum Trace<'a> {
-    /// Many at a time, against the objects that may be seen in the pixel. The second value is the
-    /// squares of a checkerboard that the pixel shows, if they are known.
+    /// Many at a time, against the objects that may be seen in the pixel. If the pixel shows a
+    /// checkerboard alone and its squares are known, they are the second value.
     Batched(&'a [VisibilityCandidate], Option<&'a CheckerPixel>),
     /// One by one, against the objects that may be seen in the pixel.
     AmongCandidates(&'a [VisibilityCandidate]),
-    /// One by one, against the nearby objects, or against those that the quadtree lists if these
-    /// are `None`.
+    /// One by one, against the given nearby objects. `None` means the objects that the quadtree
+    /// lists for the sample's ray.
     AmongNearby(Option<&'a [BoundedObject]>),
 }

@@ -17,8 +17,8 @@ use crate::{
     tracer::{GRID, Quartering, Scratch, World},
 };
 
-/// Approximate number of samples of a tile: a few milliseconds of work, so that at the end no
-/// thread waits long for the others.
+/// Approximate number of samples in a tile. They are a few milliseconds of work, so that no thread
+/// waits long for the others at the end.
 const TILE_SAMPLES: u64 = 1 << 18;
 
 /// Renders a part of the picture with samples, of which the sampling must have some.
@@ -62,11 +62,12 @@ pub(super) fn render_as<P: film::Pixel>(
     finished(film, control)
 }
 
-/// Returns the side of the tiles, in pixels: a power of two, smaller if pixels have many samples.
+/// Returns the side of the tiles, in pixels: a power of two, which is smaller the more samples a
+/// pixel has.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
-    // The quotient is at most 2^18, so its root fits into 32 bits. The side is a power of two, so
-    // that no tile crosses a line of the grid.
+    // The quotient is at most 2^18, so that its root fits into 32 bits. The side is a power of two,
+    // so that no tile crosses a line of the grid.
     let side = (pixels.isqrt() as u32).clamp(1, GRID);
     1 << side.ilog2()
 }

@@ -1,8 +1,8 @@
 //! A picture that is rendered in slices, so that its caller can do something else in between.
 //!
-//! A slice is a square of the picture, clipped at its edges, with about the same number of samples
-//! as the others. A pixel's mean does not depend on the slice. No clock is needed, which Rust does
-//! not have in a web worker.
+//! A slice is a square of the picture, clipped at the picture's edges. All slices have about the
+//! same number of samples. A pixel's mean does not depend on its slice. Rendering in slices needs
+//! no clock, which Rust does not have in a web worker.
 
 use super::{Control, RenderError, render_as_asked};
 use crate::{
@@ -12,12 +12,11 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of samples of a slice: about 10 ms of work for two processors and a few objects.
-/// A pixel with more samples is a slice of its own, since pixels are not divided.
+/// Maximum number of samples in a slice: about 10 ms of work for two processors and a few objects.
+/// A pixel with more samples is a slice of its own, because pixels are not divided.
 pub const SLICE: u64 = 1 << 20;
 
-/// Work of an exactly computed pixel, as a number of samples that take equally long, for figure
-/// 9.9.
+/// Work of an exactly computed pixel, in samples that take as long. Measured on figure 9.9.
 const EXACT_PIXEL_WORK: u64 = 64;
 
 /// A picture that is partly rendered.
@@ -28,7 +27,7 @@ pub struct Slices<P> {
     film: Film<P>,
     /// Side of a slice, in pixels.
     side: u32,
-    /// Number of rendered slices, row by row.
+    /// Number of slices that are already rendered. They are rendered row by row.
     done: u32,
 }
 
@@ -37,9 +36,9 @@ impl<P: Pixel> Slices<P> {
     ///
     /// # Errors
     ///
-    /// There is not enough memory for it.
+    /// There is not enough memory for the picture.
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
-        // A slice is a square whose side is a power of two. It consists of whole tiles of the
+        // The side of a slice is a power of two. A slice therefore consists of whole squares of the
         // tracer's grid, or lies within one.
         let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
@@ -55,7 +54,7 @@ impl<P: Pixel> Slices<P> {
         &self.film
     }
 
-    /// Returns the share of slices that are rendered, 0 to 1.
+    /// Returns the fraction of slices that are rendered, from 0 to 1.
     pub fn share(&self) -> f64 {
         let [columns, rows] =
             [self.film.width(), self.film.height()].map(|it| it.div_ceil(self.side));
@@ -75,7 +74,7 @@ impl<P: Pixel> Slices<P> {
         })
     }
 
-    /// Renders the next slice, if there is one. Returns whether the picture is now complete.
+    /// Renders the next slice, if there is one. Returns whether the picture is complete.
     ///
     /// # Errors
     ///
@@ -90,7 +89,7 @@ impl<P: Pixel> Slices<P> {
     }
 }
 
-/// Returns the work of one pixel, in samples, at least 1.
+/// Returns the work of one pixel, in samples, which is at least 1.
 pub fn pixel_work(sampling: &Sampling) -> u64 {
     if sampling.is_exact() {
         return EXACT_PIXEL_WORK;

@@ -1,4 +1,4 @@
-//! Counters of one thread: how often each colour was seen in a pixel, and the means of such counts.
+//! Counters of one thread: how often each colour was seen in a pixel, and means computed from them.
 
 use crate::{
     film::{self, Encoder, mean},
@@ -34,8 +34,8 @@ impl<P> PixelTally<P> {
 pub(super) struct Counts {
     /// Counts by slot of the palette.
     of: Vec<u64>,
-    /// Slots whose count is not 0, in any order. Only these are reset, since a palette may be long
-    /// and a pixel sees few of its colours.
+    /// Slots whose count is not 0, in any order. Only these counts are reset, because a palette may
+    /// be long and a pixel sees few of its colours.
     seen: Vec<usize>,
 }
 
@@ -67,11 +67,11 @@ impl Counts {
     }
 }
 
-/// A cache of means of two colours, indexed by a hash of the slots and counts. Most pixels with
+/// A cache of means of two colours, indexed by a hash of their slots and counts. Most pixels with
 /// more than one colour have two, and most of these have the same counts as an earlier pixel.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
-/// Number of cached means. They take 28 KiB and fit into a first-level cache.
+/// Number of cached means. They take 28 KiB and fit into the first-level cache.
 const CACHED_MEANS: usize = 512;
 
 impl<P: film::Pixel> Means<P> {
@@ -103,11 +103,11 @@ impl<P: film::Pixel> Means<P> {
 
     fn of_two(&mut self, seen: [(usize, u64); 2], colors: &[[f64; 3]], encoder: &Encoder) -> P {
         if self.0.is_empty() {
-            // No colour is counted 0 times, so an empty entry equals no counts.
+            // The counts in `seen` are not 0, so that `seen` never equals an empty entry.
             self.0.resize(CACHED_MEANS, ([(0, 0); 2], P::default()));
         }
         let [(a, count), (b, other)] = seen;
-        // Any hash will do; odd and prime factors spread counts and slots over the entries.
+        // Any hash is suitable. Odd prime factors distribute counts and slots over the entries.
         let place = (count as usize)
             .wrapping_add((other as usize).wrapping_mul(7))
             .wrapping_add(a * 67 + b * 131)

@@ -1,30 +1,32 @@
 //! Binomial random numbers: the number of successes in n trials, each with a probability p that is
 //! a fraction.
 //!
-//! A trial succeeds if a random number is below p, which the first differing binary digit of the
-//! two numbers decides. At each digit, about half of the undecided trials are decided, and the only
-//! draw is the number of heads of as many coins. For few coins, random bits are counted. For many,
-//! the draw is transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random
-//! variates"), exact except for the rounding of `f64`.
+//! A trial succeeds if a random number is below p. The first binary digit in which the two numbers
+//! differ decides this. At each digit, about half of the undecided trials are decided, so that the
+//! only number to draw is the number of heads of as many coins as there are undecided trials. For
+//! few coins, random bits are counted. For many, the draw is transformed rejection (BTRS of Hörmann
+//! 1993, "The generation of binomial random variates"), exact except for the rounding of `f64`.
 //!
 //! The binomial distribution of `rand_distr` uses the platform's `powf` and `ln`, whose last bits
 //! differ between systems.
 
 use rand::{Rng, RngExt};
 
-/// Maximum number of coins for which random bits are counted, 64 per random number.
+/// Maximum number of coins for which random bits are counted, 64 per random number. Above it, the
+/// number of heads is drawn by transformed rejection.
 const MAX_COUNTED: u64 = 512;
 
-/// Draws the number of successes in `n` ≤ 2^53 trials with the success probability `part`/`whole`.
+/// Draws the number of successes in `n` trials, each with the success probability `part`/`whole`.
+/// Requires `n` ≤ 2^53.
 pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     let (mut open, mut successes) = (n, 0);
-    // The binary digits of p = part/whole that are not used yet, as a numerator over `whole`.
+    // `rest`/`whole` is the fraction whose binary digits are the unused digits of p = part/whole.
     let mut rest = part;
     while open > 0 && rest > 0 {
         let ones = heads(rng, open);
         rest *= 2;
         if rest < whole {
-            // The digit of p is 0, so trials whose random digit is 1 are above p and fail.
+            // The digit of p is 0. Trials whose random digit is 1 are above p and fail.
             open -= ones;
         } else {
             rest -= whole;
@@ -58,7 +60,8 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
         let (u, v) = (rng.random::<f64>() - 0.5, rng.random::<f64>());
         let us = 0.5 - u.abs();
         let k = ((2.0 * a / us + b) * u + n / 2.0 + 0.5).floor();
-        // The excluded values occur less than once in 10^27 draws (Hoeffding 1963).
+        // Values of k farther than n/4 from n/2 are excluded. They occur less than once in 10^27
+        // draws (Hoeffding 1963).
         if (k - n / 2.0).abs() > n / 4.0 {
             continue;
         }
@@ -80,7 +83,7 @@ fn ln_weight(k: f64, n: f64) -> f64 {
     let stirling_error = |n: f64| (1.0 / 12.0 - 1.0 / 360.0 / (n * n)) / n;
     let ratio = (2.0 * k - n) / n;
     let square = ratio * ratio;
-    // This series is (1 + r) ln(1 + r) + (1 − r) ln(1 − r) for the ratio r, with |r| ≤ 1/2.
+    // This is the series of (1 + r) ln(1 + r) + (1 − r) ln(1 − r) for the ratio r, with |r| ≤ 1/2.
     let (mut sum, mut power) = (0.0, square);
     for double in (2..).step_by(2) {
         let next = sum + 2.0 * power / f64::from(double * (double - 1));
@@ -129,7 +132,7 @@ mod tests {
 
     #[test]
     fn draws_have_the_probabilities_of_the_distribution() {
-        // Tests χ² over all outcomes whose expected number is at least 10.
+        // A χ² test over all outcomes that are expected at least 10 times.
         for (n, part, whole) in [
             (6_u64, 1_u32, 3_u32),
             (30, 1, 2),

@@ -1,10 +1,10 @@
 //! A pixel divided into n cells of equal area, for every n: rows of cells like bricks.
 //!
-//! Row k has n_k cells of width 1/n_k and the height n_k/n, so that every cell has the area 1/n.
-//! The number of rows m is the whole number nearest to √n, or the nearest odd one if n is odd; n_k
-//! is ⌊n/m⌋ or ⌈n/m⌉. The longer rows are spread evenly, and the rows are the same from both ends:
-//! 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3. (An odd n in an even number of rows
-//! cannot be the same from both ends.)
+//! Row k has n_k cells of width 1/n_k and of height n_k/n, so that every cell has the area 1/n. The
+//! number of rows m is the whole number nearest to √n, or the nearest odd one if n is odd; n_k is
+//! ⌊n/m⌋ or ⌈n/m⌉. The longer rows are spread evenly, and the row lengths are symmetric about the
+//! middle: 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3. (For an odd n, an even number of
+//! rows cannot be symmetric.)
 
 use std::ops::Range;
 
@@ -12,11 +12,11 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub struct Bricks {
     n: u64,
-    /// Number of rows, m.
+    /// Number m of rows.
     rows: u64,
     /// Length of a short row: ⌊n/m⌋ cells.
     short: u64,
-    /// Number of rows above the middle that have one cell more than a short row.
+    /// Number of rows in the upper half that have one cell more than a short row.
     longer: u64,
 }
 
@@ -34,10 +34,10 @@ impl Bricks {
     pub fn new(n: u64) -> Self {
         let root = n.isqrt();
         let rows = if n % 2 == 1 {
-            // Of ⌊√n⌋ and ⌊√n⌋ + 1, takes the odd one, which is within 1 of √n.
+            // This is the odd one of ⌊√n⌋ and ⌊√n⌋ + 1, which is within 1 of √n.
             root | 1
         } else if n - root * root > root {
-            // Here √n > root + 1/2, since n > root² + root + 1/4.
+            // Here, √n > root + 1/2, because n > root² + root + 1/4.
             root + 1
         } else {
             root
@@ -55,13 +55,13 @@ impl Bricks {
         self.n
     }
 
-    /// Returns the number of cells of a short row, and of a longer one.
+    /// Returns the number of cells in a short row and in a longer row.
     pub fn lengths(&self) -> [u64; 2] {
         [self.short, self.short + 1]
     }
 
-    /// Returns the rows that contain the cells with the indices in `cells`, counted row by row, and
-    /// for each row the range of its columns.
+    /// Returns each row that contains some of the cells with the indices in `cells`, with the range
+    /// of their columns in the row. Cells are counted row by row.
     pub fn parts(&self, cells: Range<u64>) -> impl Iterator<Item = (BrickRow, Range<u64>)> {
         let mut next = cells.start;
         let mut k = self.row_of_cell(next.min(self.n - 1));
@@ -88,7 +88,7 @@ impl Bricks {
 
     /// Returns the index of the row that contains the cell with index `i`, counted row by row.
     fn row_of_cell(&self, i: u64) -> u64 {
-        // The estimate is wrong by about one row, which is corrected step by step.
+        // The estimate is wrong by about one row, and is corrected step by step.
         let mut k = (u128::from(i) * u128::from(self.rows) / u128::from(self.n)) as u64;
         while self.cells_above(k) > i {
             k -= 1;
@@ -105,7 +105,7 @@ impl Bricks {
             return self.n - self.cells_above(self.rows - k);
         }
         let half = self.rows / 2;
-        // There are fewer than 2^27 rows, so nothing overflows. With one row, k is 0.
+        // There are fewer than 2^27 rows, so that nothing overflows. If there is one row, `k` is 0.
         k * self.short + k * self.longer / half.max(1)
     }
 }

@@ -3,17 +3,18 @@
 //!
 //! φ_b is the radical inverse: the digits of i in base b, mirrored at the radix point. The sequence
 //! begins at i = 0. The shift wraps around at the pixel's edge. Fractions are 64-bit integers,
-//! rounded up, so that each lies in the elementary interval that contains the true value, even if
-//! the true value is where the interval begins.
+//! rounded up. Each therefore lies in the elementary interval that contains the true value, even if
+//! the true value is the start of the interval.
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Maximum number of stored radical inverses per base.
+/// Maximum number of radical inverses that are stored per base. If a pixel has more points, the
+/// radical inverses are computed for each point.
 const MAX_STORED: u64 = 1 << 16;
 
-/// The first radical inverses in base 2 and in base 3.
+/// The Halton sequence, with its first radical inverses in base 2 and in base 3.
 #[derive(Debug)]
 pub struct Halton {
     inverses: [Vec<u64>; 2],
@@ -50,8 +51,8 @@ impl Halton {
     }
 }
 
-/// Returns φ₃(i), the radical inverse in base 3, in units of 2^−64, rounded up, for i < 3^40. The
-/// mirrored digits are collected as a whole number, which is divided once.
+/// Returns φ₃(i), the radical inverse in base 3, in units of 2^−64, rounded up. Requires i < 3^40.
+/// The mirrored digits are collected as a whole number, which is divided once.
 pub fn radical_inverse_3(i: u64) -> u64 {
     let (mut rest, mut mirrored, mut power) = (i, 0_u64, 1_u64);
     while rest > 0 {
@@ -59,7 +60,7 @@ pub fn radical_inverse_3(i: u64) -> u64 {
         power *= 3;
         rest /= 3;
     }
-    // The result fits, since the greatest value, 1 − 3^−40, is more than 2^−64 below 1.
+    // The result fits, because the greatest value, 1 − 3^−40, is more than 2^−64 below 1.
     (u128::from(mirrored) << 64).div_ceil(u128::from(power)) as u64
 }
 

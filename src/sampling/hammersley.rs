@@ -1,9 +1,9 @@
 //! `hammersley`: the points (i/n, φ₂(i)), shifted per pixel (Hammersley 1960; Cranley and Patterson
 //! 1976 for the shift).
 //!
-//! φ₂ is the radical inverse in base 2. The shift wraps around at the pixel's edge. In x it is a
+//! φ₂ is the radical inverse in base 2. The shift wraps around at the pixel's edge. In x, it is a
 //! whole number of strata plus a place within a stratum, so that each of the n columns still
-//! contains exactly one point; in y it is arbitrary.
+//! contains exactly one point. In y, it is arbitrary.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ use super::{
 pub struct Hammersley {
     n: u64,
     columns: Strata,
-    /// The columns twice in a row, so that n successive columns can be read from any column on;
+    /// The n columns, twice in a row, so that n successive columns can be read from any column on;
     /// empty if n is large.
     turned: Vec<Stratum>,
     /// y of each point before the shift, in units of 2^−64; empty if n is large.
@@ -54,7 +54,7 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // In a column with one more place, the chosen place is the same or the next one.
+        // In a column with one place more, the chosen place is the same or the next one.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

@@ -1,9 +1,9 @@
 //! A fixed order of a picture's pixels that keeps neighbours together: a clipped Hilbert curve.
 //!
-//! The curve fills the smallest square of a power of two that contains the picture (Hilbert 1891);
-//! pixels outside of the picture are not counted. A pixel's rank is the number of the picture's
-//! pixels before it, summed quadrant by quadrant. Every aligned square of a power of two is one run
-//! of the order, so whatever is distributed evenly along it is even in both directions.
+//! The curve fills the smallest square that contains the picture and whose side is a power of two
+//! (Hilbert 1891). A pixel's rank is the number of the picture's pixels before it on the curve,
+//! summed quadrant by quadrant. Every aligned square whose side is a power of two is one run of the
+//! order. Whatever is distributed evenly along the curve is therefore even in both directions.
 
 use crate::area::Area;
 
@@ -12,8 +12,9 @@ use crate::area::Area;
 pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
     let mut rank = 0;
     let mut side = picture.width.max(picture.height).next_power_of_two();
-    // The corner of the square that contains the pixel, and the curve's orientation in it: whether
-    // it is mirrored at the main diagonal, and whether it is rotated by half a turn.
+    // The top left corner of the square that contains the pixel, and the curve's orientation in
+    // this square: whether it is mirrored at the main diagonal, and whether it is rotated by half a
+    // turn.
     let (mut left, mut top) = (0, 0);
     let (mut mirrored, mut turned) = (false, false);
     while side > 1 {
@@ -34,13 +35,14 @@ pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
                 (left, top) = (quadrant_left, quadrant_top);
                 break;
             }
-            // The number of the picture's pixels in the quadrant.
+            // Counts the picture's pixels in the quadrant, which come before the pixel.
             let columns = picture.width.saturating_sub(quadrant_left).min(side);
             let rows = picture.height.saturating_sub(quadrant_top).min(side);
             rank += u64::from(columns) * u64::from(rows);
             step += 1;
         }
-        // The curve enters the first quadrant, and leaves the last one, along its sides.
+        // In the first and the last quadrant, the curve is mirrored. In the last one, it is also
+        // rotated by half a turn.
         mirrored ^= step == 0 || step == 3;
         turned ^= step == 3;
     }

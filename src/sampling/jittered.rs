@@ -13,8 +13,8 @@ use super::{
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,
-    /// Division of the pixel's width into the columns of a short row, and into those of a longer
-    /// one.
+    /// Divisions of the pixel's width: into the columns of a short row, and into those of a longer
+    /// row.
     columns: [Strata; 2],
     /// Division of the pixel's height into n parts; a row of n_k cells is n_k parts tall.
     rows: Strata,

@@ -1,16 +1,16 @@
 //! The possible values of a random offset, and the strata that they are divided into.
 //!
-//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each of them is an f64,
-//! none lies on a pixel's edge or on its middle, and they are symmetric about 0, so that a mean
-//! over all of them is exactly that of the pixel. An offset is represented by its index among them,
-//! its place k, from 0 to 2^53 − 1.
+//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each is an `f64`, none
+//! lies on a pixel's edge or on its middle, and they are symmetric about 0, so that a mean over all
+//! of them is exactly that of the pixel. An offset is represented by its place: its index k among
+//! all offsets, from 0 to 2^53 − 1.
 
 use super::rng::{scale, scale_by_parts};
 
-/// Number of possible offsets.
+/// Number of possible offsets along one axis.
 const PLACES: u64 = 1 << 53;
 
-/// Maximum number of strata that are stored; more are computed one by one.
+/// Maximum number of strata that are stored; with more, each stratum is computed when it is used.
 pub const MAX_STORED: u64 = 1 << 16;
 
 /// Returns the offset with the index `place`, 0 to 2^53 − 1.
@@ -21,32 +21,33 @@ pub fn offset(place: u64) -> f64 {
     const FIRST: u64 = (0.5 / PLACES as f64).to_bits();
     const SECOND: u64 = (1.5 / PLACES as f64).to_bits();
     // For k = 2i + b, the offset (2k + 1)/2^54 − 1/2 is the sum of i/2^52 − 1/2 and 1 or 3 units of
-    // 2^−54. The first summand is a difference of numbers from 1 to 2; all operations are exact.
-    // Few processors convert vectors of whole numbers to `f64`; all have these operations.
+    // 2^−54. The first summand is a difference of numbers from 1 to 2. All operations are exact,
+    // and all processors have them for vectors; few can convert vectors of whole numbers to `f64`.
     let even = f64::from_bits(ONE | place >> 1) - 1.5;
     let odd = (place & 1).wrapping_neg();
     even + f64::from_bits(FIRST ^ (odd & (FIRST ^ SECOND)))
 }
 
-/// Converts 64 bits, read as a fraction of the pixel from its left or top edge, to an offset.
+/// Converts 64 random bits to an offset. The bits are a fraction of the pixel's side, counted from
+/// its left or top edge.
 #[inline(always)]
 pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
 /// The places along a pixel's width or height, divided into n equal strata, 1 ≤ n ≤ 2^53. Each
-/// stratum contains at least one place.
+/// stratum contains at least one place. A place is the index of one of the 2^53 possible offsets.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
     /// Minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
     least: u64,
-    /// All strata, and one more behind them; empty if n is large.
+    /// All strata, and the one that would follow the last; empty if n is large.
     stored: Vec<Stratum>,
 }
 
-/// One of n strata, packed into a word: twice its first place, plus one if the stratum has one
-/// place more than ⌊2^53/n⌋.
+/// One of n strata of places, packed into 64 bits: twice the stratum's first place, plus one if the
+/// stratum has one place more than ⌊2^53/n⌋.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
 
@@ -57,7 +58,7 @@ impl Stratum {
         self.0 >> 1
     }
 
-    /// Returns the number of places beyond ⌊2^53/n⌋: one or none.
+    /// Returns the number of places beyond ⌊2^53/n⌋: 1 or 0.
     #[inline(always)]
     pub fn more(self) -> u64 {
         self.0 & 1
@@ -109,13 +110,15 @@ impl Strata {
     }
 }
 
-/// Computes stratum `i` of `n`; for `i` = `n`, the one that would follow the last.
+/// Computes the stratum with the index `i` of `n`. The index `n` gives the one that would follow
+/// the last.
 fn stratum(i: u64, n: u64) -> Stratum {
     let more = start(i + 1, n) - start(i, n) - PLACES / n;
     Stratum(2 * start(i, n) + more)
 }
 
-/// Returns the first place in stratum `i` of `n`: the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
+/// Returns the first place in the stratum with the index `i` of `n`: the least k ≥ 0 with (2k +
+/// 1)/2^54 ≥ i/n.
 fn start(i: u64, n: u64) -> u64 {
     let (i, n) = (u128::from(i), u128::from(n));
     (i << 54).saturating_sub(n).div_ceil(2 * n) as u64
@@ -153,8 +156,8 @@ mod tests {
                     let place = places.start + scale(bits, places.end - places.start);
                     assert_eq!(strata.choose(i, bits), offset(place));
                 }
-                // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last k, but not for
-                // their outer neighbours.
+                // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last place k, but
+                // not for the places before and after them.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;
                 assert_eq!(stratum(places.start), u128::from(i));
                 assert_eq!(stratum(places.end - 1), u128::from(i));

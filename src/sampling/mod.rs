@@ -1,10 +1,10 @@
 //! The positions of a picture's samples.
 //!
 //! In: the scene's [`Sampler`] and the picture's size. Out: how many samples each pixel has, and
-//! where in the pixel they lie. A sample is a pure function of method, seed, pixel, index, the
-//! pixel's count and the picture's size: no generator has a state that depends on earlier requests.
-//! Any part of a picture can therefore be rendered in any order, on any number of threads, with the
-//! same result.
+//! where in the pixel they lie. A sample is a pure function of the method, seed, pixel, index, the
+//! pixel's number of samples and the picture's size: no generator has a state that depends on
+//! earlier requests. Any part of a picture can therefore be rendered in any order, on any number of
+//! threads, with the same result.
 //!
 //! An offset is relative to the middle of its pixel, x to the right and y down, in [−1/2, 1/2).
 //! Each method has a file:
@@ -64,12 +64,13 @@ pub struct Sampling {
     key: Key,
     total: u64,
     picture: Area,
-    /// Minimum number of samples of a pixel. It is not used by `scatter`, where the number varies
-    /// from pixel to pixel.
+    /// Minimum number of samples of a pixel. Not used for `scatter`, where the number varies from
+    /// pixel to pixel.
     count: u64,
     /// Number of pixels that have one sample more than the minimum.
     extra: u64,
-    /// Patterns of `count` points and of `count` + 1 points; with `scatter`, of any number.
+    /// Patterns of `count` points and of `count` + 1 points. For `scatter`, each pattern serves for
+    /// any number of points.
     patterns: Box<[PointPattern; 2]>,
 }
 
@@ -95,7 +96,7 @@ impl Sampling {
     ///
     /// The picture has no pixels.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
-        // The key contains the method's index in its enum. The indices must not change, since
+        // The key contains the method's index in its enum. The indices must not change, because
         // pictures depend on them.
         let key = Key::new(sampler.seed, sampler.method as u64);
         let pixels = u64::from(width) * u64::from(height);
@@ -158,7 +159,7 @@ impl Sampling {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
             None if self.method == Method::Scatter => {
-                // No pixel has this key.
+                // No pixel has the part number `u64::MAX`.
                 let key = self.key.part(u64::MAX);
                 scatter::counts(key, self.total, self.picture, part)
             }
@@ -166,22 +167,22 @@ impl Sampling {
         }
     }
 
-    /// Returns the number of samples of a pixel, if N samples are distributed evenly over P pixels.
-    /// By the pixel's rank i along the Hilbert curve, it is ⌊(i + 1)·N/P⌋ − ⌊i·N/P⌋.
+    /// Returns the number of samples of a pixel if N samples are distributed evenly over P pixels.
+    /// For the pixel with rank i along the Hilbert curve, it is ⌊(i + 1)·N/P⌋ − ⌊i·N/P⌋.
     fn even_count(&self, x: u32, y: u32) -> u64 {
-        // Of N = count·P + extra, only the extra samples vary. ⌊(i + 1)·extra/P⌋ exceeds
-        // ⌊i·extra/P⌋ by one if the remainder of i·extra modulo P is at least P − extra.
+        // With N = count·P + extra, only the extra samples vary between pixels. ⌊(i + 1)·extra/P⌋
+        // exceeds ⌊i·extra/P⌋ by one if the remainder of i·extra modulo P is at least P − extra.
         let (extra, pixels) = (u128::from(self.extra), u128::from(self.picture.pixels()));
         let remainder = u128::from(hilbert::rank(self.picture, x, y)) * extra % pixels;
         self.count + u64::from(remainder + extra >= pixels)
     }
 
-    /// Writes the offsets of a pixel's points whose indices are in `range` to `out`, and removes
-    /// the points that were there. `count` is the pixel's [`count`](Self::count), and `range` ends
-    /// at `count` or before.
+    /// Replaces the points in `out` by the offsets of a pixel's points whose indices are in
+    /// `range`. `count` must be the pixel's [`count`](Self::count), and `range` must end at `count`
+    /// or before.
     ///
-    /// Data that a pixel's points share are prepared anew in each call, so a call should request a
-    /// few thousand points at once.
+    /// Each call prepares the data that a pixel's points share, so that a call should request a few
+    /// thousand points at once.
     pub fn place(
         &self,
         vectors: SimdWidth,

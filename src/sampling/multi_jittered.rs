@@ -17,27 +17,28 @@ use super::{
     shuffle::{EMPTY_BUFFER, Shuffle},
 };
 
-/// Number of points that are placed at a time. Most pixels have no more points. The number is
-/// small, since the buffer is cleared for every pixel.
+/// Number of points that are placed at a time. Most pixels have no more points. A larger number
+/// would take time, because the buffer is cleared for every pixel.
 const BATCH: usize = 16;
 
-/// A grid of cells, and the fine strata within them.
+/// A grid of cells, and the fine strata along its sides.
 #[derive(Debug)]
 pub struct MultiJittered {
     columns: u64,
     rows: u64,
-    /// Division of the pixel's width into n fine strata; that of its height is the same.
+    /// Division of the pixel's width into n fine strata. The height is divided in the same way.
     strata: Strata,
 }
 
 impl MultiJittered {
-    /// Prepares the grid for `n` points whose numbers of columns and rows differ least.
+    /// Prepares the grid for `n` points. Its numbers of columns and rows differ as little as
+    /// possible.
     pub fn new(n: u64) -> Self {
         let rows = (1..=n.isqrt()).rev().find(|&b| n.is_multiple_of(b));
         Self::with_rows(n, rows.unwrap_or(1))
     }
 
-    /// Prepares the grid of one row for `n` points: n-rooks.
+    /// Prepares the n-rooks grid for `n` points, which has one row.
     pub fn n_rooks(n: u64) -> Self {
         Self::with_rows(n, 1)
     }
@@ -50,7 +51,7 @@ impl MultiJittered {
         }
     }
 
-    /// Returns the numbers of its columns and rows.
+    /// Returns the numbers of the grid's columns and rows.
     pub fn grid(&self) -> [u64; 2] {
         [self.columns, self.rows]
     }
@@ -93,7 +94,7 @@ impl MultiJittered {
         let mut index = 2 * start;
         let mut chosen = [[Stratum::default(); BATCH]; 2];
         for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
-            // First, the strata of each point are looked up one by one.
+            // First, the strata of each point are found one by one.
             let [columns, rows] = &mut chosen;
             let mut points = columns.iter_mut().zip(rows).take(x.len());
             while points.len() > 0 {
@@ -109,7 +110,7 @@ impl MultiJittered {
                     (i, j) = (0, j + 1);
                 }
             }
-            // Then a place is chosen in each stratum, in loops that can be vectorized.
+            // Then a place is chosen in each stratum, in loops that the compiler can vectorize.
             for (axis, (out, chosen)) in [(0, (x, &chosen[0])), (1, (y, &chosen[1]))] {
                 for (point, (out, stratum)) in (0..).zip(out.iter_mut().zip(chosen)) {
                     *out = stratum.choose(least, key.bits(index + axis + 2 * point));

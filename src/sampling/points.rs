@@ -2,11 +2,11 @@
 
 use glam::DVec2;
 
-/// Number of lanes of the widest vectors. Lists of coordinates are padded to a multiple of it.
+/// Number of lanes of the widest vectors. Lists of coordinates are padded to a multiple of this.
 const LANES: usize = 8;
 
-/// Points of a pixel, as one list per coordinate, so that loops over the points are vectorized. The
-/// value is reused from pixel to pixel, to keep its allocations.
+/// Points of a pixel, as one list per coordinate, so that loops over the points are vectorized. One
+/// value is reused for all pixels, to keep its allocations.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
     len: usize,
@@ -38,8 +38,8 @@ impl Points {
         [&self.x[..end], &self.y[..end]]
     }
 
-    /// Sets the number of points to `count`, and returns the lists of coordinates, to be
-    /// overwritten.
+    /// Sets the number of points to `count`. Returns the lists of coordinates, with arbitrary
+    /// content, for the caller to overwrite.
     pub(super) fn resized(&mut self, count: usize) -> [&mut [f64]; 2] {
         self.len = count;
         let needed = count.next_multiple_of(LANES);

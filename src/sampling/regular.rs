@@ -5,10 +5,10 @@ use std::ops::Range;
 use super::bricks::Bricks;
 
 /// Writes the offsets of the points whose indices are in `range` to `x` and `y`: the centres of the
-/// cells of [`Bricks`], row by row, the same in every pixel.
+/// cells of [`Bricks`], row by row, which are equal in all pixels.
 ///
-/// Point i of a row of n points lies at (2i + 1 − n)/(2n), rounded once, and its mirror image at
-/// exactly the negative of that.
+/// Point i of a row of n points has x = (2i + 1 − n)/(2n), rounded once. Its mirror image has
+/// exactly −x.
 #[inline(always)]
 pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     let mut points = x.iter_mut().zip(y);
@@ -20,9 +20,9 @@ pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     }
 }
 
-/// Of `n` equal parts of a pixel's side, returns the middle of the `parts` parts from index `first`
-/// on, as an offset from the pixel's centre.
+/// Divides a pixel's side into `n` equal parts, and returns the middle of the `parts` parts from
+/// the index `first` on, as an offset from the pixel's centre.
 fn middle(first: u64, parts: u64, n: u64) -> f64 {
-    // The magnitude of the numerator is at most 2^53, so only the division rounds.
+    // The absolute value of the numerator is at most 2^53, so that only the division rounds.
     (2 * first as i64 + parts as i64 - n as i64) as f64 / (2 * n) as f64
 }

@@ -1,8 +1,8 @@
 //! `scatter`: points uniform over the whole picture, as a pure function of the pixel.
 //!
-//! The numbers of N uniform points that fall into each pixel are multinomial, and a multinomial
-//! distribution splits: of n points in a rectangle, the number in one half is binomial, and given
-//! that number, the two halves are independent. N is therefore split down a fixed binary tree of
+//! The numbers of N uniform points that fall into the pixels are multinomial, and a multinomial
+//! distribution splits: of n points in a rectangle, the number in one half is binomial. Given this
+//! number, the two halves are independent. N is therefore split down a fixed binary tree of
 //! rectangles of pixels, with one draw per node. A rectangle's longer side (its width, if both are
 //! equal) is cut at the greatest power of two below it. Nearly all cuts are therefore into equal
 //! halves, for which a draw only counts random bits. Within its pixel, a point is uniform.
@@ -10,17 +10,17 @@
 use super::{binomial, rng::Key};
 use crate::area::Area;
 
-/// A node of the tree: a rectangle of pixels, and the number of points in it.
+/// A node of the tree: a rectangle of pixels, and the number of sample points in it.
 #[derive(Clone, Copy)]
 struct Node {
-    /// Path from the root: one bit per cut, after a leading 1.
+    /// Path from the root: a leading 1, then one bit per cut.
     path: u64,
     area: Area,
     points: u64,
 }
 
 /// Draws how many of `total` points, uniform over `picture`, fall into each pixel of `part`.
-/// Returns the counts row by row.
+/// Returns these numbers row by row.
 pub fn counts(key: Key, total: u64, picture: Area, part: Area) -> Vec<u64> {
     let mut counts = vec![0; part.pixels() as usize];
     let root = Node {

@@ -2,21 +2,21 @@
 
 use super::rng::Key;
 
-/// Maximum length of a permutation whose entries are stored. A stored permutation is uniform among
-/// all permutations. Entries of a longer one are computed one by one.
+/// Maximum length of a permutation whose entries are stored; all such permutations are equally
+/// likely. Entries of a longer permutation are computed one by one, by a hash.
 const MAX_STORED: u64 = 1 << 12;
 
-/// Maximum length of a permutation whose entries fit into a [`Buffer`], without an allocation.
+/// Maximum length of a permutation that is stored in a [`Buffer`], without an allocation.
 const SHORT: usize = 64;
 
-/// Buffer for the entries of a short permutation. A [`Shuffle`] borrows its buffer, since moving
+/// Buffer for the entries of a short permutation. A [`Shuffle`] borrows its buffer, because moving
 /// entries right after they are written stalls processors.
 pub type Buffer = [u16; SHORT];
 
 /// A buffer without entries.
 pub const EMPTY_BUFFER: Buffer = [0; SHORT];
 
-/// A permutation of 0 … n − 1, decided by a key.
+/// A permutation of 0 … n − 1 that a key determines.
 #[derive(Debug)]
 pub enum Shuffle<'a> {
     /// The entries of a permutation with n ≤ 64, followed by unused entries.
@@ -27,14 +27,14 @@ pub enum Shuffle<'a> {
     Hashed {
         /// Number of entries.
         n: u64,
-        /// Key that decides the entries.
+        /// Key that determines the entries.
         key: Key,
     },
 }
 
 impl<'a> Shuffle<'a> {
-    /// Returns the permutation of 0 … n − 1 that `key` decides. If n ≤ 64, its entries are stored
-    /// in `buffer`.
+    /// Returns the permutation of 0 … n − 1 that `key` determines. Stores the entries in `buffer`
+    /// if n ≤ 64.
     #[inline(always)]
     pub fn new(n: u64, key: Key, buffer: &'a mut Buffer) -> Self {
         if n <= SHORT as u64 {
@@ -82,10 +82,10 @@ fn fisher_yates(entries: &mut [u16], key: Key) {
     }
 }
 
-/// Computes a single entry of a permutation of 0 … n − 1. A keyed bijection of the numbers with as
-/// many bits as n − 1 is applied until the result is below n. This "cycle walking" (Black and
-/// Rogaway 2002) gives a bijection of the numbers below n. At least half of the numbers with these
-/// bits are below n, so at most two steps are needed on average.
+/// Computes a single entry of a permutation of 0 … n − 1. A keyed bijection of the numbers that
+/// have as many bits as n − 1 is applied until the result is below n. This "cycle walking" (Black
+/// and Rogaway 2002) gives a bijection of the numbers below n. At least half of the numbers with so
+/// many bits are below n, so that the mean number of steps is at most two.
 fn permute(index: u64, n: u64, key: Key) -> u64 {
     let bits = u64::BITS - (n - 1).leading_zeros();
     let mask = (1 << bits) - 1;
@@ -94,8 +94,8 @@ fn permute(index: u64, n: u64, key: Key) -> u64 {
     loop {
         for round in 0..4 {
             let random = key.bits(round);
-            // Each step is a bijection modulo a power of two: multiplication by an odd number, an
-            // addition, and an exclusive or of the upper half onto the lower one.
+            // Each operation is a bijection modulo a power of two: a multiplication by an odd
+            // number, an addition, and an exclusive or of the upper half onto the lower half.
             value = value.wrapping_mul(random | 1).wrapping_add(random >> 32) & mask;
             value ^= value >> half;
         }
@@ -120,7 +120,7 @@ mod tests {
                 .or_insert(0_u32) += 1;
         }
         assert_eq!(hits.len(), 24);
-        // Standard deviation: √1000 = 32.
+        // The standard deviation is √1000 = 32.
         assert!(hits.values().all(|&n| n.abs_diff(1000) < 150), "{hits:?}");
     }
 
@@ -134,8 +134,8 @@ mod tests {
             sum += shuffle.get(17) as f64;
             neighbours += u32::from(shuffle.get(17).abs_diff(shuffle.get(18)) == 1);
         }
-        // Mean 3003, standard deviation of the mean 6007/√12/√2000 = 39; two entries are neighbours
-        // once in 3000.
+        // The mean is 3003, and its standard deviation 6007/√12/√2000 = 39. Two entries are
+        // neighbours once in 3000 cases.
         assert!((sum / 2000.0 - 3003.0).abs() < 160.0, "{}", sum / 2000.0);
         assert!(neighbours < 8, "{neighbours}");
     }

@@ -18,12 +18,13 @@ use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Number of levels of the tree that one hash decides: they have 2^6 − 1 nodes, and a hash has 64
-/// bits.
+/// Number of levels of the scrambling tree that one hash decides. Six levels have 2^6 − 1 nodes,
+/// and a hash has 64 bits.
 const LEVELS: u32 = 6;
 
-/// Maximum number of points whose unscrambled bits are stored. Such points differ in at most 12
-/// bits, so that two hashes decide a point's scrambling.
+/// Maximum number of points whose unscrambled bits are stored. They differ in at most 12 bits, so
+/// that two hashes decide a point's scrambling. If a pixel has more points, the bits are computed
+/// for each point.
 const MAX_STORED: u64 = 1 << (2 * LEVELS);
 
 /// A prefix of the Sobol' sequence, prepared for scrambling.
@@ -31,7 +32,8 @@ const MAX_STORED: u64 = 1 << (2 * LEVELS);
 pub struct Sobol {
     /// The least m for which the number of points is at most 2^m.
     depth: u32,
-    /// The m topmost bits of both coordinates of each point; empty for more than 4096 points.
+    /// The m topmost bits of both coordinates of each point, where m is `depth`; empty for more
+    /// than 4096 points.
     tops: Vec<[u16; 2]>,
 }
 
@@ -59,7 +61,7 @@ impl Sobol {
         ];
         if !self.tops.is_empty() {
             let tops = &self.tops[range.start as usize..range.end as usize];
-            // `at_leaves` first clears a list of the given length, so a shorter list saves time.
+            // `at_leaves` first clears a list of this length, so that a shorter list saves time.
             return match self.depth {
                 0..=6 => at_leaves::<{ 1 << 6 }>(&axes, tops, [x, y]),
                 7..=9 => at_leaves::<{ 1 << 9 }>(&axes, tops, [x, y]),
@@ -73,9 +75,9 @@ impl Sobol {
     }
 }
 
-/// Writes the offsets of points to `x` and `y`. `tops` contains the topmost bits of the points'
-/// coordinates, which have at most `MOST` values. The offset of each value is computed once and
-/// then looked up.
+/// Writes the offsets of points to `x` and `y`. `tops` has the topmost bits of the points'
+/// coordinates, which have at most `MOST` different values. The offset of each value is computed
+/// once and then looked up.
 #[inline(always)]
 fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&mut [f64]; 2]) {
     let leaves = [axes[0].leaves::<MOST>(), axes[1].leaves::<MOST>()];
@@ -86,8 +88,8 @@ fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&m
 }
 
 /// Multiplies the bits of i by Pascal's triangle modulo 2: bit j of the result is the sum modulo 2
-/// of binomial(k, j) times bit k. The binomial is odd if the ones of j are among the ones of k, so
-/// that one step is enough for each of the six bits of a bit's position.
+/// of binomial(k, j) times bit k. The binomial is odd if all bits of j are also set in k. One step
+/// for each of the six bits of a position is therefore enough.
 fn pascal(mut bits: u64) -> u64 {
     bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
     bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
@@ -101,7 +103,7 @@ fn pascal(mut bits: u64) -> u64 {
 struct Owen {
     key: Key,
     depth: u32,
-    /// Number of levels of the tree that the first hash decides.
+    /// Number of levels of the scrambling tree that the first hash decides.
     levels: u32,
     /// The scrambled value of each combination of the first `levels` bits.
     top: [u8; 1 << LEVELS],
@@ -118,8 +120,8 @@ impl Owen {
         }
     }
 
-    /// Returns the scrambled offset of each combination of the topmost `depth` bits. `depth` is at
-    /// most 12, so that two hashes decide each combination.
+    /// Returns the scrambled offset of each combination of the topmost `depth` bits. `depth` must
+    /// be at most 12, so that two hashes decide each combination.
     #[inline(always)]
     fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
         let mut prefixes = [0; MOST];
@@ -143,7 +145,7 @@ impl Owen {
         let count = 1 << self.depth;
         let hashes = (count..2 * count).map(|index| self.key.bits(index));
         for ((leaf, &prefix), hash) in leaves.iter_mut().zip(&prefixes).zip(hashes) {
-            // Two shifts, since a single shift by 64 bits, for depth 0, would overflow.
+            // There are two shifts, because a single shift by 64 bits, for depth 0, would overflow.
             let bits = u64::from(prefix) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
             *leaf = lattice::offset_of_bits(bits);
         }
@@ -152,7 +154,7 @@ impl Owen {
 
     /// Scrambles a coordinate. `fraction` and the result are in units of 2^−64.
     fn scramble(&self, fraction: u64) -> u64 {
-        // A node is identified by the bits on the path from the root to it, after a leading 1.
+        // A node is identified by a leading 1 and the bits on the path from the root to the node.
         let mut above = self.levels;
         let part = high_bits(fraction, above);
         let mut scrambled = u64::from(self.top[part as usize]);
@@ -166,18 +168,18 @@ impl Owen {
             flips = self.key.bits(node);
             above = below;
         }
-        // No other point shares the bits above, so the last hash gives all remaining bits.
+        // No other point has these topmost bits, so that the last hash gives all remaining bits.
         scrambled << (u64::BITS - self.depth) | flips >> self.depth
     }
 }
 
-/// Scrambles each combination of the first `levels` bits of a subtree. Bits 1, 2 … 63 of `flips`
-/// are the random bits of the subtree's nodes, in order of depth.
+/// Returns the scrambled value of each combination of the first `levels` bits of a subtree. Bits 1,
+/// 2 … 63 of `flips` are the random bits of the subtree's nodes, from the root down.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     let mut bits = [0; 1 << LEVELS];
     for level in 0..levels {
-        // Replaces each node with its two children, the last node first, so that no node is
+        // Replaces each node by its two children. The last node comes first, so that no node is
         // overwritten before it is read.
         for node in (0..1 << level).rev() {
             let scrambled = bits[node] << 1;
@@ -188,8 +190,9 @@ fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     bits
 }
 
-/// Returns the random bits on the path down a subtree that the `levels` bits of `part` describe.
-/// Bits 1, 2 … 63 of `flips` are the random bits of the subtree's nodes, in order of depth.
+/// Returns the random bits of the nodes on a path down a subtree. The `levels` bits of `part` are
+/// the path. Bits 1, 2 … 63 of `flips` are the random bits of the subtree's nodes, from the root
+/// down.
 fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     (0..levels).fold(0, |found, level| {
         let node = 1 << level | part >> (levels - level);

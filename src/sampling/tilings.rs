@@ -1,8 +1,8 @@
 //! The strata of each method: cuts of the pixel into n cells, each of which holds one sample.
 //!
 //! In: a method and the number n of a pixel's samples. Out: the cuts that hold for every seed and
-//! every pixel. They follow from the files of the methods: `bricks` has the cells of regular and
-//! jittered samples, `multi_jittered` its grid.
+//! every pixel. The cuts follow from the methods' own files: `bricks` has the cells of regular and
+//! jittered samples, and `multi_jittered` its grid.
 
 use super::{bricks::Bricks, multi_jittered::MultiJittered};
 use crate::scene::Method;
@@ -10,31 +10,31 @@ use crate::scene::Method;
 /// A cut of a pixel into n cells of equal area, each of which holds exactly one of n samples.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tiling {
-    /// Numbers of the cells that stand side by side, row by row from the top. A row of k cells has
-    /// the height k/n.
+    /// Number of cells in each row, from the top. A row of k cells has the height k/n.
     pub rows: Vec<u64>,
 }
 
 impl Tiling {
-    /// A grid of equal cells.
+    /// Returns the tiling of a grid of equal cells.
     fn grid([columns, rows]: [u64; 2]) -> Self {
         Self {
             rows: vec![columns; rows as usize],
         }
     }
 
-    /// Whether its cells are columns as tall as the pixel.
+    /// Returns whether the cells are columns as tall as the pixel.
     pub fn is_columns(&self) -> bool {
         self.rows.len() == 1
     }
 
-    /// Whether its cells are rows as wide as the pixel.
+    /// Returns whether the cells are rows as wide as the pixel.
     pub fn is_rows(&self) -> bool {
         self.rows.iter().all(|&cells| cells == 1)
     }
 }
 
-/// Returns the tilings that a method keeps with n ≥ 1 samples in a pixel, columns and rows last.
+/// Returns the tilings of a pixel with n ≥ 1 samples that a method guarantees. Columns and rows
+/// come last.
 pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
     let (columns, rows) = ([n, 1], [1, n]);
     let is_power_of = |base: u64| {
@@ -54,24 +54,25 @@ pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
         }
         Method::NRooks => vec![columns, rows],
         Method::MultiJittered => vec![MultiJittered::new(n).grid(), columns, rows],
-        // The heights are multiples of 1/n, all shifted alike, only if n is a power of 2.
+        // Only if n is a power of 2 are the heights multiples of 1/n, shifted by one amount.
         Method::Hammersley if is_power_of(2) => vec![columns, rows],
         Method::Hammersley => vec![columns],
-        // The same in base 2 and in base 3. The shift breaks the boxes of two dimensions.
+        // Each axis is divided evenly by powers of its base, 2 or 3. The shift breaks the boxes of
+        // both axes.
         Method::Halton if is_power_of(2) => vec![columns],
         Method::Halton if is_power_of(3) => vec![rows],
         Method::Halton => vec![],
         Method::Sobol if is_power_of(2) => {
             let depth = n.trailing_zeros();
             let mut grids: Vec<_> = (0..=depth).map(|a| [1 << a, n >> a]).collect();
-            // Those that are nearest to a square first.
+            // Grids whose cells are nearest to a square come first.
             grids.sort_by_key(|[columns, rows]| columns.max(rows).to_owned());
             grids
         }
         Method::Sobol => vec![],
     };
     let mut grids: Vec<_> = grids.into_iter().map(Tiling::grid).collect();
-    // A grid may be one of columns itself.
+    // A grid may equal the columns or the rows.
     grids.dedup();
     grids
 }

@@ -1,5 +1,5 @@
-//! Descriptions of the language's words in Markdown, made from its table: for hovers, completion
-//! and `explain`.
+//! Describes the language's words in Markdown, from the tables of the schema. Hovers, completion
+//! and `pinhole explain` show these texts.
 
 use std::{fmt::Write, ops::Range};
 
@@ -8,15 +8,15 @@ use crate::{
     suggest,
 };
 
-/// Description of `let`.
+/// Markdown text about `let`.
 pub const ABOUT_LET: &str =
     "`let NAME = VALUE` gives a value a name, for what stands further down.";
 
-/// Description of `for`.
+/// Markdown text about `for` in the head of an object.
 pub const ABOUT_FOR: &str = "`for INDEX < COUNT` in the head of an object repeats it: the index is 0, 1, 2 and so on up to COUNT - 1. Of several, separated by commas, the last one counts fastest, and a count may depend on the indices before it. A `color` may be a pair: the first where the sum of the indices is even.";
 
-/// Describes a word of the language in all its meanings, each with an example: as a kind of block,
-/// a field, a method, a function, a constant, a colour. Returns `None` if it has no meaning.
+/// Describes every meaning of a word, each with an example: as a kind of block, a field, a method,
+/// a function, a constant or a colour. Returns `None` if the language does not have the word.
 pub fn word(word: &str) -> Option<String> {
     let mut parts = Vec::new();
     let example = |text: &str| format!("\n\n```scn\n{text}\n```");
@@ -60,7 +60,8 @@ pub fn word(word: &str) -> Option<String> {
     (!parts.is_empty()).then_some(text)
 }
 
-/// Describes a field of one kind of block, written `BLOCK.FIELD`, with an example.
+/// Describes the field `path`, written `BLOCK.FIELD`, with an example. Returns `None` if there is
+/// no such field.
 pub fn field_of(path: &str) -> Option<String> {
     let (block, name) = path.split_once('.')?;
     let row = schema::block(block)?;
@@ -70,7 +71,7 @@ pub fn field_of(path: &str) -> Option<String> {
     Some(format!("# {path}\n\n{about}\n\n```scn\n{example}\n```\n"))
 }
 
-/// Returns every word that [`word`] describes, except colours.
+/// Returns every word for which [`word`] has a description, except colours.
 pub fn words() -> impl Iterator<Item = &'static str> {
     let fields = schema::BLOCKS.iter().flat_map(BlockRow::field_names);
     let functions = schema::FUNCTIONS.iter().map(|function| function.name);
@@ -83,7 +84,7 @@ pub fn words() -> impl Iterator<Item = &'static str> {
         .chain(constants)
 }
 
-/// Describes a kind of block, its fields and its choices.
+/// Describes a kind of block, its fields, and the choices among fields that exclude each other.
 fn block_page(row: &BlockRow) -> String {
     let mut text = about_block(row);
     for choice in row.choices {
@@ -145,7 +146,7 @@ pub fn about_field(row: &BlockRow, field: &FieldRow) -> String {
     text
 }
 
-/// Describes the type of a field and its default.
+/// Returns the type of a field and its default, in words.
 pub fn kind_and_preset(field: &FieldRow) -> String {
     let kind = field.takes.word();
     match field.preset {
@@ -169,7 +170,7 @@ pub fn signature(function: &Function) -> (String, Vec<Range<usize>>) {
             label.push_str(", ");
         }
         let start = label.len();
-        // A parameter is shown by its name, or else by its type.
+        // A parameter without a name is shown by its type.
         let name = function.parameters.get(index);
         label.push_str(name.copied().unwrap_or_else(|| takes.word()));
         parameters.push(start..label.len());

@@ -1,11 +1,11 @@
-//! Builds diagnostics where problems of meaning arise.
+//! Builders of diagnostics about the meaning of a scene.
 
 use crate::{
     diagnostic::{Applicability, Diagnostic, Fix, Label, Severity},
     source::Span,
 };
 
-/// Returns an error with a code, which is written behind `pinhole::`.
+/// Returns an error with the code `pinhole::CODE`, where CODE is `code`.
 pub fn error(code: &str, message: impl Into<String>) -> Diagnostic {
     Diagnostic {
         severity: Severity::Error,
@@ -19,7 +19,7 @@ pub fn error(code: &str, message: impl Into<String>) -> Diagnostic {
     }
 }
 
-/// Returns a warning with a code, which is written behind `pinhole::`.
+/// Returns a warning with the code `pinhole::CODE`, where CODE is `code`.
 pub fn warning(code: &str, message: impl Into<String>) -> Diagnostic {
     Diagnostic {
         severity: Severity::Warning,
@@ -27,7 +27,7 @@ pub fn warning(code: &str, message: impl Into<String>) -> Diagnostic {
     }
 }
 
-/// Returns the error of a thing that is given twice.
+/// Returns the error that something stands twice in the text, at the spans `first` and `second`.
 pub fn twice(code: &str, message: String, [first, second]: [Span; 2]) -> Diagnostic {
     error(code, message)
         .at(second, "and again here")
@@ -35,26 +35,26 @@ pub fn twice(code: &str, message: String, [first, second]: [Span; 2]) -> Diagnos
 }
 
 impl Diagnostic {
-    /// Adds a label. Editors jump to the first one.
+    /// Adds a label at `span`. Editors jump to the first label of a diagnostic.
     pub(super) fn at(mut self, span: Span, label: impl Into<String>) -> Self {
         let message = label.into();
         self.labels.push(Label { span, message });
         self
     }
 
-    /// Sets the help, which says what to do.
+    /// Sets the help, a text that says how to correct the mistake.
     pub(super) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Adds fixes, the likeliest first. Each can be applied alone.
+    /// Adds alternative fixes, the likeliest first.
     pub(super) fn fixes(mut self, fixes: impl IntoIterator<Item = Fix>) -> Self {
         self.fixes.extend(fixes);
         self
     }
 
-    /// Adds fixes, each of which writes one of several texts in a place.
+    /// Adds one fix for each of `texts`, which writes that text at `span`.
     pub(super) fn writing<S: Into<String>>(
         self,
         span: Span,
@@ -65,17 +65,18 @@ impl Diagnostic {
         self.fixes(texts.map(|text| Fix::write(span, text).with_applicability(applicability)))
     }
 
-    /// Whether the diagnostic has a code.
+    /// Returns whether the diagnostic's code is `pinhole::CODE`, where CODE is `code`.
     pub(super) fn is(&self, code: &str) -> bool {
         self.code.strip_prefix("pinhole::") == Some(code)
     }
 
-    /// Whether the diagnostic suggests a name or a call instead of an undefined name.
+    /// Returns whether the diagnostic is of a kind that suggests a name or a call in place of an
+    /// undefined name.
     pub(super) fn is_of_suggestion(&self) -> bool {
         self.is_of_name() || self.is("function_without_arguments")
     }
 
-    /// Whether the diagnostic is about an undefined name.
+    /// Returns whether the diagnostic is about an undefined name.
     pub(super) fn is_of_name(&self) -> bool {
         const CODES: [&str; 4] = [
             "unknown_name",

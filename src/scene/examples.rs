@@ -1,8 +1,8 @@
-//! Examples for a field that fit the other fields of its block.
+//! Finds an example value for a field that does not contradict the other fields of its block.
 //!
-//! The field's own example may contradict them: a corner of a box on the wrong side of the other
-//! one, or a camera that looks at its own eye. In: the field, and the values of the others. Out: a
-//! value in the language's notation that fits them.
+//! The example in the schema may contradict them: a corner of a box may be on the wrong side of the
+//! other corner, or a camera may look at its own eye. In: the field, and the values of the other
+//! fields. Out: a value in the language's notation.
 
 use glam::DVec3;
 
@@ -13,8 +13,8 @@ use crate::{
     schema::{BOX, CAMERA, FieldRow, TRIANGLE, Value},
 };
 
-/// Returns an example for a field that fits the values of the other fields, or the field's own
-/// example if none of the values that are tried fits.
+/// Returns an example for `field` that does not contradict the values of the other fields, which
+/// `given` returns by name. Returns the field's own example if no tried value fits.
 pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -> String {
     const POINTS: [&str; 7] = [
         BOX.max.name,
@@ -35,12 +35,13 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         DVec3::ONE,
     ];
     let others = POINTS.iter().filter_map(|name| match given(name)? {
-        // Directions do not start from a point.
+        // The example for a direction does not depend on the points.
         _ if DIRECTIONS.contains(&field.name) || *name == field.name => None,
         Value::Vector(point) => Some(point),
         _ => None,
     });
-    // An eye is on the other side of the point that it looks at along −z.
+    // The first tried step is −z, the direction in which a camera usually looks. From `lookat` to
+    // `eye`, the steps are therefore reversed.
     let sign = if field.name == CAMERA.eye.name {
         -1.0
     } else {
@@ -62,7 +63,7 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
     }
 }
 
-/// Whether the known vectors of a block do not contradict each other.
+/// Returns whether the known vectors of a block do not contradict each other.
 fn fits(given: &dyn Fn(&str) -> Option<Value>) -> bool {
     let vector = |name: &str| match given(name)? {
         Value::Vector(vector) => Some(vector),

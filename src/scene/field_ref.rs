@@ -1,10 +1,10 @@
-//! A field of a scene that can be read and changed, whatever its type.
+//! Reference to the value of a field, whatever its type.
 
 use glam::DVec3;
 
 use crate::{color::Color, math::Angle, schema::Value};
 
-/// A reference to the value of a field.
+/// Mutable reference to the value of a field, by its type.
 pub(super) enum FieldRef<'a> {
     Number(&'a mut f64),
     Angle(&'a mut Angle),
@@ -27,7 +27,8 @@ impl FieldRef<'_> {
         }
     }
 
-    /// Changes the field's value. Returns `None` if the new value is of another type.
+    /// Sets the field's value. Returns `None` and changes nothing if the new value has another
+    /// type.
     pub fn set(self, value: Value) -> Option<()> {
         match (self, value) {
             (Self::Number(field), Value::Number(number)) => *field = number,

@@ -1,4 +1,4 @@
-//! The fields of an image, a camera and a shape by their names.
+//! Reads and changes the fields of an image, a camera or a shape by their names.
 
 use std::cmp::Ordering;
 
@@ -12,7 +12,7 @@ use crate::{
     schema::{CAMERA, IMAGE, Value},
 };
 
-/// An image, a camera or a shape, whose fields are read and changed by their names.
+/// An image, a camera or a shape: the owner of fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FieldOwner {
     /// The picture.
@@ -24,8 +24,9 @@ pub enum FieldOwner {
 }
 
 impl FieldOwner {
-    /// Returns the value of a field; `None` if the field is not used, because another way of a
-    /// choice is taken. A box has the fields of both of its ways.
+    /// Returns the value of a field. Returns `None` if the owner does not use the field, such as
+    /// `direction` of a camera that has a `lookat`. For a box, all of `min`, `max`, `center` and
+    /// `size` are available.
     pub fn value(self, field: &str) -> Option<Value> {
         match self {
             Self::Image(mut image) => Some(image_field(&mut image, field)?.get()),
@@ -34,8 +35,8 @@ impl FieldOwner {
         }
     }
 
-    /// Returns the same with another value of a field; `None` if the field is not used, or the
-    /// value is of another type. The language's conditions are not checked.
+    /// Returns a copy in which `field` has the value `value`. Returns `None` if the owner does not
+    /// use the field, or if the value has another type. Does not check the language's conditions.
     pub fn with(mut self, field: &str, value: Value) -> Option<Self> {
         match &mut self {
             Self::Image(image) => image_field(image, field)?.set(value)?,
@@ -45,7 +46,8 @@ impl FieldOwner {
         Some(self)
     }
 
-    /// Whether the language's conditions hold, as far as rounded numbers tell.
+    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
+    /// rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         match self {
             Self::Image(_) => true,
@@ -69,7 +71,8 @@ impl FieldOwner {
     }
 }
 
-/// Returns a field of an image. Width and height are no `f64`s and cannot be changed so.
+/// Returns a reference to a field of an image. Returns `None` for `width` and `height`, which are
+/// not `f64`s.
 fn image_field<'a>(image: &'a mut Image, field: &str) -> Option<FieldRef<'a>> {
     let Image {
         width: _,

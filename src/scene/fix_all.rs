@@ -1,4 +1,5 @@
-//! Applies the first applicable fix of each error, again and again until the text stays the same.
+//! Applies the first applicable fix of each error, and repeats that until the text no longer
+//! changes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -15,42 +16,43 @@ pub struct Fixed {
     pub text: String,
     /// The fixes that were applied, in order.
     pub done: Vec<Done>,
-    /// Number of remaining errors with fixes that are unsafe: they choose among meanings, or
+    /// Number of remaining errors that only unsafe fixes correct: these choose among meanings, or
     /// remove or change something.
     pub held_back: usize,
-    /// Number of remaining errors whose fixes only make up a value.
+    /// Number of remaining errors whose fixes insert only a placeholder, i.e. a made-up value.
     pub placeholders: usize,
-    /// Number of remaining errors whose fixes another call would apply: the text has too many of
-    /// them for one call, or bytes that are not UTF-8, which a fixed text would lose.
+    /// Number of remaining errors whose fixes were allowed but not applied: the text has too many
+    /// errors for one call, or contains bytes that are not UTF-8, which would be lost.
     pub waiting: usize,
 }
 
 /// A fix that was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Done {
-    /// The place of the problem in the text at that time.
+    /// Place of the problem in the text to which the fix was applied.
     pub place: LineColumn,
     /// The title of the fix.
     pub title: String,
 }
 
-/// Fixes the errors of a file by safe fixes, or also by unsafe ones; values are never made up.
-/// Errors in arguments stay, and so do warnings, because a warning may be intended.
+/// Corrects the errors of a file by fixes of at most the applicability `most`; placeholders are
+/// never applied. Errors in `--set` arguments remain, and so do warnings, because a warning may be
+/// intended.
 pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let most = most.min(Applicability::Unsafe);
-    /// Maximum number of rounds. A fix may reveal a hidden mistake, but no text has so many of them
-    /// behind each other.
+    /// Maximum number of rounds of fixes. A fix may reveal a hidden mistake, but no text hides so
+    /// many mistakes behind one another. Errors that are left then are counted as `waiting`.
     const ROUNDS: usize = 1000;
-    /// Maximum number of bytes that are read in all rounds. In a long text with more mistakes than
-    /// one reading reports, some remain.
+    /// Maximum total number of bytes that all rounds read, which bounds the time. A long text with
+    /// more mistakes than one reading reports may keep some.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
     let mut done = Vec::new();
-    // Problems that remain although their fixes were applied.
+    // Problems that remained after their fixes were applied.
     let mut staying: HashSet<Problem> = HashSet::new();
     let mut seen = HashSet::new();
-    // Bytes that are not UTF-8 would be lost.
+    // A fixed text would lose bytes that are not UTF-8, so such a text is not fixed.
     let rounds = if sources.file.invalid_utf8().is_empty() {
         ROUNDS.min(READ / sources.file.text().len().max(1)).max(1)
     } else {
@@ -73,7 +75,7 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
         let idle = round.lengthened.values().filter(is_idle).flatten();
         let idle: Vec<Problem> = idle.cloned().collect();
         if !idle.is_empty() {
-            // The round is repeated without these.
+            // Repeat the round without the fixes of these problems.
             staying.extend(idle);
             continue;
         }
@@ -102,7 +104,7 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     }
 }
 
-/// A problem of a text, by which it is recognised in a changed text.
+/// Identity of a problem, by which it is recognized in a changed text.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Problem {
     code: String,
@@ -120,15 +122,16 @@ impl Problem {
     }
 }
 
-/// The first fixes of all errors, joined into one. A fix that would change the same place as
-/// another one waits for the next round.
+/// The first applicable fixes of all errors, joined into one. If two fixes would change the same
+/// place, only the first is included; the other is left for the next round.
 struct Round {
     fix: Fix,
-    /// The edits that make the text longer, each with the problems that offer it. If all of these
-    /// problems remain, applying the edits would never end.
+    /// Fixes that lengthen the text, each mapped to the problems that offer it. If all problems of
+    /// a fix remain after it was applied, it is excluded from the next round, since it could be
+    /// applied forever.
     lengthened: HashMap<Vec<Edit>, Vec<Problem>>,
     done: Vec<Done>,
-    /// The number of bytes by which the text grows at each place that changes.
+    /// Number of bytes by which the text grows at each changed offset.
     growth: BTreeMap<usize, isize>,
 }
 
@@ -141,7 +144,7 @@ impl Round {
     ) -> Self {
         let may_apply = |fix: &&Fix| fix.applicability <= most;
         let mut edits: Vec<Edit> = Vec::new();
-        // The ends of the changed places by their starts. No two of them touch.
+        // Changed spans: maps the start to the end. No two of them touch.
         let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
         let (mut lengthened, mut done) = (HashMap::<_, Vec<_>>::new(), Vec::new());
         for diagnostic in problems.iter().filter(|problem| problem.is_error()) {
@@ -187,7 +190,7 @@ impl Round {
         }
     }
 
-    /// Returns a problem at its place in the changed text.
+    /// Returns the problem with its offset in the text after the edits.
     fn moved(&self, problem: &Problem) -> Problem {
         let grown: isize = self
             .growth

@@ -1,4 +1,7 @@
-//! A block with the values that its fields are given, and the defaults of the others.
+//! A block with evaluated fields.
+//!
+//! In: a block of the tree. Out: the value of each field that it has, and the defaults of the other
+//! fields.
 
 use std::sync::LazyLock;
 
@@ -13,31 +16,34 @@ use crate::{
 #[derive(Clone)]
 pub struct LoweredBlock<'s> {
     pub row: &'static BlockRow,
-    /// The keyword that the block starts with.
+    /// Span of the keyword that the block starts with.
     pub keyword: Span,
     pub span: Span,
     pub name: Option<Name<'s>>,
-    /// The value that each field of the row is given, if any.
+    /// Fields that the block has, in the order of the fields of [`Self::row`]; `None` for a field
+    /// that it does not have.
     pub given: Vec<Option<Given>>,
-    /// Fields that were probably meant by a mistyped name, or by text that could not be parsed.
+    /// Names of fields that were probably meant by a mistyped name, or by text that could not be
+    /// parsed. They are not reported as missing.
     pub meant: Vec<&'static str>,
-    /// Whether a field may have been lost.
+    /// Whether a syntax error may have hidden a field. Missing fields are then not reported.
     pub unfinished: bool,
 }
 
-/// A field as it is written in a block.
+/// A field that a block has: where its name and value stand in the text, and its value.
 #[derive(Clone, Copy)]
 pub struct Given {
-    /// The field's name.
+    /// Span of the field's name.
     pub name: Span,
-    /// The value's text.
+    /// Span of the value's text.
     pub span: Span,
-    /// The value; `None` if it is wrong.
+    /// The value; `None` if it has errors.
     pub value: Option<Value>,
 }
 
 impl Given {
-    /// Returns the span of name and value; for the value of an argument, that of the value alone.
+    /// Returns the span of name and value. If the value comes from a `--set` argument, returns the
+    /// span of the value alone.
     pub fn field(self) -> Span {
         if self.name.source == self.span.source {
             self.name.to(self.span)
@@ -48,7 +54,7 @@ impl Given {
 }
 
 impl LoweredBlock<'_> {
-    /// Returns a block none of whose fields is given.
+    /// Returns a block of the kind `row` without fields.
     pub fn empty(row: &'static BlockRow, span: Span) -> Self {
         Self {
             row,
@@ -61,19 +67,20 @@ impl LoweredBlock<'_> {
         }
     }
 
-    /// Returns what a field is given.
+    /// Returns the span and the value of a field; `None` if the block does not have it.
     pub fn given<T>(&self, field: FieldHandle<T>) -> Option<Given> {
         debug_assert_eq!(self.row.kind, field.kind, "{}", field.name);
         self.given.get(field.index).copied().flatten()
     }
 
-    /// Returns what the field of a name is given.
+    /// Returns the span and the value of the field `name`; `None` if the block does not have it.
     pub fn given_by_name(&self, name: &str) -> Option<Given> {
         let index = self.row.fields.iter().position(|row| row.name == name)?;
         self.given.get(index).copied().flatten()
     }
 
-    /// Returns the value of a field, or its default; `None` if it is missing or wrong.
+    /// Returns the value of a field, or its default if the block does not have the field. Returns
+    /// `None` if the value has errors, or if the field is missing and has no default.
     pub fn value<T: FieldValue>(&self, field: FieldHandle<T>) -> Option<T> {
         let value = match self.given(field) {
             Some(given) => given.value,
@@ -82,7 +89,7 @@ impl LoweredBlock<'_> {
         T::from_value(value?)
     }
 
-    /// Returns a copy in which one more field is given.
+    /// Returns a copy of the block with one more field.
     pub fn with(&self, row: &FieldRow, given: Given) -> Self {
         let mut block = self.clone();
         let rows = block.row.fields.iter().zip(&mut block.given);
@@ -97,14 +104,15 @@ impl LoweredBlock<'_> {
         self.given(field).map_or(self.keyword, |given| given.span)
     }
 
-    /// Whether neither a field is given nor one that it excludes.
+    /// Returns whether the block may still be given the field `row`: it has neither this field nor
+    /// one that excludes it.
     pub fn has_place(&self, row: &FieldRow) -> bool {
         let is_given = |name: &str| self.given_by_name(name).is_some();
         !is_given(row.name) && !self.row.excludes(row.name).any(is_given)
     }
 }
 
-/// The default values of all fields, by the kind of block and the index of the field.
+/// Default values of all fields, indexed by the kind of block and the field's position in its row.
 static DEFAULTS: LazyLock<Vec<Vec<Option<Value>>>> = LazyLock::new(|| {
     let default = |field: &FieldRow| match field.preset {
         Preset::Value(written) => literal(written, field.takes),

@@ -1,8 +1,9 @@
-//! The meaning of a scene file: plain data with everything resolved.
+//! Reads a scene file into a [`Scene`]: plain data without names or formulas.
 //!
-//! In: the texts of a file and of its overrides, which are parsed here. Out: a [`Scene`], or
-//! problems. Defaults are filled in, alternatives decided and expressions evaluated, and every
-//! condition of the language's table holds. Nothing here knows the tracer.
+//! In: the texts of a file and of its `--set` arguments, which are parsed here. Out: a [`Scene`],
+//! or problems. In a [`Scene`], defaults are filled in, expressions are evaluated, of fields that
+//! exclude each other one is chosen, and every condition of the schema holds. Nothing here depends
+//! on the tracer.
 
 #![cfg_attr(
     not(test),

@@ -1,4 +1,4 @@
-//! A scene as plain data, which the tracer is built from.
+//! A scene as plain data. The tracer is built from it.
 
 use std::sync::Arc;
 
@@ -20,12 +20,13 @@ sphere { center (0, 1, 0) }
 checkerboard {}
 ";
 
-/// The result of reading a scene.
+/// Result of reading a scene.
 #[derive(Clone, Debug)]
 pub struct Reading {
     /// The scene, unless there is an error.
     pub scene: Option<Scene>,
-    /// Errors and warnings in the order of the text, those of the file before those of arguments.
+    /// Errors and warnings in the order of the text: those of the file, then those of the `--set`
+    /// arguments.
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -38,8 +39,8 @@ pub struct Scene {
     pub camera: Camera,
     /// The method and the number of samples.
     pub sampler: Sampler,
-    /// The objects in the order of the file: at equal distances the first one is seen. Scenes that
-    /// differ only in the other members share them.
+    /// Objects in the order of the file. Where two objects are at the same distance, the first one
+    /// is visible. Scenes that differ only in camera, image or sampler share the objects.
     pub objects: Arc<Vec<Object>>,
 }
 
@@ -59,23 +60,24 @@ pub struct Image {
 pub struct Camera {
     /// The eye, through which all rays pass.
     pub eye: DVec3,
-    /// The view direction; a point to look at differs from the eye.
+    /// The view direction. A point to look at differs from the eye.
     pub view: View,
     /// The up vector, not zero; it may be parallel to the view direction.
     pub up: DVec3,
-    /// The roll about the view direction; positive dips the right side.
+    /// The roll about the view direction; a positive roll lowers the right side of the camera.
     pub roll: Angle,
     /// The field of view.
     pub lens: Lens,
     /// The height of the window in the view plane, > 0.
     pub view_height: f64,
-    /// Depth up to which nothing is seen, ≥ 0.
+    /// Depth of the near plane in metres, ≥ 0; nothing nearer is visible.
     pub near: f64,
-    /// Depth from which on nothing is seen, > near.
+    /// Depth of the far plane in metres, > near; nothing farther is visible. `None` without a far
+    /// plane.
     pub far: Option<f64>,
 }
 
-/// The view direction of a camera, in either of the language's two ways.
+/// The view direction of a camera, in either of the language's two forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum View {
     /// Towards a point other than the eye.
@@ -87,9 +89,10 @@ pub enum View {
 /// Returns the level direction of a camera whose up vector is parallel to its view direction: −z,
 /// or +y if up is parallel to z.
 ///
-/// Such a camera shows the picture of a camera that was tilted from looking along the level
-/// direction. If it looks against up, the top of the picture is the part of the level direction
-/// that is perpendicular to up; if it looks along up, the opposite.
+/// Such a camera shows the same picture as one that first looked along the level direction and was
+/// then tilted. Its picture's top lies in the direction of the level direction's component
+/// perpendicular to up if the camera looks against up, and opposite to this component if it looks
+/// along up.
 pub fn level_direction(up: DVec3) -> DVec3 {
     if up.x == 0.0 && up.y == 0.0 {
         DVec3::Y
@@ -98,30 +101,30 @@ pub fn level_direction(up: DVec3) -> DVec3 {
     }
 }
 
-/// The field of view of a camera, in one of the language's three ways. Angles lie between 0 and 180
-/// degrees.
+/// Field of view of a camera, in one of the language's three forms. Angles are between 0 and 180
+/// degrees, exclusive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lens {
-    /// The distance from the eye to the view plane, > 0.
+    /// Distance from the eye to the view plane in metres, > 0.
     Distance(f64),
-    /// The angle that the window's height takes up.
+    /// Angle that the window's height subtends at the eye.
     Fov(Angle),
-    /// The angle that the window's width takes up.
+    /// Angle that the window's width subtends at the eye.
     HorizontalFov(Angle),
 }
 
-/// The method of sampling, the number of samples, and the seed of random ones.
+/// Method of sampling, number of samples, and seed of the random ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampler {
-    /// The technique.
+    /// Sampling technique, or `exact` for exact integration.
     pub method: Method,
-    /// The number of samples.
+    /// Number of samples.
     pub count: Count,
-    /// The seed, below 2^53.
+    /// Seed of the random numbers, less than 2^53.
     pub seed: u64,
 }
 
-/// A number of samples; `per_pixel` times the number of pixels, or `total`, is at most 2^53.
+/// Number of samples. For the whole picture, it is at most 2^53.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Count {
     /// The number of samples in each pixel, ≥ 1.
@@ -135,11 +138,11 @@ pub enum Count {
 pub struct Object {
     /// The unique name, if the object has one: `Ball`, or `Ball[3, 1]` if the block is repeated.
     pub name: Option<String>,
-    /// The values of the block's indices, in their order.
+    /// Values of the block's indices, in the order of its head; empty if the block is not repeated.
     pub indices: Box<[u32]>,
     /// The shape.
     pub shape: Shape,
-    /// The whole block in the text.
+    /// Span of the whole block in the text.
     pub span: Span,
 }
 
@@ -163,7 +166,7 @@ impl Object {
         }
     }
 
-    /// Whether two objects come from the same repeated block.
+    /// Returns whether two objects come from the same repeated block.
     pub fn is_beside(&self, other: &Self) -> bool {
         !self.indices.is_empty() && self.span == other.span
     }
@@ -177,7 +180,7 @@ impl Scene {
 }
 
 impl View {
-    /// Returns two points of which the first one sees the second in the view direction.
+    /// Returns two points, the second of which lies in the view direction from the first.
     pub fn ends(&self, eye: DVec3) -> (DVec3, DVec3) {
         match *self {
             Self::Lookat(point) => (eye, point),

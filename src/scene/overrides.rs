@@ -1,7 +1,7 @@
-//! Arguments `--set TARGET=VALUE`.
+//! Replaces values of a scene by those of `--set TARGET=VALUE` arguments.
 //!
-//! In: the arguments as they were typed, and the items of the file, all or a part of them. Out: the
-//! items with the values of the arguments in them. Lowering evaluates these values.
+//! In: the arguments as they were typed, and all or some items of the file. Out: the items with the
+//! new values, which lowering evaluates.
 
 use super::{
     error::error,
@@ -18,18 +18,19 @@ use crate::{
     },
 };
 
-/// An argument.
+/// A `--set` argument.
 #[derive(Clone, Debug)]
 pub struct Override<'s> {
-    /// The block of `BLOCK.FIELD`.
+    /// The block of a target `BLOCK.FIELD`; `None` if the target is a `let`.
     pub block: Option<Name<'s>>,
-    /// The field of `BLOCK.FIELD`, or the name of a `let`.
+    /// The field of a target `BLOCK.FIELD`, or the name of a `let`.
     pub name: Name<'s>,
     /// The new value.
     pub value: Value<'s>,
 }
 
-/// Reads the arguments.
+/// Parses the `--set` arguments. Adds problems to `diagnostics` and leaves out arguments that
+/// cannot be used.
 pub fn read<'s>(
     sources: &'s Sources,
     diagnostics: &mut impl Extend<Diagnostic>,
@@ -48,7 +49,12 @@ pub fn read<'s>(
     overrides
 }
 
-/// Parses an argument into the block, the field or `let`, and the start of the value.
+/// Splits the argument `text` into the block, if it has one, the name of the field or `let`, and
+/// the offset of the value.
+///
+/// # Errors
+///
+/// Returns a diagnostic if the text has no `=`, no valid target or no value.
 fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), Box<Diagnostic>> {
     let Some((target, value)) = text.split_once('=') else {
         let help = "write TARGET=VALUE, such as `--set camera.roll=30deg` or `--set h=1.5`";
@@ -103,7 +109,8 @@ fn one(text: &str, id: SourceId) -> Result<(Option<Name<'_>>, Name<'_>, usize), 
     Ok((block, name, target.len() + 1))
 }
 
-/// Returns a name with its span; `None` if the text is no name.
+/// Returns the name in `text`, which starts at the offset `start` of the argument. Returns `None`
+/// if the text is not a name.
 fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     let trimmed = text.trim();
     let start = start + text.len() - text.trim_start().len();
@@ -116,15 +123,14 @@ fn name(text: &str, start: usize, id: SourceId) -> Option<Name<'_>> {
     })
 }
 
-/// Puts the values of the arguments into items of a file, in the place of the old values. Arguments
-/// whose targets are not among the items remain. If several things have one name, the first is
-/// meant.
+/// Replaces values in `items` by those of the arguments. Removes an argument from `overrides` when
+/// its target is found. If several items have the target's name, changes only the first.
 pub fn apply<'s>(overrides: &mut Vec<Override<'s>>, items: &mut [Item<'s>]) {
     overrides.retain(|it| !it.put_into(items));
 }
 
-/// Adds blocks behind the items of a file for arguments whose blocks the file leaves out, and
-/// reports the other arguments.
+/// Handles the arguments whose targets the file does not have. Adds a block to `items` for a
+/// setting such as the camera, and reports all other arguments.
 pub fn add<'s>(
     overrides: Vec<Override<'s>>,
     items: &mut Vec<Item<'s>>,
@@ -134,7 +140,7 @@ pub fn add<'s>(
     let mut problems = Problems::default();
     for it in overrides {
         match it.block {
-            // An argument before this one may have added the block.
+            // A preceding argument may have added the block.
             _ if it.put_into(items) => {}
             None => problems.push(no_such_let(&it, items, sources, budget)),
             Some(target) if setting(target.text).is_some() => {
@@ -152,7 +158,7 @@ pub fn add<'s>(
     problems
 }
 
-/// Whether an item is a block with a field that an argument sets.
+/// Returns whether an item is a block with a field that a `--set` argument changed.
 pub fn is_set(item: &Item<'_>) -> bool {
     let Item::Block(block) = item else {
         return false;
@@ -162,7 +168,7 @@ pub fn is_set(item: &Item<'_>) -> bool {
 }
 
 impl<'s> Override<'s> {
-    /// Gives the target the value. Returns whether the target is among the items.
+    /// Replaces the value of the target, if it is among `items`. Returns whether it was found.
     fn put_into(&self, items: &mut [Item<'s>]) -> bool {
         let setting = self.block.and_then(|block| setting(block.text));
         for item in items {
@@ -183,8 +189,9 @@ impl<'s> Override<'s> {
         false
     }
 
-    /// Whether the value is valid in a field, or in the definition of a name, which may use the
-    /// names before it.
+    /// Returns whether the value has no errors at `place`: `Ok` with a field, or `Err` with the
+    /// name of a `let`, which may use only the names defined before it. Returns `false` if the
+    /// budget of comparisons is spent.
     fn suits(
         &self,
         place: Result<&schema::FieldRow, &str>,
@@ -212,7 +219,7 @@ impl<'s> Override<'s> {
     }
 }
 
-/// Evaluates a value without reports.
+/// Evaluates a value without reporting problems.
 fn value_of<'s>(
     value: &Value<'s>,
     sources: &'s Sources,
@@ -226,7 +233,8 @@ fn value_of<'s>(
     evaluator.value(value, None)
 }
 
-/// Returns a field by the names of block and field.
+/// Returns the row of the field `name` of a block, which is given by its kind or by an object's
+/// name.
 fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema::FieldRow> {
     let object = || {
         items.iter().find_map(|item| match item {
@@ -237,17 +245,18 @@ fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema:
     setting(block).or_else(object)?.field(name)
 }
 
-/// Returns the row of a kind of block that a scene has at most once.
+/// Returns the row of the kind `name` if a scene has at most one such block, as for the camera.
 fn setting(name: &str) -> Option<&'static schema::BlockRow> {
     schema::block(name).filter(|row| !row.is_object)
 }
 
-/// Returns the row of a block; for a mistyped keyword that of the nearest kind.
+/// Returns the row of a block's kind. A mistyped kind stands for the nearest one.
 fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }
 
-/// Whether a block is the one that an argument names.
+/// Returns whether an argument with the block `target` sets fields of `block`. `setting` is the row
+/// of `target` if that is a kind of block rather than an object's name.
 fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>) -> bool {
     match (row(block), setting) {
         (Some(row), Some(setting)) => row.kind == setting.kind,
@@ -256,7 +265,7 @@ fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>
     }
 }
 
-/// Gives a block a field instead of the same field and of those that it excludes.
+/// Sets a field of a block. Removes the field's old value, and fields that exclude it.
 fn set_field<'s>(block: &mut Block<'s>, name: Name<'s>, value: Value<'s>) {
     let excluded = row(block)
         .into_iter()
@@ -269,7 +278,7 @@ fn set_field<'s>(block: &mut Block<'s>, name: Name<'s>, value: Value<'s>) {
     block.fields.push(Field { name, value, span });
 }
 
-/// Returns the names of the objects, in order.
+/// Returns the names of the objects, in the order of the file.
 fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
     let names = items.iter().filter_map(|item| match item {
         Item::Block(block) if row(block)?.is_object => Some(block.name?.text),
@@ -278,13 +287,13 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
     names.collect()
 }
 
-/// Help that says what a target can be.
+/// Help that explains the possible targets.
 const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
 
-/// Maximum number of names that a help lists.
+/// Maximum number of names that a help text lists; longer lists are left out.
 const FEW: usize = 8;
 
-/// Describes a target whose block is neither in the file nor one that can be added.
+/// Returns the error that a target's block is neither in the file nor can be added.
 fn no_such_block<'s>(
     it: &Override<'s>,
     block: &Name<'s>,
@@ -323,7 +332,8 @@ fn no_such_block<'s>(
         )
 }
 
-/// Describes a target that is no `let` of the file, but may be a block.
+/// Returns the error that a target is not a `let` of the file. The target may have been meant as a
+/// block.
 fn no_such_let<'s>(
     it: &Override<'s>,
     items: &[Item<'s>],

@@ -1,7 +1,8 @@
-//! What is known of a scene that may have errors: for editors, which show its parts while the rest
-//! is being typed.
+//! The meaning of a scene that may have errors. Editors use it to show the correct parts of a scene
+//! while other parts are being typed.
 //!
-//! In: the results of lowering. Out: the tree with its meaning, and the value of any part of it.
+//! In: the results of lowering. Out: the tree, the parts of the scene, and the value of any
+//! expression in the tree.
 
 use std::sync::Arc;
 
@@ -19,14 +20,14 @@ use crate::{
     },
 };
 
-/// The parts of a scene; a part with errors is missing.
+/// Parts of a scene. A part with errors is `None`, or missing among the objects.
 #[derive(Clone, Debug)]
 pub struct Parts {
     /// The picture.
     pub image: Option<Image>,
     /// The camera.
     pub camera: Option<Camera>,
-    /// The samples.
+    /// The sampler.
     pub sampler: Option<Sampler>,
     /// The objects without errors, in the order of the file.
     pub objects: Vec<Object>,
@@ -58,7 +59,7 @@ pub struct SemanticModel<'s> {
 }
 
 impl<'s> SemanticModel<'s> {
-    /// Returns the texts.
+    /// Returns the file and the `--set` arguments.
     pub fn sources(&self) -> &'s Sources {
         self.sources
     }
@@ -71,8 +72,8 @@ impl<'s> SemanticModel<'s> {
         })
     }
 
-    /// Returns the definition of a name that is used at a place: the first one of that name, if it
-    /// is before the place.
+    /// Returns the definition that `name` refers to at the offset `at`: the first definition of
+    /// that name, if it stands before `at`.
     pub fn definition_at(&self, name: &str, at: usize) -> Option<&Definition<'s>> {
         let place = self.names.place(name)?;
         let items = &self.parsed.tree.items;
@@ -84,16 +85,17 @@ impl<'s> SemanticModel<'s> {
         found.filter(|definition| definition.span.end <= at)
     }
 
-    /// Returns the value of a definition; `None` if it has errors, or is not the first one of its
-    /// name.
+    /// Returns the value of a definition. Returns `None` if it has errors, or if an earlier
+    /// definition has the same name.
     pub fn defined(&self, definition: &Definition<'s>) -> Option<Value> {
         let name = definition.name?;
         let is_first = self.names.place(name.text) == Some(name.span);
         is_first.then(|| self.names.value(name.text)).flatten()
     }
 
-    /// Evaluates a value of the tree; `wanted` is the type that would fit, if it is known. Returns
-    /// `None` if the value has errors, or means nothing by itself, such as the word of a method.
+    /// Evaluates an expression of the tree; `wanted` is the type that the place requires, if that
+    /// is known. Returns `None` if the expression has errors, or has no value by itself, such as
+    /// the name of a sampling method.
     pub fn value(&self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         let mut problems = Problems::default();
         let mut evaluator = Evaluator {

@@ -1,10 +1,11 @@
-//! Whether the camera sees any object, and whether samples tell the squares of a board apart.
+//! Finds out whether the camera sees any object, and whether samples can tell the squares of a
+//! checkerboard apart. Warnings depend on it.
 //!
-//! In: a camera and the objects. Out: why none of them is in the picture, if a sphere around each
-//! shows that; and whether a board's squares are too small for the numbers that samples are
-//! computed with. A case of doubt counts as seen, and so does an object behind another one: a
-//! warning is never false. Numbers here are rounded `f64`s; each comparison leaves a margin of
-//! [`MARGIN`] times the lengths in it.
+//! In: a camera and the objects. Out: the reason why no object is in the picture, if that can be
+//! shown with bounding spheres; and whether a board's squares are too small for the precision of a
+//! sample's coordinates. In a case of doubt an object counts as visible, and so does an object that
+//! another one hides, so that a warning is never false. Computations are in `f64`; each comparison
+//! leaves a margin of [`MARGIN`] times the lengths in it.
 
 use glam::DVec3;
 
@@ -18,27 +19,29 @@ use crate::{
     schema::CAMERA,
 };
 
-/// Margin of a comparison, relative to the lengths that are compared. If the sine between up and
-/// the view direction is at least [`LEAST_SINE`], the axes have a relative error of 2^−52/10^−6,
-/// about 2·10⁻¹⁰, and all other errors are less.
+/// Margin of a comparison, relative to the lengths that are compared. It exceeds all rounding
+/// errors: since the sine of the angle between up and the view direction is at least
+/// `LEAST_SINE`, the relative error of the camera's axes is at most 2^−52/10^−6, about 2·10⁻¹⁰,
+/// and all other errors are smaller.
 const MARGIN: f64 = 1e-8;
 
-/// Least sine of the angle between up and the view direction for which the camera's axes are known
-/// well enough.
+/// Minimum sine of the angle between up and the view direction. Below it, the rounding error of the
+/// camera's axes may exceed [`MARGIN`], so visibility is not judged.
 pub const LEAST_SINE: f64 = 1e-6;
 
-/// Why no object is seen.
+/// Reason why no object is in the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WhyUnseen {
     /// All objects are behind the camera.
     Behind,
     /// All objects are beside the window, or behind the camera.
     Outside,
-    /// Without this field, `near` or `far`, an object would be seen.
+    /// An object would be visible without this field, `near` or `far`.
     Clipped(&'static str),
 }
 
-/// Returns why the camera sees none of the objects; `None` if it may see one.
+/// Returns the reason why the camera sees no object. Returns `None` if it may see one, or if its
+/// axes are too inaccurate.
 pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<WhyUnseen> {
     let frustum = Frustum::new(camera, image)?;
     let sees = |near: f64, far: f64| {
@@ -49,7 +52,8 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
     if sees(camera.near, far) {
         return None;
     }
-    // If an object is seen without one of the two planes, that plane is the reason.
+    // If an object would be visible without the near plane, or without the far plane, that plane is
+    // the reason.
     if sees(0.0, far) {
         return Some(WhyUnseen::Clipped(CAMERA.near.name));
     }
@@ -67,7 +71,7 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
     })
 }
 
-/// The side of the visible space on which an object lies that is wholly outside of it.
+/// Where an object lies that is wholly outside of the visible space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     /// Behind the camera.
@@ -76,12 +80,12 @@ pub enum Outside {
     BeforeNear,
     /// Farther than the far plane.
     BeyondFar,
-    /// Beside the window: left, right, above or below, in words.
+    /// Left or right of, above or below the window. The text says which.
     Beside(&'static str),
 }
 
 impl Outside {
-    /// Returns the side in words.
+    /// Returns the position in words, for a message.
     pub fn words(self) -> &'static str {
         match self {
             Self::Behind => "behind the camera",
@@ -92,7 +96,7 @@ impl Outside {
     }
 }
 
-/// The space that a camera sees, between its near and its far plane.
+/// The visible space of a camera, between its near and its far plane.
 pub struct Sight {
     frustum: Frustum,
     near: f64,
@@ -100,7 +104,8 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// Returns `None` if the camera's axes are not known well enough.
+    /// Makes the visible space of a camera. Returns `None` if the camera's axes are too inaccurate;
+    /// see `LEAST_SINE`.
     pub fn new(camera: &Camera, image: &Image) -> Option<Self> {
         Some(Self {
             frustum: Frustum::new(camera, image)?,
@@ -109,7 +114,8 @@ impl Sight {
         })
     }
 
-    /// Returns where an object is if a sphere around it shows that no part of it is in the picture.
+    /// Returns where an object is if its bounding sphere shows that no part of it is in the
+    /// picture. Returns `None` if it may be visible.
     pub fn outside(&self, shape: &Shape) -> Option<Outside> {
         let frustum = &self.frustum;
         let Some(sphere) = shape.bounding_sphere() else {
@@ -132,12 +138,12 @@ impl Sight {
     }
 }
 
-/// Whether samples see squares of a board that they cannot tell apart, so that all of them get one
-/// colour.
+/// Returns whether samples cannot tell the squares of a visible board apart, so that all squares
+/// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    // A camera that looks straight down may have any axes. However its window is turned, it reaches
-    // along x and z at least as far as its shorter side, which it does along one of them with these
-    // axes.
+    // For a camera that looks straight down, up may be parallel to the view direction, and then its
+    // axes are unknown. Any axes will do: however the window is turned, its extents along x and z
+    // are at least its shorter side. With the axes chosen here, one of the extents is equal to it.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
@@ -156,25 +162,27 @@ pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) ->
     frustum.may_see_plane(board.y, camera.near, far) && frustum.are_lost(board)
 }
 
-/// The pyramid of the window that a camera sees through.
+/// Pyramid with its apex in the eye through the camera's window.
 struct Frustum {
     eye: DVec3,
     /// The view direction, of length 1.
     forward: DVec3,
-    /// Right and top of the picture, times half of the window's extents at depth 1.
+    /// Vectors to the right and to the top of the picture, each as long as half of the window at
+    /// depth 1.
     window: [DVec3; 2],
 }
 
 impl Frustum {
-    /// Returns `None` if the axes are not known well enough.
+    /// Makes the pyramid of a camera. Returns `None` if the camera's axes are too inaccurate; see
+    /// `LEAST_SINE`.
     fn new(camera: &Camera, image: &Image) -> Option<Self> {
         let (from, to) = camera.view.ends(camera.eye);
         let forward = (to - from).normalize();
         let right = forward.cross(camera.up.normalize());
-        // The difference of two points that are near to each other and far from the origin has few
+        // If two points are close to each other but far from the origin, their difference has few
         // correct digits.
         let is_precise = from.distance(to) > LEAST_SINE * (from.length() + to.length());
-        // A comparison with NaN is false.
+        // The negation also returns if a length is NaN.
         if !(is_precise && right.length() > LEAST_SINE) {
             return None;
         }
@@ -195,7 +203,7 @@ impl Frustum {
         })
     }
 
-    /// Whether a shape may be seen between two depths.
+    /// Returns whether a shape may be visible between the depths `near` and `far`.
     fn may_see(&self, shape: &Shape, near: f64, far: f64) -> bool {
         let Some(sphere) = shape.bounding_sphere() else {
             let board = shape.checkerboard();
@@ -207,8 +215,8 @@ impl Frustum {
             && !sides.any(|(_, side)| self.is_beyond(sphere, side, 0.0))
     }
 
-    /// Returns the normals of the window's four sides, which point inwards, each with a word for
-    /// what is beyond it. A side contains the eye and is parallel to one of the axes.
+    /// Returns the unit normals of the pyramid's four sides, which point inwards, each with words
+    /// for the space beyond that side.
     fn sides(&self) -> [(&'static str, DVec3); 4] {
         let [right, top] = self.window;
         let side = |axis: DVec3, sign: f64| {
@@ -223,18 +231,23 @@ impl Frustum {
         ]
     }
 
-    /// Whether a whole sphere lies clearly on the outer side of a plane, that is at n·(p − e) <
-    /// bound, n being of length 1.
+    /// Returns whether a whole sphere lies clearly on the outer side of a plane, i.e. whether all
+    /// of its points p satisfy
+    ///
+    ///   n·(p − e) < bound
+    ///
+    /// by a margin. Here e is the eye and n the plane's normal, of length 1.
     fn is_beyond(&self, (center, radius): (DVec3, f64), n: DVec3, bound: f64) -> bool {
         let size = center.length() + radius + self.eye.length() + bound.abs();
-        // A comparison with NaN is false.
+        // The comparison is `false` if a number is NaN.
         n.dot(center - self.eye) + radius < bound - MARGIN * size
     }
 
-    /// Whether the plane of a checkerboard at height h may be seen between two depths.
+    /// Returns whether the plane of a checkerboard at the height h may be visible between the
+    /// depths `near` and `far`.
     ///
-    /// A ray that changes its y by d for each metre of depth meets the plane at the depth
-    /// (h − e_y)/d.
+    /// A ray whose y changes by d per metre of depth hits the plane at the depth (h − e_y)/d, where
+    /// e is the eye.
     fn may_see_plane(&self, height: f64, near: f64, far: f64) -> bool {
         let above = height - self.eye.y;
         let middle = self.forward.y * above.signum();
@@ -250,13 +263,14 @@ impl Frustum {
         above != 0.0 && most > 0.0 && nearest <= far && farthest >= near
     }
 
-    /// Whether nearly all rays meet a board so many squares away from the eye that this number, as
-    /// an `f64`, is always even.
+    /// Returns whether nearly all rays hit the board too many squares away from the eye to tell
+    /// squares apart. The number of squares then has so few significant bits that it is always
+    /// even.
     ///
-    /// A ray r meets the board, which is h above or below the eye, |r_x|·h/|r_y| away along x, and
-    /// likewise along z. In the window |r_x| is at most its extent, and less than 2^−10 of that in
-    /// less than a hundredth of the picture. If the numbers here overflow or vanish, the comparison
-    /// is false.
+    /// A ray r hits a board at the vertical distance h from the eye at the distance |r_x|·h/|r_y|
+    /// along x, and likewise along z. In the window, |r_x| is at most its `extent`, and it is less
+    /// than 2^−10 of the extent in less than a hundredth of the picture. If a number overflows or
+    /// underflows, the comparison is false.
     fn are_lost(&self, board: &Checkerboard) -> bool {
         let [across, up] = self.window;
         let extent = self.forward.abs() + across.abs() + up.abs();

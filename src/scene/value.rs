@@ -1,8 +1,8 @@
-//! Operators and functions on values.
+//! Computes operators and functions on values.
 //!
-//! They know no places in a text: they return a result, or that the types do not go together, and
-//! the caller adds the place. Infinite and NaN results are returned as they are; the caller reports
-//! them.
+//! The functions here know no places in the text. They return a result, or `None` if the types do
+//! not fit, and the caller reports the problem at its place. Infinite and NaN results are returned
+//! as they are; the caller reports them, too.
 
 use glam::DVec3;
 
@@ -31,7 +31,7 @@ pub fn operate(operator: Operator, left: Value, right: Value) -> Option<Value> {
         (Operator::Divide, Number(a), Number(b)) => Number(a / b),
         (Operator::Divide, Angle(a), Number(b)) => Angle(a / b),
         (Operator::Divide, Angle(a), Angle(b)) => Number(ratio(a, b)),
-        // Each coordinate is divided: a factor 1/b would be rounded once more.
+        // Dividing each coordinate by b has one rounding error; multiplying by 1/b would have two.
         (Operator::Divide, Vector(a), Number(b)) => Vector(DVec3::new(a.x / b, a.y / b, a.z / b)),
         _ => return None,
     })
@@ -47,8 +47,8 @@ pub fn negate(value: Value) -> Option<Value> {
     }
 }
 
-/// Returns the quotient of two angles. If both are in one unit, it is the quotient of their
-/// numbers.
+/// Returns the quotient of two angles. If both are in degrees or both in radians, it is the
+/// quotient of these numbers.
 fn ratio(a: Angle, b: Angle) -> f64 {
     if a.radians == 0.0 && b.radians == 0.0 {
         return a.degrees / b.degrees;
@@ -59,7 +59,7 @@ fn ratio(a: Angle, b: Angle) -> f64 {
     a.in_radians() / b.in_radians()
 }
 
-/// Returns the result of a function, or `None` if an argument is of another type. The channels of
+/// Returns the result of a function, or `None` if an argument has another type. The channels of an
 /// `rgb` may be out of range.
 pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     use Value::{Number, Vector};
@@ -84,7 +84,8 @@ pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     })
 }
 
-/// Reduces numbers to one of them.
+/// Reduces the numbers to one with `choose`, pair by pair. Returns `None` if there is no number or
+/// if a value is not a number.
 fn fold(numbers: &[Value], choose: impl Fn(f64, f64) -> f64) -> Option<f64> {
     let mut chosen = None;
     for number in numbers {
@@ -96,21 +97,23 @@ fn fold(numbers: &[Value], choose: impl Fn(f64, f64) -> f64) -> Option<f64> {
     chosen
 }
 
-/// Returns the length of a vector. No square overflows or vanishes.
+/// Returns the length of a vector. The vector is scaled first, so that no square overflows or
+/// underflows.
 fn length(v: DVec3) -> f64 {
     let (scaled, scale) = to_unit_scale(v);
     scaled.dot(scaled).sqrt() * scale
 }
 
-/// Returns the vector of length 1 in the same direction; NaN for the zero vector.
+/// Returns the unit vector in the direction of `v`; NaN for the zero vector.
 fn normalize(v: DVec3) -> DVec3 {
     let (scaled, _) = to_unit_scale(v);
     let length = scaled.dot(scaled).sqrt();
     DVec3::new(scaled.x / length, scaled.y / length, scaled.z / length)
 }
 
-/// Scales a vector by a power of two, so that its greatest coordinate is between 1 and 2. Returns
-/// the inverse power of two as well. Only coordinates that vanish beside the greatest are rounded.
+/// Scales a vector by a power of two so that its greatest absolute coordinate is in [1, 2). Returns
+/// the scaled vector and the inverse of the power. Only coordinates that are negligible compared
+/// with the greatest are rounded.
 fn to_unit_scale(v: DVec3) -> (DVec3, f64) {
     let greatest = v.abs().max_element();
     if greatest == 0.0 || !greatest.is_finite() {

@@ -1,4 +1,4 @@
-//! The table of blocks and their fields.
+//! The table of the kinds of blocks and their fields.
 
 use super::{
     row_types::{BlockKind, BlockRow, Choice, Condition, FieldHandle, FieldRow, Preset, Several},
@@ -9,9 +9,9 @@ use Condition::{
 };
 use Condition::{NotZero, Whole};
 
-/// Makes the fields of a kind of block, each with a row and a handle.
+/// Defines the fields of a kind of block: a table row and a typed handle for each.
 ///
-/// A line gives a field's name, type, preset and help; then any other columns of its row.
+/// A line holds a field's name, type, preset and help, and then any other columns of its row.
 macro_rules! fields {
     ($kind:ident $handles:ident $constant:ident {
         $($name:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*
@@ -49,7 +49,7 @@ macro_rules! fields {
     };
 }
 
-/// A row without choices or other words, which the table's rows start from.
+/// Template of a row, without choices or additional words. The table's rows override parts of it.
 const BLOCK: BlockRow = BlockRow {
     kind: BlockKind::Image,
     name: "",
@@ -360,14 +360,14 @@ const CHECKERBOARD_ROW: BlockRow = BlockRow {
     ..BLOCK
 };
 
-/// Conditions on a number of pixels along a side of the picture.
+/// Conditions on the width or height of the picture in pixels.
 const PIXELS: &[Condition] = &[Whole, AtLeast(1.0), AtMostTwoTo(20)];
 
-/// The condition on a length that must not be zero.
+/// Condition on a length, which must be positive.
 const POSITIVE: &[Condition] = &[MoreThan(0.0)];
 
-/// Words that people try for the centre of an object.
+/// Words that people use by mistake for the centre of an object.
 const POSITION: &str = "position pos at centroid middle location";
 
-/// Words that people try for the colour of an object.
+/// Words that people use by mistake for the colour of an object.
 const COLOR: &str = "fill material";

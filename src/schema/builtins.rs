@@ -8,8 +8,8 @@ pub fn function(name: &str) -> Option<&'static Function> {
     FUNCTIONS.iter().find(|function| function.name == name)
 }
 
-/// Makes the rows of functions: name, types of the arguments and the result, and help; then any
-/// other fields of [`Function`].
+/// Defines rows of functions. A line holds the name, the types of the arguments and of the result,
+/// the help, and then any other fields of [`Function`].
 macro_rules! functions {
     ($($name:ident($($takes:ident)*) $gives:ident $help:literal $($more:ident($value:expr))*;)*) => {
         &[$(Function {
@@ -46,9 +46,9 @@ pub struct Function {
     pub name: &'static str,
     /// The types of the arguments.
     pub takes: &'static [Type],
-    /// The names of the arguments; empty if their types say enough.
+    /// Names of the arguments; empty if the types explain them.
     pub parameters: &'static [&'static str],
-    /// Whether further arguments of the last type may follow.
+    /// Whether more arguments, of the type of the last one, may follow.
     pub more: bool,
     /// The type of the result.
     pub gives: Type,
@@ -73,18 +73,17 @@ impl Function {
         }
     }
 
-    /// Returns the type of an argument by its index.
+    /// Returns the type of the argument at `index`; `None` if the function does not take so many.
     pub fn parameter(&self, index: usize) -> Option<Type> {
         let last = self.takes.last().filter(|_| self.more);
         self.takes.get(index).or(last).copied()
     }
 
-    /// Returns possible arguments in the language's notation.
+    /// Returns example arguments in the language's notation.
     pub fn example(&self) -> &'static [&'static str] {
         use Type::{Angle, Number, Vector};
         match self.takes {
-            // With the arguments of the next arm, the dot product would be 0, which few fields
-            // take.
+            // The arguments in the next arm would give a dot product of 0, which few fields accept.
             [Vector, Vector] if self.gives == Number => &["(1, 2, 3)", "(0, 1, 0)"],
             [Vector, Vector] => &["(1, 0, 0)", "(0, 1, 0)"],
             [Vector] => &["(1, 2, 3)"],
@@ -95,18 +94,18 @@ impl Function {
         }
     }
 
-    /// Writes a call with the example arguments.
+    /// Returns the text of a call with the example arguments.
     pub fn call(&self) -> String {
         format!("{}({})", self.name, self.example().join(", "))
     }
 
-    /// Whether a number of arguments is allowed.
+    /// Returns whether the function takes `count` arguments.
     pub fn accepts(&self, count: usize) -> bool {
         count == self.takes.len() || (self.more && count > self.takes.len())
     }
 }
 
-/// The predefined names other than colours and functions, each with its value and a line of help.
+/// Predefined names except colours and functions, each with its value and a line of help.
 pub const CONSTANTS: &[(&str, Value, &str)] = &[
     (
         "pi",

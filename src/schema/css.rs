@@ -1,19 +1,20 @@
 //! The named colours of CSS (CSS Color Module Level 4, section 6.1).
 //!
-//! They are a table here, because a library with the same table brings nine crates to compile.
+//! The table is copied here, because a library with this table would add nine crates to the build.
 
 use std::{collections::HashMap, sync::LazyLock};
 
 use crate::color::Color;
 
-/// Lines of a name and its colour, in lower case and alphabetical order.
+/// Table of colours, in alphabetical order. A line holds a name in lower case and its hexadecimal
+/// digits.
 const COLORS: &str = include_str!("css_colors.txt");
 
 fn rows() -> impl Iterator<Item = (&'static str, &'static str)> {
     COLORS.lines().filter_map(|line| line.split_once(" #"))
 }
 
-/// Returns the colour of a name, whatever its case.
+/// Returns the colour of a name, in any capitalization. Returns `None` if there is no such colour.
 pub fn color(name: &str) -> Option<Color> {
     static ROWS: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| rows().collect());
     let digits = ROWS.get(&*name.to_ascii_lowercase())?;
@@ -21,7 +22,7 @@ pub fn color(name: &str) -> Option<Color> {
     Some(Color::from_bytes(bytes))
 }
 
-/// Returns the names, in lower case and alphabetical order.
+/// Returns the names of the colours, in lower case and alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
     rows().map(|(name, _)| name)
 }

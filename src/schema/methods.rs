@@ -6,8 +6,8 @@ use thiserror::Error;
 
 use crate::suggest::{self, is_among};
 
-/// Makes the rows of techniques: the variant, the word in the language, a line of help, and other
-/// words that people try.
+/// Defines the sampling techniques. A line holds the variant, the name in the language, a line of
+/// help, and other words that people use by mistake.
 macro_rules! methods {
     ($($method:ident $name:literal $help:literal $tried:literal)*) => {
         /// A sampling technique.
@@ -17,7 +17,7 @@ macro_rules! methods {
         }
 
         impl Method {
-            /// Returns the technique's word in the language.
+            /// Returns the technique's name in the language.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$method => $name,)*
@@ -28,7 +28,7 @@ macro_rules! methods {
         /// Every sampling technique, with a line of help.
         pub const METHODS: &[(Method, &str)] = &[$((Method::$method, $help)),*];
 
-        /// Other words that people try for methods.
+        /// Words that people use by mistake for each technique, separated by spaces.
         const ALSO_TRIED: &[(Method, &str)] = &[$((Method::$method, $tried)),*];
     };
 }
@@ -47,7 +47,7 @@ methods! {
 }
 
 impl Method {
-    /// The techniques that take samples, in the order of the language's table.
+    /// Techniques that take samples, i.e. all except `exact`, in the order of the language's table.
     pub const SAMPLED: [Self; 9] = [
         Self::Regular,
         Self::Random,
@@ -82,13 +82,14 @@ impl FromStr for Method {
 #[error("there is no method `{0}`; the methods are {list}", list = suggest::list(method_names()))]
 pub struct UnknownMethod(String);
 
-/// Returns a method by its name.
+/// Returns a sampling technique by its name in the language.
 pub fn method(name: &str) -> Option<Method> {
     let mut methods = METHODS.iter().map(|&(method, _)| method);
     methods.find(|method| method.name() == name)
 }
 
-/// Returns the method that was probably meant by a word, if one is near.
+/// Returns the name of the technique that was probably meant by `written`. Returns `None` if no
+/// name is similar.
 pub fn nearest_method(written: &str) -> Option<&'static str> {
     let mut tried = ALSO_TRIED.iter();
     let tried = tried.find(|(_, words)| is_among(written, words));
@@ -96,14 +97,14 @@ pub fn nearest_method(written: &str) -> Option<&'static str> {
     tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
-/// Whether a method is the only one that a word can mean.
+/// Returns whether the technique named `near` is the only one that `written` can mean.
 pub fn is_sure_method(written: &str, near: &str) -> bool {
     let mut tried = ALSO_TRIED.iter();
     tried.any(|(method, words)| method.name() == near && is_among(written, words))
         || suggest::is_only_near(written, near, method_names())
 }
 
-/// Returns the names of the methods.
+/// Returns the names of the sampling techniques.
 pub fn method_names() -> impl Iterator<Item = &'static str> {
     METHODS.iter().map(|(method, _)| method.name())
 }

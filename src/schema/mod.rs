@@ -1,11 +1,12 @@
-//! The facts of the language: its blocks and their fields, types, defaults and conditions, each
+//! The tables of the language: its blocks and their fields, types, defaults and conditions, each
 //! with a line of help.
 //!
-//! Each fact stands here once. Lowering fills the scene from these rows, suggestions are chosen
-//! among them, and the language's reference is tested against them.
+//! Each fact about the language stands here once. Lowering fills the scene from these tables,
+//! suggestions are chosen from them, and the language's reference is tested against them.
 //!
-//! `types` defines the language's types and `row_types` the columns of the table. The rows are in
-//! `blocks`, `methods` and `builtins`, and the names of colours in `css`. Lookups are in this file.
+//! `types` defines the language's types and `row_types` the columns of the tables. The rows are in
+//! `blocks`, `methods` and `builtins`, and the names of colours in `css`. This file has the
+//! lookups.
 
 mod blocks;
 mod builtins;
@@ -31,13 +32,13 @@ pub fn block(name: &str) -> Option<&'static BlockRow> {
     BLOCKS.iter().find(|block| block.name == name)
 }
 
-/// Whether a word is the keyword of a block or the name of a field.
+/// Returns whether a word is the keyword of a block or the name of a field.
 pub fn is_word(word: &str) -> bool {
     let mut blocks = BLOCKS.iter();
     blocks.any(|block| block.name == word || block.field(word).is_some())
 }
 
-/// Returns the row of a kind of block.
+/// Returns the table's row for a kind of block.
 pub fn of_kind(kind: BlockKind) -> &'static BlockRow {
     &BLOCKS[kind as usize]
 }
@@ -47,7 +48,8 @@ pub fn block_names() -> impl Iterator<Item = &'static str> {
     BLOCKS.iter().map(|block| block.name)
 }
 
-/// Returns the block that was probably meant by a word, if one is near.
+/// Returns the row of the block whose keyword was probably meant by `written`. Returns `None` if no
+/// keyword is similar.
 pub fn nearest_block(written: &str) -> Option<&'static BlockRow> {
     let tried = BLOCKS
         .iter()
@@ -55,12 +57,12 @@ pub fn nearest_block(written: &str) -> Option<&'static BlockRow> {
     tried.or_else(|| suggest::nearest(written, block_names()).and_then(block))
 }
 
-/// Returns the row of a block by its keyword, or by a word that is near to one.
+/// Returns the row of a block by its keyword, or else by a word that is similar to a keyword.
 pub fn block_or_nearest(written: &str) -> Option<&'static BlockRow> {
     block(written).or_else(|| nearest_block(written))
 }
 
-/// The meaning of a predefined name.
+/// Meaning of a predefined name.
 #[derive(Clone, Copy, Debug)]
 pub enum Predefined {
     /// A colour or a constant.
@@ -70,7 +72,7 @@ pub enum Predefined {
 }
 
 impl Predefined {
-    /// Returns what the name stands for, in words for messages.
+    /// Returns the kind of meaning in words, for messages, such as "a function".
     pub fn noun(&self) -> &'static str {
         match self {
             Self::Function(_) => "a function",
@@ -80,7 +82,7 @@ impl Predefined {
     }
 }
 
-/// Returns the meaning of a name, if it is predefined.
+/// Returns the meaning of a predefined name; `None` for any other name.
 pub fn predefined(name: &str) -> Option<Predefined> {
     let color = css::color(name).map(Value::Color);
     let constant = || CONSTANTS.iter().find(|(constant, ..)| *constant == name);

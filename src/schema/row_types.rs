@@ -1,4 +1,4 @@
-//! The rows of the language's table: what is known of a kind of block, and of a field.
+//! Columns of the language's tables: what is known about a kind of block and about a field.
 
 use std::{fmt, marker::PhantomData};
 
@@ -17,7 +17,7 @@ pub enum BlockKind {
     Image,
     /// The camera.
     Camera,
-    /// The samples.
+    /// The sampler.
     Sampler,
     /// A sphere.
     Sphere,
@@ -32,51 +32,56 @@ pub enum BlockKind {
 /// The table's row for a kind of block.
 #[derive(Debug)]
 pub struct BlockRow {
-    /// The kind.
+    /// Kind of block.
     pub kind: BlockKind,
     /// The keyword that the block starts with.
     pub name: &'static str,
     /// The keyword with its article, for messages.
     pub noun: &'static str,
-    /// Whether the block describes an object: a scene may have many, and each may have a name.
+    /// Whether the block describes an object. A scene may have many objects, and each may have a
+    /// name.
     pub is_object: bool,
     /// One line of help.
     pub help: &'static str,
-    /// The fields.
+    /// Rows of the block's fields.
     pub fields: &'static [FieldRow],
-    /// Groups of fields that say the same in several ways.
+    /// Groups of fields that express the same thing in different ways and exclude each other.
     pub choices: &'static [Choice],
-    /// Conditions between fields, written with the fields' names.
+    /// Conditions that relate several fields, as formulas with the fields' names.
     pub together: &'static [&'static str],
-    /// Words that people try for several of the fields at once.
+    /// Words that people use by mistake to give several fields at once.
     pub several: &'static [Several],
-    /// Sets of words that people try together for the parts of one field, or for one field each.
+    /// Sets of words that people use together by mistake, such as three names for the three
+    /// coordinates of one field.
     ///
-    /// The words of a set are separated by blanks, and sets by `|`. The second part names the one
-    /// field whose parts the words stand for, or as many fields as there are words.
+    /// The words of a set are separated by spaces, and sets by `|`. The second element names either
+    /// the one field whose parts the words stand for, or one field for each word.
     pub parted: &'static [(&'static str, &'static [&'static str])],
-    /// Other words that people try for the keyword.
+    /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,
-    /// Words of other programs that no field stands for, each with what to write instead.
+    /// Words of other programs that correspond to no field, each with the help, which says what to
+    /// write instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
 }
 
-/// Several ways to say the same, of which a block takes one.
+/// Fields that exclude each other, grouped into ways to express the same thing. A block uses one of
+/// the ways.
 #[derive(Debug)]
 pub struct Choice {
-    /// The fields of each way. A block that takes a way needs those of its fields that are
-    /// [alternatives](Preset::Alternative).
+    /// The fields of each way. A block that uses a way must have those of its fields whose preset
+    /// is [`Preset::Alternative`].
     pub ways: &'static [&'static [&'static str]],
-    /// Why only one of them can be given.
+    /// The reason why a block can use only one of the ways, for messages.
     pub why: &'static str,
 }
 
-/// Words that people try for several fields at once, with a list of the fields' values.
+/// Words that people use by mistake to give several fields at once, followed by a list of the
+/// values.
 #[derive(Debug)]
 pub struct Several {
-    /// The words.
+    /// The words, separated by spaces.
     pub words: &'static str,
-    /// The fields.
+    /// Names of the fields, in the order of the values.
     pub fields: &'static [&'static str],
 }
 
@@ -85,26 +90,29 @@ pub struct Several {
 pub struct FieldRow {
     /// The field's name.
     pub name: &'static str,
-    /// The type of its values.
+    /// The type of the field's values.
     pub takes: Type,
-    /// The value of a field that is not given.
+    /// Default of the field, if it has one.
     pub preset: Preset,
-    /// Conditions that every value must meet.
+    /// Conditions that every value of the field must meet.
     pub must: &'static [Condition],
     /// One line of help.
     pub help: &'static str,
-    /// Other words that people try for the field.
+    /// Words that people use by mistake for the field, separated by spaces.
     pub also_tried: &'static str,
-    /// Words that people try for this field and for others, so that a program cannot choose.
+    /// Words that people use by mistake both for this field and for others, so that the meaning is
+    /// uncertain.
     pub perhaps: &'static str,
-    /// Words that people try for twice the field's value.
+    /// Words that people use by mistake for twice the field's value, such as `diameter` for a
+    /// radius.
     pub doubled: &'static str,
-    /// A possible value in the language's notation: for messages, and for editors to insert.
+    /// An example value in the language's notation, for messages and for editors to insert.
     pub example: &'static str,
 }
 
 impl FieldRow {
-    /// Returns the row of a field without conditions or other words. The example is the default.
+    /// Returns the row of a field without conditions or additional words. Its example is its
+    /// default.
     pub(super) const fn new(
         name: &'static str,
         takes: Type,
@@ -127,22 +135,23 @@ impl FieldRow {
         }
     }
 
-    /// Whether a value meets the field's conditions. Conditions on other types hold.
+    /// Returns whether a value meets the field's conditions. A condition on another type of value
+    /// counts as met.
     pub fn allows(&self, value: Value) -> bool {
         self.must.iter().all(|condition| condition.holds(value))
     }
 }
 
-/// A field of one kind of block whose values are of the Rust type `T`.
+/// Typed handle of a field, whose values have the Rust type `T`.
 ///
-/// Code names a field by such a constant, so that a misspelt name does not compile.
+/// Code refers to a field by such a constant, so that a misspelt name does not compile.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldHandle<T> {
     /// The field's name.
     pub name: &'static str,
     /// The kind of block that has the field.
     pub kind: BlockKind,
-    /// The index of the field's row among those of its block.
+    /// Index of the field's row in [`BlockRow::fields`].
     pub index: usize,
     values: PhantomData<T>,
 }
@@ -158,31 +167,31 @@ impl<T> FieldHandle<T> {
     }
 }
 
-/// The value of a field that is not given.
+/// Default of a field: what holds if a block does not have the field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preset {
-    /// None: the field must be given.
+    /// No default: the field is required.
     Required,
-    /// None: the field must be given if its way of a [`Choice`] is taken.
+    /// No default: the field is required if the block uses its way of a [`Choice`].
     Alternative,
-    /// None: the field may be left out.
+    /// No default: the field may be left out.
     Nothing,
     /// A default, in the language's notation.
     Value(&'static str),
 }
 
-/// A condition on a field's value, beyond its type.
+/// Condition on a field's value, in addition to its type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Condition {
     /// A number without a fraction.
     Whole,
-    /// A number greater than this one.
+    /// A number greater than the given one.
     MoreThan(f64),
-    /// A number not less than this one.
+    /// A number of at least the given one.
     AtLeast(f64),
-    /// A number not greater than 2 to this power.
+    /// A number of at most 2 to the given power.
     AtMostTwoTo(u32),
-    /// A number less than 2 to this power.
+    /// A number less than 2 to the given power.
     LessThanTwoTo(u32),
     /// An angle between 0 and 180 degrees, both excluded.
     LessThanHalfTurn,
@@ -193,7 +202,8 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Whether a value meets the condition. Conditions on other types hold.
+    /// Returns whether a value meets the condition. A condition on another type of value counts as
+    /// met.
     pub fn holds(&self, value: Value) -> bool {
         let two_to = |power: u32| (1_u64 << power) as f64;
         match (*self, value) {
@@ -212,7 +222,7 @@ impl Condition {
     }
 }
 
-/// The condition in words, after "must be".
+/// Formats the condition as words that follow "must be".
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -234,13 +244,13 @@ impl BlockRow {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns the fields that a word may stand for, if it may stand for several.
+    /// Returns all fields that `written` may stand for, if its meaning is uncertain.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
     }
 
-    /// Returns what to write instead of a word of other programs that no field stands for.
+    /// Returns the help for a word of other programs that corresponds to no field.
     pub fn elsewhere(&self, written: &str) -> Option<&'static str> {
         let mut rows = self.elsewhere.iter();
         let row = rows.find(|(words, _)| is_among(written, words));
@@ -252,20 +262,20 @@ impl BlockRow {
         self.fields.iter().map(|field| field.name)
     }
 
-    /// Returns the choice that a field is a part of.
+    /// Returns the choice that contains a field, if there is one.
     fn choice(&self, field: &str) -> Option<&'static Choice> {
         let holds = |choice: &&Choice| choice.ways.iter().any(|way| way.contains(&field));
         self.choices.iter().find(holds)
     }
 
-    /// Returns the fields that a field excludes: those of the other ways of its choice.
+    /// Returns the fields that a field excludes: the fields of the other ways of its [`Choice`].
     pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
         let ways = self.choice(field).into_iter().flat_map(|it| it.ways);
         let others = ways.filter(move |way| !way.contains(&field));
         others.flat_map(|way| way.iter().copied())
     }
 
-    /// Returns the conditions between fields that mention a field.
+    /// Returns the conditions in [`Self::together`] that contain a field's name.
     pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
         self.together.iter().copied().filter(move |rule| {
             let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
@@ -273,8 +283,8 @@ impl BlockRow {
         })
     }
 
-    /// Returns the fields that a block needs: the required ones, and those of the first way of each
-    /// choice that have no default.
+    /// Returns the fields of a minimal block: the required ones, and of each choice those fields of
+    /// the first way that have no default.
     pub fn least_fields(&self) -> Vec<&'static FieldRow> {
         let is_needed = |field: &&FieldRow| match field.preset {
             Preset::Required => true,
@@ -287,7 +297,7 @@ impl BlockRow {
         self.fields.iter().filter(is_needed).collect()
     }
 
-    /// Writes a block with the fields that it needs.
+    /// Returns the text of a minimal block, with example values.
     pub fn example(&self) -> String {
         let fields = self.least_fields().into_iter();
         let fields = fields.map(|field| format!("{} {}", field.name, field.example));
@@ -299,8 +309,8 @@ impl BlockRow {
         }
     }
 
-    /// Returns the field whose name is a word, apart from capitals and `_`; or else the field that
-    /// people try the word for.
+    /// Returns the field named `written`, ignoring case and `_`, or else the field for which people
+    /// use `written` by mistake.
     pub fn field_tried(&self, written: &str) -> Option<&'static FieldRow> {
         let find = |words: fn(&FieldRow) -> &'static str| {
             let mut fields = self.fields.iter();
@@ -309,8 +319,8 @@ impl BlockRow {
         find(|field| field.name).or_else(|| find(|field| field.also_tried))
     }
 
-    /// Returns the field that was probably meant, if its name is near to what is written or to a
-    /// word within it, as in `near_clip` and `eyepoint`.
+    /// Returns the field that was probably meant by `written`: its name is similar to `written` or
+    /// occurs in it as a word, as in `near_clip` and `eyepoint`.
     pub fn nearest_field(&self, written: &str) -> Option<&'static FieldRow> {
         let words = suggest::words(written);
         let starts = |field: &&FieldRow| field.name.len() > 2 && written.starts_with(field.name);

@@ -1,4 +1,4 @@
-//! The language's types, and values of them.
+//! The language's types and values.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use crate::{color::Color, math::Angle, numbers};
 pub enum Type {
     /// A number.
     Number,
-    /// A number with a unit.
+    /// An angle: a number with a unit.
     Angle,
     /// A list of three numbers.
     Vector,
@@ -20,7 +20,7 @@ pub enum Type {
     Color,
     /// A pair of colours.
     Colors,
-    /// A list of three colours: those of the faces of a box across x, y and z.
+    /// A list of three colours, for the faces of a box across x, y and z.
     FaceColors,
     /// The name of a sampling technique.
     Method,
@@ -55,7 +55,7 @@ impl Type {
         }
     }
 
-    /// Returns the help that says what to write for a value of the type.
+    /// Returns a help text with an example value of the type.
     pub fn such_as(self) -> &'static str {
         match self {
             Self::Number => "write a number, such as `2`",
@@ -68,8 +68,8 @@ impl Type {
         }
     }
 
-    /// Returns the type and the number of a list's elements: of a vector three numbers, of a pair
-    /// two colours. Returns `None` for a type that is no list.
+    /// Returns the type and the number of a list's elements: three numbers for a vector, two
+    /// colours for a pair. Returns `None` if the type is not a list.
     pub fn parts(self) -> Option<(Self, usize)> {
         match self {
             Self::Vector => Some((Self::Number, 3)),
@@ -113,7 +113,7 @@ impl Value {
         }
     }
 
-    /// Whether no number in the value is infinite or NaN.
+    /// Returns whether all numbers in the value are finite.
     pub fn is_finite(&self) -> bool {
         match self {
             Self::Number(number) => number.is_finite(),
@@ -124,7 +124,7 @@ impl Value {
     }
 }
 
-/// The value in the language's notation, with six digits of each number, for people to read.
+/// Formats the value in the language's notation, for people to read: numbers have six digits.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -143,16 +143,16 @@ impl fmt::Display for Value {
     }
 }
 
-/// A Rust type that holds the values of one of the language's types.
+/// Rust type for the values of one of the language's types.
 pub trait FieldValue: Copy {
-    /// Returns the contents of a value; `None` if the value is of another type.
+    /// Returns the contents of a value, or `None` if the value has another type.
     fn from_value(value: Value) -> Option<Self>;
 }
 
-/// Names the Rust type of each of the language's types, and unpacks values to it.
+/// Defines the Rust type of each of the language's types, and its conversion from [`Value`].
 macro_rules! contents {
     ($($variant:ident $contents:ty;)*) => {
-        /// For each of the language's types the Rust type of its values.
+        /// The Rust types of values, under the names of the language's types.
         pub(super) mod contents {
             $(pub type $variant = $contents;)*
         }

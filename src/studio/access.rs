@@ -1,11 +1,11 @@
-//! Access control of the host.
+//! Controls access to the host.
 //!
-//! The page's files hold no secret and are served to any request for this host. A WebSocket
-//! connection, and with it the scene's file, is only for pages that show a token. Other pages in
-//! the same browser can connect as well, but cannot forge the headers that are checked: `Host` (the
-//! name of a foreign host may resolve to this machine) and `Origin`. A browser never sends a token
-//! by itself: there are no cookies, which would be sent to all servers of a machine, and the token
-//! is in the fragment of the address, which the browser does not send.
+//! The page's files contain no secret and are served to any request for this host. A WebSocket
+//! connection gives access to the scene's file, so it requires a token. Other pages in the same
+//! browser can connect as well, but they cannot forge the headers that are checked: `Host`, because
+//! the name of a foreign host may resolve to this machine, and `Origin`. The browser never sends a
+//! token by itself: the token is in the fragment of the address, which is not sent, and cookies,
+//! which would be sent to all servers of a machine, are not used.
 
 use std::{
     io,
@@ -27,12 +27,12 @@ use crate::lock::lock;
 /// Path of the WebSocket.
 pub const SOCKET: &str = "/socket";
 
-/// Lifetime of the token in the address that a browser is started with. Even on a slow machine, a
-/// browser starts within this time.
+/// Lifetime of the token in the address with which the host starts a browser; later, the token is
+/// refused. Even on a slow machine, a browser starts within this time.
 const LIFETIME: Duration = Duration::from_secs(60);
 
-/// Returns the status and the reason if a request to the host at `port` is refused, with or without
-/// a token. Returns `None` if it is not refused.
+/// Returns the status and the reason if a request to the host at `port` must be refused, whether it
+/// has a token or not. Returns `None` if it is allowed.
 pub fn refusal(
     port: u16,
     method: &Method,
@@ -80,7 +80,7 @@ pub struct Access {
     started: Mutex<Started>,
 }
 
-/// The browser that the host starts. The token that it starts with is in a command line, which all
+/// State of the browser that the host starts. This browser's token is in a command line, which all
 /// users of the machine can read.
 #[derive(Debug)]
 struct Started {
@@ -98,7 +98,7 @@ struct BrowserSession {
     is_over: Arc<AtomicBool>,
 }
 
-/// Permission for a WebSocket connection.
+/// Permission for a page to use a WebSocket connection.
 #[derive(Debug)]
 pub struct Pass {
     /// Token that the page shows when it connects again.
@@ -107,8 +107,8 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// Returns whether the connection must end, because the address that it began with was used
-    /// twice.
+    /// Returns whether the connection must end, because a second page has used the address with
+    /// which this one began.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::SeqCst)
     }
@@ -119,9 +119,9 @@ impl Pass {
 pub enum NotAdmitted {
     /// The token is not one of this host; it may be from an earlier run.
     Unknown = 4001,
-    /// The address that a browser was started with was used too late.
+    /// The address with which a browser was started was used too late.
     Late = 4002,
-    /// The address that a browser was started with was used twice.
+    /// The address with which a browser was started was used twice.
     Twice = 4003,
 }
 
@@ -130,7 +130,7 @@ impl Access {
     ///
     /// # Errors
     ///
-    /// The system's random number generator fails.
+    /// Returns an error if the system's random number generator fails.
     pub fn new() -> io::Result<Self> {
         Ok(Self {
             printed: secret()?,
@@ -142,19 +142,19 @@ impl Access {
         })
     }
 
-    /// Returns the token of the printed address, and the token of the address that a browser is
-    /// started with.
+    /// Returns the token of the printed address, and the token of the address with which a browser
+    /// is started.
     pub fn tokens(&self) -> [String; 2] {
         let started = lock(&self.started);
         [self.printed.clone(), started.once.clone()]
     }
 
-    /// Admits a page that shows a token at the time `now`. If the token in the command line is
-    /// shown twice, also ends the session of the first page.
+    /// Admits a page that shows a token at the time `now`. If the token from the command line is
+    /// shown a second time, also ends the session of the first page.
     ///
     /// # Errors
     ///
-    /// The token is not valid, or is no longer valid.
+    /// Returns the reason if the token is unknown, too late or used twice.
     pub fn admit(&self, token: &str, now: Instant) -> Result<Pass, NotAdmitted> {
         let mut started = lock(&self.started);
         if is_equal(token, &self.printed) {
@@ -207,7 +207,7 @@ impl BrowserSession {
 ///
 /// # Errors
 ///
-/// The system's random number generator fails.
+/// Returns an error if the system's random number generator fails.
 pub fn secret() -> io::Result<String> {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).map_err(|error| io::Error::other(error.to_string()))?;
@@ -230,8 +230,8 @@ mod tests {
         let late = Access::new().unwrap();
         let [printed, once] = late.tokens();
         assert_eq!(late.admit(&once, later(70)).err(), Some(NotAdmitted::Late));
-        // A token that was shown in time is used up. Whenever it is shown again, both pages are
-        // refused: the first page may not be the user's.
+        // A token that was shown in time is used up. If it is shown again at any time, both pages
+        // are refused, since the first page may not be the user's.
         let used = Access::new().unwrap();
         let [_, once] = used.tokens();
         let first = used.admit(&once, later(50)).unwrap();

@@ -1,8 +1,8 @@
-//! Limits on connections that have not shown a token: time, bytes, and their number.
+//! Limits the time, the bytes and the number of connections that have not shown a token.
 //!
-//! Any program on this machine can connect, and can keep a connection open without sending
-//! anything. If there are too many such connections, the oldest is closed, so idle connections do
-//! not keep others out.
+//! Any program on this machine can connect and keep a connection open without sending anything. If
+//! there are too many such connections, the oldest is closed, so that idle connections do not
+//! exclude others.
 
 use std::{
     collections::VecDeque,
@@ -28,17 +28,18 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum number of connections without a token. A page has up to three while it loads, and one
-/// until it has shown its token.
+/// Maximum number of connections without a token; for a further one, the oldest is closed. A page
+/// has up to three while it loads, and one until it has shown its token.
 const MOST: usize = 64;
 
-/// Lifetime of a connection without a token. It suffices for a request and the start of the
-/// response, or for the handshake of a WebSocket and the token. On one machine these take
-/// milliseconds.
+/// Lifetime of a connection without a token, which is then closed. It suffices for a request and
+/// the start of the response, or for the handshake of a WebSocket and the token. On one machine,
+/// these take milliseconds.
 const LIFETIME: Duration = Duration::from_secs(5);
 
-/// Maximum number of bytes that a connection may send before the token. A browser's request has
-/// about one KiB, unless other programs on this machine have set many cookies.
+/// Maximum number of bytes that a connection may send before its token. A connection that sends
+/// more fails. A browser's request has about 1 KiB, unless other programs on this machine have set
+/// many cookies.
 const LONGEST: usize = 32 << 10;
 
 /// State of a connection, shared by the connection and its request handlers.
@@ -105,7 +106,7 @@ impl Listener for Door {
 
     async fn accept(&mut self) -> (Connection, SocketAddr) {
         let (stream, address) = Listener::accept(&mut self.listener).await;
-        // If the option cannot be set, small messages are only slower.
+        // Without this option, small messages are sent later, but nothing fails.
         let _ = stream.set_nodelay(true);
         self.make_place();
         let visitor = Visitor::default();
@@ -124,8 +125,8 @@ pub struct Connection {
     visitor: Visitor,
     /// Number of bytes that may still be sent before the token.
     left: usize,
-    /// Becomes ready when the time is over or a newer connection needs the place; `None` after
-    /// that.
+    /// Future that becomes ready when the connection's time is over or a newer connection needs its
+    /// place; `None` after that.
     stay: Option<Pin<Box<dyn Future<Output = ()> + Send>>>,
 }
 
@@ -143,7 +144,8 @@ impl Connection {
         }
     }
 
-    /// Fails if no token was shown and the time is over or the place is needed.
+    /// Fails if no token was shown and the connection's time is over or a newer connection needs
+    /// its place.
     fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
         if self.visitor.is_admitted() {
             return Ok(());

@@ -1,8 +1,8 @@
 //! Serves one page over a WebSocket connection.
 //!
-//! Requests of a page supersede its earlier ones, so all messages that have arrived are handled
-//! before the next slice of work. If there is no work, the thread waits for the socket, and
-//! regularly checks the scene's file and the picture that another thread renders.
+//! A request of a page may supersede earlier ones, so all messages that have arrived are handled
+//! before the next slice of work. Without work, the thread waits for the socket, and regularly
+//! checks the scene's file and the picture that another thread renders.
 
 use std::{
     convert::Infallible,
@@ -34,27 +34,28 @@ use crate::{
     threads,
 };
 
-/// Maximum length of a message from a page, in bytes. It is more than any text that an editor in a
-/// browser can hold, and small compared with the memory of a machine.
+/// Maximum length of a message from a page, in bytes; a longer one ends the connection. It is
+/// longer than any text that an editor in a browser can hold, and small compared with the memory of
+/// a machine.
 pub const LONGEST: usize = 64 << 20;
 
-/// Time to wait for the socket before the file and the picture are checked; too short to be
-/// noticed.
+/// Time to wait for the socket before the file and the picture are checked. A user does not notice
+/// a delay of this length.
 const WAIT: Duration = Duration::from_millis(50);
 
-/// Time after which a page that does not receive a message is considered gone. A browser on this
-/// machine receives it at once, unless it is stopped.
+/// Maximum time to wait for a page to receive a message. After that, the connection ends. A browser
+/// on this machine receives messages at once, unless it is stopped.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Interval between two progress messages of a download.
 const PROGRESS: Duration = Duration::from_millis(200);
 
-/// Time for the page to answer a close frame. It is shorter than the time that the host, when it
-/// ends, waits for its connections.
+/// Maximum time to wait for the page's answer to a close frame. It is shorter than the time for
+/// which the host, when it ends, waits for its connections.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// Serves the page until it disconnects, its pass is over, or the host ends. The runtime transports
-/// the messages.
+/// Serves the page until it disconnects, its pass is over, or the host ends. The tasks of `runtime`
+/// transport the messages.
 pub fn converse(
     runtime: Handle,
     socket: WebSocket,
@@ -93,7 +94,7 @@ struct Conversation<'a> {
     server: Server,
     /// The scene's file, which all pages share.
     file: &'a Mutex<SceneFile>,
-    /// The version of the file that the page knows; 0 before it knows any.
+    /// Version of the file that the page has received; 0 before the first one.
     known: u64,
     download: Option<Download>,
 }
@@ -140,8 +141,9 @@ impl Conversation<'_> {
         Err(Closing(Some(close_code::NORMAL)))
     }
 
-    /// Reads a message of the page; returns `None` if there is none yet. If there is work to do,
-    /// does not wait at all, since even the shortest timeout, a millisecond, would be too long.
+    /// Reads a message of the page. Returns `None` if there is none yet. If the server has work to
+    /// do, does not wait for one: even the shortest timeout, a millisecond, would delay the work
+    /// too much.
     fn read(&mut self) -> Result<Option<SocketMessage>, Closing> {
         let socket = &mut self.socket;
         let read = if self.server.is_busy() {
@@ -180,9 +182,10 @@ impl Conversation<'_> {
         }
     }
 
-    /// Closes the socket with a code, if there is one. Messages that the page has sent are still
-    /// read for a moment: unread messages would reset the connection before the code arrives. If
-    /// the page itself sent a close frame, the socket answers it meanwhile.
+    /// Closes the socket with a code, if there is one. Until the socket is closed, messages that
+    /// the page has sent are still read for a short time, because unread messages would reset the
+    /// connection before the code arrives. If the page itself sent a close frame, the socket
+    /// answers it meanwhile.
     fn close(&mut self, Closing(code): Closing) {
         if let Some(code) = code {
             let reason = "".into();
@@ -201,8 +204,8 @@ impl Conversation<'_> {
         texts.try_for_each(|text| self.send(SocketMessage::text(text)))
     }
 
-    /// Sends the file to the page if the file differs from what the page knows. If another page
-    /// holds the lock, does nothing; the next call will send the file.
+    /// Sends the file to the page if the page has another version. If another page holds the file's
+    /// lock, does nothing; the next call will send the file.
     fn send_file(&mut self) -> Result<(), Closing> {
         let mut file = match self.file.try_lock() {
             Ok(file) => file,
@@ -213,7 +216,8 @@ impl Conversation<'_> {
         if version == self.known {
             return Ok(());
         }
-        // Drafts are sent only to a new page: any other page has a text that a draft would replace.
+        // Drafts are sent only to a new page. Any other page has a text, which a draft would
+        // replace.
         let is_first = self.known == 0;
         let drafts = if is_first { file.drafts() } else { Vec::new() };
         self.known = version;
@@ -280,7 +284,8 @@ impl Conversation<'_> {
                 let is_new = file.path().is_none();
                 match file.save(text, field("base"), field("name")) {
                     Ok(version) => {
-                        // The page knows the file's content now, but not the path of a new scene.
+                        // The page has the file's new content now. It does not know the path of a
+                        // new scene, so a new scene is sent.
                         if !is_new {
                             self.known = version;
                         }

@@ -1,7 +1,7 @@
-//! Downloads of a page: the picture of a text as a file, rendered with the scene's own sampler.
+//! Renders the picture of a text as a file that a page downloads, with the scene's own sampler.
 //!
-//! The engine in the browser has one thread and renders a file in slices ([`Sliced`]). The host on
-//! this machine uses several threads (`threaded_download`).
+//! The engine in the browser has one thread and renders the file in slices ([`Sliced`]). The host
+//! on this machine uses several threads (`threaded_download`).
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use lsp_server::{Message, Notification, Request, RequestId};
@@ -27,7 +27,7 @@ pub fn is_asked_for(request: &Request) -> bool {
     [PNG, EXR].contains(&&*request.method)
 }
 
-/// Makes the message that a share of a picture, from 0 to 1, is done.
+/// Makes the message about the progress of a render: `share` is the part that is done, from 0 to 1.
 pub fn progress(share: f64) -> Message {
     let params = json!({ "share": share });
     Notification::new("studio/progress".to_owned(), params).into()
@@ -66,12 +66,12 @@ pub struct Sliced {
 }
 
 impl Sliced {
-    /// Begins the file that a request asks for. EXR is refused, since the tables of its compression
-    /// methods would be a quarter of what a browser has to load.
+    /// Begins to render the file that a request asks for. EXR is refused, since the tables of its
+    /// compression methods would be a quarter of the code that a browser loads.
     ///
     /// # Errors
     ///
-    /// The request is refused, for the reason in the error.
+    /// Returns the reason if the request is refused.
     pub fn new(request: &Request) -> Result<Self, Refusal> {
         catch_panics(|| {
             if request.method == EXR {

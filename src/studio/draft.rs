@@ -1,9 +1,9 @@
-//! Drafts of a scene: texts that a page has not saved. Only the user can read them.
+//! Stores drafts of a scene, i.e. texts that a page has not saved. Only the user can read them.
 //!
 //! The drafts of a scene are in a file in the user's state folder, named after the scene's
-//! canonical path. A browser's own storage would not do: it belongs to a port, and the host has
-//! another port in each run. Each page stores one draft under its own key, so that no page
-//! overwrites another's. A draft is removed when its text is saved or when it is too old.
+//! canonical path. A browser's own storage is not suitable: it belongs to a port, and the host has
+//! another port in each run. Each page stores one draft under its own key, so that pages do not
+//! overwrite each other's drafts. A draft is removed when its text is saved or when it is too old.
 
 use std::{
     io,
@@ -18,7 +18,7 @@ use crate::files;
 /// A function that reads a file up to the maximum length of a scene.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
-/// Time for which a draft is stored.
+/// Time for which a draft is stored: 30 days.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
 /// Maximum number of drafts of a scene. If there are more, the oldest are removed.
@@ -32,7 +32,7 @@ pub struct Unsaved {
     /// The name of the scene.
     pub name: Option<String>,
     pub text: String,
-    /// The content of the file when the page began to change it.
+    /// Content of the file when the page began to edit it; `None` for a new scene.
     base: Option<String>,
     /// Time of the draft, in seconds since 1970.
     time: u64,
@@ -57,8 +57,8 @@ impl Unsaved {
 pub struct Drafts(Option<PathBuf>);
 
 impl Drafts {
-    /// Returns the drafts of the scene at a path. For a new scene, the path is the folder in which
-    /// the scene would be saved. Also removes drafts of any scene that are too old.
+    /// Returns the location of the drafts of the scene at `path`. For a new scene, `path` is the
+    /// folder in which the scene would be saved. Also removes drafts of any scene that are too old.
     pub fn of(path: &Path) -> Self {
         let place = || {
             let folder = files::kept_folder("drafts")?;
@@ -71,7 +71,7 @@ impl Drafts {
         Self(place())
     }
 
-    /// Reads the drafts, the newest first. Returns none if the file cannot be read.
+    /// Reads the drafts, the newest first. Returns an empty list if the file cannot be read.
     pub fn kept(&self, read: Read) -> Vec<Unsaved> {
         let read = || serde_json::from_slice(&read(self.0.as_deref()?).ok()?).ok();
         read().unwrap_or_default()
@@ -82,7 +82,7 @@ impl Drafts {
     ///
     /// # Errors
     ///
-    /// The drafts cannot be stored; the message says why.
+    /// Returns a message if the drafts cannot be stored.
     pub fn keep(&self, drafts: &[Unsaved]) -> Result<(), String> {
         if drafts.is_empty() {
             if let Some(path) = &self.0 {

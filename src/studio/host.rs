@@ -1,5 +1,5 @@
-//! The host that serves the page: its files to everybody, and a WebSocket connection to pages that
-//! [`Access`] admits.
+//! Serves the page: its files to any client on this machine, and a WebSocket connection to pages
+//! that [`Access`] admits.
 
 use std::{
     io,
@@ -33,8 +33,8 @@ use super::{
     scene_file::SceneFile,
 };
 
-/// Time for connections to finish a save and to close when the host ends. The host does not wait
-/// any longer, such as for a save on a disk that does not respond.
+/// Maximum time for connections to finish a save and to close when the host ends. The host then
+/// ends in any case, even during a save on a disk that does not respond.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// The page's HTML.
@@ -62,12 +62,12 @@ struct Shared {
 }
 
 impl Host {
-    /// Listens at a port of this machine, which cannot be reached from others. If `port` is 0,
-    /// listens at any free port.
+    /// Listens at a port that only this machine can reach. If `port` is 0, the system chooses a
+    /// free port.
     ///
     /// # Errors
     ///
-    /// The port is taken, or the system's random number generator fails.
+    /// Returns an error if the port is taken, or if the system's random number generator fails.
     pub fn new(port: u16, file: SceneFile) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;
@@ -82,19 +82,20 @@ impl Host {
         })
     }
 
-    /// Returns two addresses of the page. The first is for the user. The second is valid once, and
-    /// is for a command line, which other users of the machine can read.
+    /// Returns two addresses of the page. The first one is printed for the user. The second one is
+    /// valid once, and is used in a command line, which other users of the machine can read.
     pub fn addresses(&self) -> [String; 2] {
         let port = self.port;
         let tokens = self.shared.access.tokens();
         tokens.map(|token| format!("http://127.0.0.1:{port}/#token={token}"))
     }
 
-    /// Serves until `end` is ready. A save in progress is completed, unless it takes too long.
+    /// Serves until `end` is ready. A save in progress is completed, unless it takes longer than
+    /// `FAREWELL`.
     ///
     /// # Errors
     ///
-    /// The system's event queue cannot be set up.
+    /// Returns an error if the system's event queue cannot be set up.
     pub fn serve(self, end: impl Future<Output = ()>) -> io::Result<()> {
         // The runtime's only thread transports messages; each connection does its work on a thread
         // of its own.
@@ -115,7 +116,7 @@ impl Host {
             let _ = timeout(FAREWELL, self.shared.ending.closed()).await;
             Ok::<_, io::Error>(())
         })?;
-        // A connection that has not ended may still wait for the runtime, so the runtime is not
+        // A connection that has not ended may still use the runtime, so the runtime is never
         // dropped.
         std::mem::forget(runtime);
         Ok(())
@@ -164,8 +165,8 @@ async fn guard(State(port): State<u16>, request: Request, next: Next) -> Respons
     response
 }
 
-/// Serves the page. Its policy allows styles with a nonce, since the editor creates some of them
-/// while it runs.
+/// Serves the page's HTML. Its content security policy allows styles with a nonce, since the editor
+/// creates some styles while it runs.
 async fn index() -> Response {
     let Ok(nonce) = access::secret() else {
         let why = "There is no randomness.\n";
@@ -194,7 +195,7 @@ async fn socket(
 }
 
 /// Waits for the first message, which is a token, and begins to serve the page if the token is
-/// valid. The connection itself limits how long that may take.
+/// valid. [`Connection`](super::connection_limits::Connection) limits the waiting time.
 async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
     let Some(Ok(Message::Text(token))) = socket.recv().await else {
         return;
@@ -220,6 +221,6 @@ fn begin(shared: Arc<Shared>, pass: Pass, socket: WebSocket) {
     let runtime = Handle::current();
     let ending = shared.ending.subscribe();
     let thread = thread::Builder::new().name("connection".to_owned());
-    // If the thread panics, there is nothing to report and nobody to report it to.
+    // A panic of the thread ends its connection only, so its result is ignored.
     let _ = thread.spawn(move || converse(runtime, socket, &pass, &ending, &shared.file));
 }

@@ -1,5 +1,5 @@
-//! The file of a scene. Apart from it, Studio reads and writes only drafts and new scenes in the
-//! same folder.
+//! Reads, watches and saves the file of a scene. Studio reads and writes no other files, except
+//! drafts and new scenes in the same folder.
 
 use std::{
     io,
@@ -14,8 +14,8 @@ use crate::{
     source::Source,
 };
 
-/// Content at a path: a text; `None` if there is no file; or the reason why the file cannot be read
-/// as a text, in which case it must not be overwritten.
+/// Content at a path: the text, or `None` if there is no file. The error is the reason why the file
+/// cannot be read as text; such a file must not be overwritten.
 pub type FileText = Result<Option<String>, String>;
 
 /// The file of a scene, or a new scene that has no file yet.
@@ -25,9 +25,9 @@ pub struct SceneFile {
     /// The folder in which a new scene is saved.
     folder: PathBuf,
     path: Option<PathBuf>,
-    /// The content when the file was last read or saved.
+    /// Content at the time when the file was last read or saved.
     content: FileText,
-    /// Number of different contents so far.
+    /// Number of contents so far, which increases with each change.
     version: u64,
     /// Watches the file for changes. If it is `None`, a change is found only on saving.
     watch: Option<Arc<Latest<FileContent>>>,
@@ -36,8 +36,8 @@ pub struct SceneFile {
     beside: Vec<PathBuf>,
 }
 
-/// Locks the file that pages share. A lock that a panic has poisoned can still be used, since no
-/// change is left half done.
+/// Locks the file that pages share. Also returns a lock that was poisoned by a panic, since a panic
+/// leaves no change half done.
 pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
     crate::lock::lock(file)
 }
@@ -45,13 +45,13 @@ pub fn lock(file: &Mutex<SceneFile>) -> MutexGuard<'_, SceneFile> {
 /// Error: a text was not saved.
 #[derive(Debug, PartialEq, Eq)]
 pub enum NotSaved {
-    /// The file's content is no longer what the text was made from. Contains the current content.
+    /// The file has changed since the page read it. Contains the file's current content.
     Changed(Option<String>),
-    /// The text cannot be saved, for this reason in words.
+    /// The text cannot be saved. Contains the reason in words.
     Refused(String),
 }
 
-/// Makes the error that the file `name` could not be written, with advice for the user.
+/// Returns the error that the file `name` could not be written, with advice for the user.
 fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
     let is_gone = !files::folder(path).exists();
     let advice = match error.kind() {
@@ -75,11 +75,11 @@ fn refused(name: &str, path: &Path, error: &io::Error) -> NotSaved {
 }
 
 impl SceneFile {
-    /// Opens the file at a path.
+    /// Opens the file at `path`.
     ///
     /// # Errors
     ///
-    /// The file cannot be read, or is not a text.
+    /// Returns a message if the file cannot be read or is not a text.
     pub fn open(path: &Path, read: Read) -> Result<Self, String> {
         let text = text(read(path)).map_err(|error| error.to_string())?;
         Ok(Self {
@@ -94,7 +94,7 @@ impl SceneFile {
         })
     }
 
-    /// Makes a new scene without a file, to be saved in `folder`.
+    /// Makes a new scene, which has no file yet and will be saved in `folder`.
     pub fn new(folder: PathBuf, read: Read) -> Self {
         Self {
             read,
@@ -133,11 +133,11 @@ impl SceneFile {
         drafts
     }
 
-    /// Replaces the draft under a page's key, or removes it if `unsaved` is `None`.
+    /// Replaces the draft with the key `id`, or removes it if `unsaved` is `None`.
     ///
     /// # Errors
     ///
-    /// The draft cannot be stored; the message says why.
+    /// Returns a message if the draft cannot be stored.
     pub fn keep_draft(&self, id: &str, unsaved: Option<Unsaved>) -> Result<(), String> {
         let mut drafts = self.drafts.kept(self.read);
         drafts.retain(|it| it.id != id);
@@ -145,8 +145,8 @@ impl SceneFile {
         self.drafts.keep(&drafts)
     }
 
-    /// Reads the file again if the watcher reports a change. The content that the watcher read is
-    /// not used, since a page may have saved a newer one. Returns the version.
+    /// Reads the file again if the watcher reports a change, and returns the version. The content
+    /// from the watcher is not used, since a page may have saved a newer one meanwhile.
     pub fn refresh(&mut self) -> u64 {
         if let (Some(path), Some(watch)) = (&self.path, &self.watch)
             && watch.try_take().is_some()
@@ -170,13 +170,13 @@ impl SceneFile {
         }
     }
 
-    /// Saves the text `new` if the file still contains `base`, from which the text was made. A new
-    /// scene, even one beside the open file, needs a name that no file has. Removes drafts with
-    /// this text. Returns the version.
+    /// Saves the text `new` if the file still contains `base`, the content that the page began to
+    /// edit. A new scene, also one beside the open file, needs a name that no file has. Removes
+    /// drafts with the same text. Returns the version.
     ///
     /// # Errors
     ///
-    /// The text is not saved, and no file has changed.
+    /// Returns the reason if the text is not saved. No file has then changed.
     pub fn save(
         &mut self,
         new: &str,
@@ -237,7 +237,7 @@ impl SceneFile {
                 self.version += 1;
             }
         }
-        // Drafts with other texts are kept.
+        // Only drafts of the saved text are removed.
         drafts.retain(|it| it.text != new);
         let _ = self.drafts.keep(&drafts);
         if !is_other {
@@ -247,7 +247,7 @@ impl SceneFile {
     }
 }
 
-/// Creates the file of a new scene; fails if the file exists.
+/// Creates the file of a new scene. Fails if the file exists or its name is not allowed.
 fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
     check_name(name).map_err(|why| NotSaved::Refused(why.to_owned()))?;
     write(path, text, Purpose::New).map_err(|error| refused(name, path, &error))
@@ -273,7 +273,8 @@ fn check_name(name: &str) -> Result<(), &'static str> {
         Some(_) if name.contains(['/', '\\']) || name.starts_with('.') => {
             Err("the name is that of a file in the current folder, and no path")
         }
-        // Windows does not allow these characters in names; a colon leads to another drive there.
+        // Windows does not allow these characters in names, and a colon there can lead to another
+        // drive.
         Some(_) if name.contains(is_odd) => {
             Err("the name of a file has none of `: * ? \" < > |`, and no control character")
         }
@@ -312,7 +313,8 @@ mod tests {
 
     #[test]
     fn what_is_saved_between_reading_and_writing_is_kept() {
-        /// Reads a file. If it contains `mine`, another program saves the file right after that.
+        /// Reads a file. If the file contains `mine`, then lets another program save it, right
+        /// after reading.
         fn read_and_saved(path: &Path) -> io::Result<Vec<u8>> {
             let bytes = files::read(path, 99)?;
             if bytes == b"mine" {

@@ -1,5 +1,5 @@
-//! Texts of the syntax problems, and whether their fixes are safe. The code that reports a problem
-//! fills in `{0}`, `{1}` and so on.
+//! Texts of the syntax problems, and whether their fixes are safe. `{0}`, `{1}` and so on are
+//! placeholders, which [`Message::at`](super::problem::Message::at) fills.
 
 use super::problem::Message;
 
@@ -10,13 +10,13 @@ pub const UTF16: Message = Message::new(["invalid_utf8", "this file is UTF-16, n
 /// Problem: the file belongs to another program, or is not text.
 pub const FOREIGN_FILE: Message = Message::new(["foreign_file", "this looks like {0}, not like a scene of Pinhole", "no scene starts like this", "the smallest scene is `camera { eye (0, 2, 8)  lookat (0, 1, 0) }` and `sphere { center (0, 1, 0) }`{1}"]);
 pub const NOT_IN_LANGUAGE: Message = Message::new(["not_in_language", "the language has no {0}", "not a part of the language", "{1}"]);
-// Text.
+// Messages about characters and comments.
 pub const CARRIAGE_RETURN: Message = Message::new(["odd_space", "a carriage return alone ends no line{0}", "no line feed follows", "write a line feed in its place"]).safe();
 pub const ODD_SPACE: Message = Message::new(["odd_space", "{0} is no white space here{1}", "it cannot be seen", "write a plain space in its place, or take it away"]).safe();
 pub const UNCLOSED_COMMENT: Message = Message::new(["unclosed_comment", "a comment is never closed", "the comment starts here and takes the rest of the text", "write `*/` where it ends, or begin it with `//` if it is one line"]);
 pub const NESTED_COMMENT: Message = Message::new(["nested_comment", "comments do not nest: the first `*/` ends this one", "this opens no other comment", ""]).safe();
 pub const COMMENT_SIGN: Message = Message::new(["comment_sign", "a comment begins with `//`, not with `{0}`{1}", "`//` should stand here", "write `//`; the comment takes the rest of the line"]).safe();
-// Items.
+// Messages about items.
 pub const MISSING_NAME: Message = Message::new(["missing_name", "a `let` lacks its name", "a name should stand here", "write a name of letters, digits and `_`, such as `let height = 2`"]);
 pub const BAD_NAME: Message = Message::new(["bad_name", "`{0}` cannot be a name", "a name should stand here", "a name is made of the letters a to z, digits and `_`, and does not start with a digit{1}"]);
 pub const MISSING_EQUALS: Message = Message::new(["missing_equals", "`let {0}` lacks its `=`", "`=` should stand here", ""]).safe();
@@ -26,7 +26,8 @@ pub const MISPLACED_LET: Message = Message::new(["misplaced_let", "a `let` stand
 pub const MISSING_KIND: Message = Message::new(["missing_kind", "a block lacks its kind", "what is this?", "write what it is before the `{`, such as `sphere {`"]);
 pub const BAD_HEAD: Message = Message::new(["bad_head", "only a kind and a name stand before a `{`", "this does not belong here", "write `{0} {`, and then its fields"]).safe();
 pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "{0}", "not written so", "{1}"]);
-/// Message for a head with indices that matches no known mistake.
+/// Message about the indices in an object's head, `for INDEX < COUNT`, if no more specific message
+/// applies.
 pub const REPEATED: &str = "an object is repeated by `for INDEX < COUNT`";
 pub const REPEATED_SO: &str = "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first";
 pub const MISPLACED_INDICES: Message = Message::new(["bad_repetition", "indices stand in the head of an object", "not in its block", "write them before the `{`, as in `sphere for i < 8 {`"]);
@@ -38,13 +39,13 @@ pub const OUTSIDE_BLOCK: Message = Message::new(["outside_block", "`{0}` stands 
 pub const NEEDLESS_SEPARATOR: Message = Message::new(["needless_separator", "no `{0}` stands between {2}{1}", "not needed", ""]).safe();
 pub const STRAY_CLOSING: Message = Message::new(["stray_closing", "this `{0}` closes nothing", "nothing is open here", "write the parenthesis that opens it, or take it away"]).safe();
 pub const UNEXPECTED: Message = Message::new(["unexpected", "expected {0}, found `{1}`", "not here", "{2}"]);
-// Fields.
+// Messages about fields.
 pub const NEEDLESS_EQUALS: Message = Message::new(["needless_equals", "a field takes its value without `{0}`{1}", "not needed", ""]).safe();
 pub const TWO_WORDS: Message = Message::new(["bad_name", "`{0}` is one word", "the name of a field", ""]).safe();
 pub const MISSING_SPACE: Message = Message::new(["missing_space", "a space is missing between `{0}` and `{1}`", "a field and its value", ""]).safe();
 pub const COLOR_WITHOUT_NAME: Message = Message::new(["missing_field_name", "a value stands here without the name of its field", "which field is this for?", "write `color {0}`"]);
 pub const MISSING_FIELD_NAME: Message = Message::new(["missing_field_name", "a value stands here without the name of its field", "which field is this for?", "write the name of the field that `{0}` is for before it"]).safe();
-// Values.
+// Messages about values.
 pub const TOO_DEEP: Message = Message::new(["too_deep", "this value nests more than {0} levels deep", "one level more", "give a part of it a name with `let`, and use the name here"]);
 pub const MISSING_OPERAND: Message = Message::new(["missing_operand", "nothing stands {0} this `{1}`", "a value is missing {0} this", "write a value {0} it, or take the `{1}` away"]);
 pub const MISSING_OPERATOR: Message = Message::new(["missing_operator", "an operator is missing between `{0}` and `{1}`", "what is to be done with this?", "write an operator between them, or take one of them away"]).safe();
@@ -65,8 +66,8 @@ pub const BAD_COLOR_CODE: Message = Message::new(["bad_color_code", "`{0}` is no
 pub const BAD_NUMBER: Message = Message::new(["bad_number", "`{0}` is no number", "{1}", "write a number such as `2`, `0.5` or `1e-3`"]).safe();
 pub const SPACED_UNIT: Message = Message::new(["spaced_unit", "a unit stands right behind its number", "no space between the two", "{0}"]).safe();
 
-/// Statements of other languages, a row each: the words that start one, what the statements are
-/// called, and what to write instead.
+/// Statements of other languages. A row holds the words that start such a statement, the plural
+/// noun for messages, and the help.
 const STATEMENTS: &[[&str; 3]] = &[
     ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
     ["for while loop repeat foreach", "loops", "an object is repeated by its head, as in `sphere for i < 8 { center (i, 1, 0) }`"],
@@ -76,20 +77,25 @@ const STATEMENTS: &[[&str; 3]] = &[
     ["function fn def fun lambda return class struct", "functions of one's own", "give each result a name with `let NAME = VALUE`"],
 ];
 
-/// Returns what the statements that start with `word` are called, and what to write instead.
-/// Returns `None` if no statement of another language starts with `word`.
+/// Returns the plural noun and the help for the statements of other languages that start with
+/// `word`. Returns `None` if there are none.
 pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
 
-/// Addition to the help for scenes of programs with left-handed coordinates, whose z axis points
-/// away from the viewer.
+/// Addition to the help if the file comes from a program with left-handed coordinates, whose z axis
+/// points away from the viewer.
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
-/// Files of other programs. A row holds the name of the format, the possible first characters
-/// (white space left out), the marks to count in the file separated by `|`, their minimum number,
-/// characters that must not be in the file, and an addition to the help.
+/// Patterns that recognize files of other programs. The columns of a row:
+///
+/// - the name of the format;
+/// - the possible first characters, except white space;
+/// - the strings to count in the file, separated by `|`;
+/// - the minimum number of these strings;
+/// - characters that must not occur in the file;
+/// - an addition to the help.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str, &str)] = &[
     ("XML", "<?xml", "<", 1, "", ""),
     ("XML", "<", "</", 1, "", ""),

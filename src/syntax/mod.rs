@@ -1,9 +1,10 @@
 //! Parses a text into a syntax tree.
 //!
-//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds: pest
-//! reads the items that follow the grammar (`parser`). Any other item is read token by token
-//! (`tokens`, `recovery`): recovery reports one problem for each mistake and makes nodes of what
-//! can be understood. Names are looked up only to choose between explanations of a mistake.
+//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds. pest
+//! parses the items that follow the grammar (`parser`). Any other item is read token by token by an
+//! error recovery (`tokens`, `recovery`), which reports one problem for each mistake and makes
+//! nodes of what it understands. Names are looked up only to choose between explanations of a
+//! mistake.
 
 #![cfg_attr(
     not(test),
@@ -35,7 +36,8 @@ pub use tree::Tree;
 
 use crate::{diagnostic::Diagnostic, source::Span};
 
-/// Maximum depth of nested parentheses, signs and calls in a value.
+/// Maximum depth of nested parentheses, signs and calls in a value. A deeper value is reported as a
+/// problem, so that parsing cannot overflow its stack.
 pub const NESTING_LIMIT: usize = 256;
 
 /// Result of parsing.
@@ -47,9 +49,11 @@ pub struct Parsed<'s> {
     pub comments: Vec<Span>,
     /// The syntax problems.
     pub problems: Vec<Diagnostic>,
-    /// Whether a mistake hides the rest of the text, so that nothing may be reported as missing.
+    /// Whether a mistake, such as an unclosed comment, hides a part of the text. Nothing is then
+    /// reported as missing.
     pub is_cut: bool,
-    /// Whether something follows the grammar but was probably not meant so, such as fields that
-    /// their block does not have. With other line ends, the same text may be a syntax error.
+    /// Whether the text follows the grammar somewhere but probably means something else, as with a
+    /// field that its block does not have. If its line ends were changed, the text could be a
+    /// syntax error.
     pub is_doubtful: bool,
 }

@@ -1,12 +1,13 @@
-//! The parser: from a text to the tree.
+//! Parses a text into the tree.
 //!
-//! In: a source. Out: its tree, comments and problems. pest reads every item that follows the
-//! grammar, a few kilobytes at a time. The functions here make nodes of pest's pairs and are named
-//! after the grammar's rules. Where pest stops, or where words show that something else was meant
-//! (a field that its block does not have), `recovery` reads that one item.
+//! In: a source. Out: its tree, comments and problems. pest parses every item that follows the
+//! grammar, a few kilobytes at a time. The functions here convert pest's pairs to nodes and are
+//! named after the grammar's rules. `recovery` reads an item that pest rejects. It also reads an
+//! item that pest accepts but that was probably meant otherwise, such as a block with a field that
+//! it does not have.
 //!
-//! A text can be split after a `}` and before a `let`: if it has no mistakes, every `}` ends a
-//! block and every `let` starts a definition.
+//! A text without mistakes can be split after each `}` and before each `let`: in such a text, every
+//! `}` ends a block and every `let` starts a definition.
 
 use std::{
     ops::Range,
@@ -51,16 +52,16 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
 });
 
 /// Stack size of the threads that parse, in bytes. Without optimization, pest and recovery use tens
-/// of kilobytes for each of the 256 levels of nesting.
+/// of kilobytes of stack for each of the [`NESTING_LIMIT`](super::NESTING_LIMIT) levels.
 pub const STACK_BYTES: usize = 64 << 20;
 
-/// Minimum length, in bytes, of a value that is parsed on a thread of its own. Shorter values, such
-/// as most defaults of fields, cannot nest deep, since each level takes at least a byte; they are
-/// parsed on the caller's stack.
+/// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
+/// shorter value is parsed on the caller's stack: each level of nesting takes at least one byte, so
+/// it cannot nest deep. Most defaults of fields are shorter.
 const SHORT_VALUE_BYTES: usize = 32;
 
-/// Minimum number of bytes that pest reads at a time, up to the next split point of the text.
-/// Reading a whole file at once would take much memory for its pairs.
+/// Minimum number of bytes that pest reads at a time; it reads on to the next split point of the
+/// text. For a whole file at once, pest's pairs would take much memory.
 pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.
@@ -68,7 +69,7 @@ pub fn parse(source: &Source, id: SourceId) -> Parsed<'_> {
     parse_unless(source, id, &cancel::NEVER)
 }
 
-/// Parses a file. If cancelled, returns what was read until then.
+/// Parses a file. If `cancel` is set meanwhile, returns the part that was read.
 pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -> Parsed<'s> {
     with_stack(|| {
         let text = source.text();
@@ -96,9 +97,9 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
     })
 }
 
-/// Reads an item that does not follow the grammar, and returns its end. If the text at `at` can
-/// only continue the definition before it, removes that definition from the items and reads it
-/// again.
+/// Reads the item at `at`, which does not follow the grammar, and returns its end. If the text at
+/// `at` can only continue the definition before it, removes the node of that definition and reads
+/// the definition again from its start.
 fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> usize {
     if let Some(Item::Definition(last)) = recovery.items.last()
         && last.span.start >= recovery.read_to
@@ -110,22 +111,23 @@ fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> u
     recovery.item(at)
 }
 
-/// Returns the first element of `places`, which must ascend, that is at least `offset`. Returns
-/// `None` if all are less.
+/// Returns the first element of the ascending `places` that is at least `offset`. Returns `None` if
+/// all are less.
 pub fn first_from(places: &[usize], offset: usize) -> Option<usize> {
     let first = places.partition_point(|&place| place < offset);
     places.get(first).copied()
 }
 
-/// Returns whether the text at `at` may continue a definition that ends at `end`: it is on the same
-/// line or starts with an operator or `)`.
+/// Returns whether the text at `at` may continue a definition that ends at `end`: the text is on
+/// the same line, or starts with an operator or `)`.
 fn goes_on(text: &str, end: usize, at: usize) -> bool {
     let line = text.get(end..at).unwrap_or_default();
     let rest = text.get(at..).unwrap_or_default();
     !line.contains('\n') || rest.starts_with(['+', '-', '*', '/', '^', ')'])
 }
 
-/// Parses the text from an offset on as one value, such as that of a `--set` argument.
+/// Parses the text from the offset `start` on as one value, such as that of a `--set` argument.
+/// Returns the value and its problems.
 pub fn parse_value(source: &Source, id: SourceId, start: usize) -> (Value<'_>, Vec<Diagnostic>) {
     let text = source.text();
     let read = || {
@@ -158,7 +160,7 @@ fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     })
 }
 
-/// Builder of nodes from the pairs that pest read.
+/// Converter of pest's pairs into nodes of the tree.
 pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
@@ -182,9 +184,10 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Reads items until one does not follow the grammar. Returns the offset where reading ended,
-    /// and `true` if pest stopped there. Returns `false` if recovery read the last item instead and
-    /// ended at another offset than pest.
+    /// Reads items of the text in `range` with pest, and adds their nodes to `recovery`. Returns
+    /// the end of the last item, and `true`. If pest's reading of an item is doubtful, recovery
+    /// reads the item again; if it finds another end of the item, stops there and returns that end
+    /// and `false`.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -197,8 +200,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 Rule::block => Item::Block(self.block(pair)),
                 _ => continue,
             };
-            // In `let a = 2 pi`, followed by `sphere {`, pest reads `pi sphere {` as a block: its
-            // kind is the rest of the value, and its name is the real kind.
+            // If `let a = 2 pi` is followed by `sphere {`, pest reads `pi sphere {` as a block of
+            // the kind `pi` with the name `sphere`. The actual kind is `sphere`, so reading stops
+            // before `pi`, and recovery reports the mistake.
             if let Item::Block(block) = &item
                 && let (Some(kind), Some(name)) = (block.kind, block.name)
                 && self.words.is_kind(name.text)
@@ -207,7 +211,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
                 return (end, true);
             }
             end = item.span().end;
-            // Two minuses may start a comment of another language.
+            // The item is read again if it may contain a comment of another language, which starts
+            // with `--`.
             let written = self.written(item.span());
             if self.doubtful || (written.len() < CHUNK_BYTES && written.contains("--")) {
                 match recovery.item_as_meant(start) {
@@ -240,7 +245,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     fn block(&mut self, pair: Pair<'_, Rule>) -> Block<'s> {
         let mut block = Block::new(self.span(&pair), None, None);
         let parts = pair.into_inner();
-        // Usually, all parts except the kind and the two braces are fields.
+        // Usually, all parts except the kind and the two braces are fields, so memory for that many
+        // is reserved.
         block.fields.reserve_exact(parts.len().saturating_sub(3));
         for part in parts {
             match part.as_rule() {
@@ -302,7 +308,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         {
             return self.operand(operand);
         }
-        // The three closures share `self`; each borrows it only while it makes a node.
+        // The closures for operands, signs and operators share `self`. Each borrows it only while
+        // it makes a node.
         let this = std::cell::RefCell::new(self);
         PRECEDENCE
             .map_primary(|pair| this.borrow_mut().operand(pair))
@@ -342,7 +349,7 @@ impl<'w, 's> TreeBuilder<'w, 's> {
 
     fn elements(&mut self, pair: Pair<'_, Rule>) -> Vec<Element<'s>> {
         let parts = pair.into_inner();
-        // Values and commas alternate.
+        // Values and commas alternate, so about half of the parts are values.
         let mut elements: Vec<Element<'s>> = Vec::with_capacity(parts.len().div_ceil(2));
         for part in parts {
             if part.as_rule() != Rule::comma {

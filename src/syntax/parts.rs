@@ -1,6 +1,7 @@
-//! Parses a large file part by part on several threads.
+//! Parses a large file in parts, on several threads.
 //!
-//! In: a source. Out: the items of each part in order, if the whole file follows the grammar.
+//! In: a source. Out: the items of each part, in the order of the file, if the whole file follows
+//! the grammar.
 
 use std::{
     ops::Range,
@@ -22,14 +23,15 @@ use crate::{
     threads,
 };
 
-/// Maximum number of threads that parse. One thread lowers the items of all parts, so more parsers
-/// would only wait for it.
+/// Maximum number of threads that parse one file. A single thread lowers the items of all parts, so
+/// more parsers would only wait for that thread.
 const MOST_THREADS: usize = 4;
 
 /// Parses a file in parts of at least `bytes` bytes and passes the items of each part to `each`, in
-/// order, so that the whole tree is never in memory. Returns `true` if all parts were passed.
-/// Returns `false` if the file has mistakes or is too short for two parts, if `each` returned
-/// `false`, or if parsing was cancelled; the items that were passed must then be discarded.
+/// the order of the file. The whole tree is never in memory. Returns `true` if all parts were
+/// passed. Returns `false` if the file has mistakes or is too short for two parts, if `each`
+/// returned `false`, or if parsing was cancelled; the caller must then discard the items that were
+/// passed.
 pub fn parse_in_parts<'s>(
     source: &'s Source,
     id: SourceId,
@@ -67,8 +69,8 @@ pub fn parse_in_parts<'s>(
     };
     let count = threads::available().min(parts.len()).min(MOST_THREADS);
     thread::scope(|scope| {
-        // Thread i parses the parts i, i + count, … The channel holds one result, so the thread is
-        // at most two of its parts ahead of the consumer.
+        // Thread i parses the parts i, i + count, i + 2·count and so on. Its channel holds one
+        // result, so the thread runs at most two of its parts ahead of the consumer.
         let parsed: Vec<mpsc::Receiver<_>> = (0..count)
             .map(|first| {
                 let (found, results) = mpsc::sync_channel(1);
@@ -97,8 +99,8 @@ pub fn parse_in_parts<'s>(
     })
 }
 
-/// Returns the ranges of the parts: each ends at a split point and has at least `bytes` bytes,
-/// except the last.
+/// Returns the byte ranges of the parts. Each part ends at a split point and has at least `bytes`
+/// bytes, except the last one.
 fn ranges(source: &Source, bytes: usize, scan: &Scan) -> Vec<Range<usize>> {
     let (mut parts, mut from) = (Vec::new(), source.bom_len());
     while let Some(to) = first_from(&scan.split_points, from + bytes.max(1)) {

@@ -10,15 +10,15 @@ use crate::{
 /// Texts of a problem, and whether its fix is safe.
 #[derive(Clone, Copy)]
 pub struct Message {
-    /// The code without `pinhole::`, the message, the label, and the help that is shown if there
-    /// is no fix.
+    /// In order: the code without `pinhole::`, the message, the label, and the help, which is shown
+    /// if there is no fix.
     texts: [&'static str; 4],
     applicability: Applicability,
 }
 
 impl Message {
-    /// Makes a message of its code, message, label and help. A fix of the problem is marked as
-    /// unsafe.
+    /// Makes a message from its code, message, label and help. Fixes of the problem are marked as
+    /// unsafe; see [`Message::safe`].
     pub const fn new(texts: [&'static str; 4]) -> Self {
         Self {
             texts,
@@ -26,25 +26,26 @@ impl Message {
         }
     }
 
-    /// Marks the fix as safe: it keeps everything that was written, and only one meaning is
-    /// possible.
+    /// Marks fixes of the problem as safe: a fix keeps everything that was written, and only one
+    /// meaning is possible.
     pub const fn safe(self) -> Self {
         self.safe_if(true)
     }
 
-    /// Marks the fix as safe or unsafe.
+    /// Marks fixes of the problem as safe if `is_safe`, and as unsafe otherwise.
     pub const fn safe_if(mut self, is_safe: bool) -> Self {
         self.applicability = Applicability::safe_if(is_safe);
         self
     }
 
-    /// Returns whether the problem is that something is superfluous.
+    /// Returns whether the problem is a superfluous token.
     pub fn is_needless(&self) -> bool {
         self.texts[0].starts_with("needless") || self.texts[0] == "plus_sign"
     }
 
-    /// Makes the problem at `span`. Replaces `{0}`, `{1}` and so on in the texts by `words`. If
-    /// there is a fix, the help is left out, since the fix has a title.
+    /// Makes the diagnostic of the problem at `span`. Replaces `{0}`, `{1}` and so on in the texts
+    /// by `words`. If there is a fix, the help is left out, since the title of the fix says what to
+    /// do.
     pub fn at(&self, span: Span, words: &[&str], fix: impl Into<Option<Fix>>) -> Diagnostic {
         let filled = |text: &str| {
             let mut parts = text.split('{');
@@ -86,8 +87,8 @@ pub fn replace(span: Span, text: impl Into<String>) -> Fix {
     Fix::new(title, [Edit::new(span, text)])
 }
 
-/// Returns the words that say at how many further places the same problem occurs; empty if `more`
-/// is 0.
+/// Returns a text such as ", and at 3 more places" for a problem that occurs at `more` further
+/// places. Returns an empty text if `more` is 0.
 pub fn further_places(more: usize) -> String {
     match more {
         0 => String::new(),
@@ -96,10 +97,10 @@ pub fn further_places(more: usize) -> String {
     }
 }
 
-/// Merges the reports of the same unknown character, such as each `−` of a text, into one at its
-/// first place. The remaining report has all edits.
+/// Merges all reports about one unknown character, such as each `−` of a text, into the first
+/// report. The merged report has the edits of all places.
 pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
-    // For each message: the index of its first report in `kept`, and the number of further reports.
+    // Maps a message to the index of its first report in `kept` and the number of further reports.
     let mut firsts: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut kept: Vec<Diagnostic> = Vec::with_capacity(problems.len());
     for mut found in std::mem::take(problems) {
@@ -126,7 +127,8 @@ pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
     *problems = kept;
 }
 
-/// Shortens a text for a message: to one line, and to 40 characters and `…` if it is longer.
+/// Shortens a text for a message: joins its lines with spaces, and cuts it after 40 characters with
+/// `…`.
 pub fn shorten(written: &str) -> String {
     const LONGEST: usize = 40;
     let mut short = String::new();

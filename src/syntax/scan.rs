@@ -1,8 +1,8 @@
-//! First pass over the text, before it is parsed.
+//! Scans a text before it is parsed.
 //!
-//! In: a text. Out: its comments, the offsets where it can be split, its invisible characters, and
-//! the offsets where it may nest too deep for pest. The pass runs the lexer once and does not
-//! recurse.
+//! In: a text. Out: its comments, the offsets where it can be split for parsing, its invisible
+//! characters, and the offsets where it may nest too deep for pest. The scan runs the lexer once
+//! and does not recurse.
 
 use std::{collections::BTreeMap, sync::atomic::AtomicBool};
 
@@ -17,17 +17,19 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Minimum distance, in bytes, between two of [`Scan::split_points`]. It is small compared with the
-/// number of bytes that are parsed at a time.
+/// Minimum distance, in bytes, between two [`Scan::split_points`]; nearer ones are left out. It is
+/// small compared with [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), the length that pest reads at a
+/// time.
 const SPLIT_SPACING_BYTES: usize = 256;
 
-/// Result of the first pass.
+/// Result of scanning a text.
 #[derive(Debug, Default)]
 pub struct Scan {
     /// All comments, in the order of the text.
     comments: Vec<Span>,
-    /// Offsets where more parentheses and minuses are open than a value may have. A minus between
-    /// two values is counted, too; recovery, which reads these items, counts exactly.
+    /// Offsets where more parentheses and minuses are open than a value may have. Subtraction signs
+    /// are counted as if they were negations, so the count may be too high. Recovery reads the
+    /// items at these offsets and counts exactly.
     pub deep: Vec<usize>,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a
     /// `let`. Two of them are at least [`SPLIT_SPACING_BYTES`] apart.
@@ -42,8 +44,8 @@ impl Scan {
     pub fn of(text: &str, id: SourceId, start: usize, cancel: &AtomicBool) -> Self {
         let mut scan = Self::default();
         let mut lexer = Lexer::new(text, start);
-        // Number of minuses since the last operand, number of minuses before all open parentheses,
-        // and number of minuses before each open parenthesis.
+        // In order: the number of minuses since the last operand, the number of minuses before all
+        // open parentheses, and for each open parenthesis the number of minuses before it.
         let (mut minuses, mut outside, mut open) = (0, 0, Vec::new());
         let mut is_told = false;
         // Number of tokens between two checks for cancellation.
@@ -97,8 +99,8 @@ impl Scan {
         scan
     }
 
-    /// Records carriage returns that end no line, including those in comments: other programs start
-    /// a new line at one, but to the parser the comment continues.
+    /// Records carriage returns that are not followed by a line feed. Those in comments matter,
+    /// too: other programs show a new line after one, but to the parser the comment continues.
     fn find_carriage_returns(&mut self, text: &str, id: SourceId, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {
@@ -138,11 +140,13 @@ impl Scan {
     /// Adds the comments and the problems of the scan to the result of parsing.
     pub fn report(self, text: &str, parsed: &mut Parsed<'_>) {
         self.report_odd_spaces(text, &mut parsed.problems);
-        // What a comment hides after a carriage return is not really missing.
+        // In a comment, text after a carriage return may be meant as code. It is hidden, so nothing
+        // may be reported as missing.
         let hides = |place: &Span| text[place.start..].starts_with('\r');
         parsed.is_cut |= self.odd_spaces.iter().any(hides);
         if let Some(open) = self.open_comment(text) {
-            // What the comment hides is not a mistake of its own.
+            // An unclosed comment hides the rest of the text. Problems that only this causes are
+            // dropped.
             parsed.problems.retain(|problem| {
                 let first = problem.labels.first().map_or(0, |label| label.span.end);
                 problem.code != "pinhole::unclosed_block" && first < open.start
@@ -167,8 +171,8 @@ impl Scan {
                 let edits = places.iter().map(|place| Edit::new(*place, text));
                 Fix::new(title, edits)
             };
-            // Without an invisible character of zero width, two words may become one, so removing
-            // it is not safe.
+            // Two words may join if a character of zero width between them is removed, so that
+            // removal is not safe.
             let has_width = sort.chars().all(char::is_whitespace);
             let joins = |place: &Span| !Edit::remove_in(*place, text).text.is_empty();
             let is_safe = has_width || !places.iter().any(joins);
@@ -180,15 +184,16 @@ impl Scan {
                 let said = say::ODD_SPACE.safe_if(is_safe);
                 said.at(at, &words, all("write plain spaces", " "))
             };
-            // A character of zero width is usually not meant to separate words, so its removal is
-            // the first fix.
+            // A character of zero width rarely separates words on purpose, so its removal is the
+            // first fix.
             if !has_width {
                 let applicability = Applicability::safe_if(is_safe);
                 let away = all("take it away", "").with_applicability(applicability);
                 found.fixes.insert(0, away);
             }
             if self.odd_spaces.len() == MOST_PROBLEMS {
-                // If the maximum was reached, not all places are known, so there is no fix.
+                // At most `MOST_PROBLEMS` places are recorded. A fix of only these places would be
+                // incomplete.
                 found.fixes.clear();
             }
             problems.push(found);

@@ -1,9 +1,9 @@
-//! The lexer: from a text to its tokens.
+//! Splits a text into tokens.
 //!
 //! In: a text and an offset. Out: one token after the other, including comments; between two tokens
-//! there is only white space. The lexer does not know the grammar, so it reads any text: a
+//! there is only white space. The lexer does not know the grammar, so it accepts any text: a
 //! character that starts no other token is a token by itself. Recovery, the editor and the scan use
-//! it; the formatter walks the tree instead.
+//! the lexer; the formatter walks the tree instead.
 
 /// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,10 +12,10 @@ pub enum TokenKind {
     Name,
     /// A word that starts with a digit, or with a `.` and a digit: `2`, `1e-3`, `30deg`, `0x10`.
     Number,
-    /// `#` and the word that follows it without a space.
+    /// A colour code such as `#ff8000`: `#` and any word that follows it without a space.
     Color,
-    /// A text in quotation marks, including the marks. It ends within its line, and before a
-    /// comment.
+    /// A text in quotation marks, including the marks. Without a closing mark in its line, it is
+    /// the opening mark and the word after it.
     Quoted,
     /// A word with letters that are not ASCII.
     Word,
@@ -41,7 +41,7 @@ pub struct Token {
     pub end: usize,
 }
 
-/// Lexer of a text. After the last token it returns [`TokenKind::End`] again and again.
+/// Lexer of a text. At the end of the text, it returns [`TokenKind::End`] at every call.
 #[derive(Clone, Debug)]
 pub struct Lexer<'s> {
     text: &'s str,
@@ -67,7 +67,7 @@ impl<'s> Lexer<'s> {
         Token { kind, start, end }
     }
 
-    /// Returns the next token, except comments and invisible characters.
+    /// Returns the next token that is neither a comment nor an invisible character.
     pub fn seen_token(&mut self) -> Token {
         loop {
             let token = self.token();
@@ -100,8 +100,8 @@ impl<'s> Lexer<'s> {
         }
     }
 
-    /// Returns kind and end of a token that starts with a control character or a character that is
-    /// not ASCII.
+    /// Returns kind and end of the token at `start`, which begins with a control character or a
+    /// non-ASCII character.
     fn other(&self, start: usize) -> (TokenKind, usize) {
         let first = self.rest(start).chars().next().unwrap_or(' ');
         match first {
@@ -149,9 +149,9 @@ impl<'s> Lexer<'s> {
         end
     }
 
-    /// Returns kind and end of a quoted text. It ends with the closing quotation mark in the same
-    /// line; if there is none, it is the mark and the word after it. It also ends before a comment,
-    /// since the grammar has no quotation marks.
+    /// Returns kind and end of the quoted text at `start`. The closing mark is searched for up to
+    /// the end of the line or a comment, since the grammar has no quotation marks. Without a
+    /// closing mark, the token is the opening mark and the word after it.
     fn quoted(&self, start: usize) -> (TokenKind, usize) {
         let mut characters = self.rest(start).char_indices().peekable();
         let first = characters.next().map_or('"', |(_, first)| first);
@@ -191,7 +191,8 @@ pub fn is_name_char(byte: u8) -> bool {
     byte.is_ascii_alphanumeric() || byte == b'_'
 }
 
-/// Returns whether a text is the three or six digits of a colour code.
+/// Returns whether `digits` consists of three or six hexadecimal digits, as a colour code without
+/// its `#` does.
 pub fn is_color_code(digits: &str) -> bool {
     matches!(digits.len(), 3 | 6) && digits.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
@@ -205,7 +206,8 @@ fn is_odd_space(c: char) -> bool {
     }
 }
 
-/// Returns the number at the start of a text, without its unit or anything else that follows.
+/// Returns the number at the start of `written`, without a unit or other text behind it; empty if
+/// there is none.
 pub fn numeric_part(written: &str) -> &str {
     let bytes = written.as_bytes();
     let byte = |at: usize| bytes.get(at).copied().unwrap_or(b' ');
@@ -233,7 +235,7 @@ pub fn numeric_part(written: &str) -> &str {
 
 /// Returns whether a name occurs in a text outside its comments.
 pub fn has_name(text: &str, name: &str) -> bool {
-    // Most texts do not contain the name at all and need no lexing.
+    // Most texts do not contain the name at all, so that the lexer does not run.
     let mut lexer = Lexer::new(text, 0);
     text.contains(name)
         && loop {

@@ -1,8 +1,8 @@
 //! The syntax tree.
 //!
-//! The tree records what was written and where, but not what it means. Every token of a text
-//! without mistakes lies in a node's span, so that the formatter can rebuild the text from the tree
-//! and the comments. Text that could not be understood is `Bad`; a problem was then reported.
+//! The tree records what was written and where, but not what it means. In a text without mistakes,
+//! every token lies in the span of a node, so the formatter can rebuild the text from the tree and
+//! the comments. A `Bad` node stands for text that could not be understood and was reported.
 
 use crate::{math::Angle, source::Span};
 
@@ -20,7 +20,7 @@ pub enum Item<'s> {
     Definition(Definition<'s>),
     /// A block: `KIND NAME? { FIELD VALUE … }`.
     Block(Block<'s>),
-    /// Text that is neither; a problem was reported.
+    /// Text that is neither a definition nor a block; a problem was reported.
     Bad(Span),
 }
 
@@ -60,7 +60,7 @@ pub struct Definition<'s> {
 }
 
 impl Definition<'_> {
-    /// Makes a definition of which only `keyword` is known yet.
+    /// Makes a definition that has only its keyword `let` so far.
     pub fn begun(keyword: Span) -> Self {
         Self {
             keyword,
@@ -73,20 +73,20 @@ impl Definition<'_> {
 }
 
 /// A block: `KIND NAME? { FIELD VALUE … }`, or with indices `KIND NAME? for INDEX < COUNT, … {
-/// FIELD VALUE … }`.
+/// FIELD VALUE … }`. The part before the `{` is its head.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block<'s> {
     /// The kind; `None` if it is missing.
     pub kind: Option<Name<'s>>,
     /// The name of the object, if it has one.
     pub name: Option<Name<'s>>,
-    /// The indices of a repeated object; boxed, since few blocks have any.
+    /// The indices of a repeated object. Few blocks have any, so they are boxed.
     pub repetition: Option<Box<Repetition<'s>>>,
     /// The place of `{`; `None` if it is missing.
     pub open: Option<Span>,
     /// The fields, in the order of the text.
     pub fields: Vec<Field<'s>>,
-    /// Places between the fields that are not understood as fields; a problem was reported for
+    /// Spans of text in the block that could not be read as fields. A problem was reported for
     /// each.
     pub bad: Vec<Span>,
     /// The place of `}`; `None` if it is missing.
@@ -96,7 +96,7 @@ pub struct Block<'s> {
 }
 
 impl<'s> Block<'s> {
-    /// Makes a block of which only the kind, the name and a span are known yet.
+    /// Makes a block that has only its kind, its name and its span so far.
     pub fn new(span: Span, kind: Option<Name<'s>>, name: Option<Name<'s>>) -> Self {
         Self {
             kind,
@@ -126,7 +126,7 @@ impl<'s> Block<'s> {
 pub struct Repetition<'s> {
     /// The place of `for`.
     pub keyword: Span,
-    /// The indices, in the order of the text; empty if none was understood.
+    /// The indices, in the order of the text; empty if they could not be understood.
     pub indices: Vec<Index<'s>>,
 }
 
@@ -153,7 +153,7 @@ pub struct Index<'s> {
 }
 
 impl<'s> Index<'s> {
-    /// Makes an index of which only the name is known yet.
+    /// Makes an index that has only its name so far.
     pub(super) fn begun(name: Name<'s>) -> Self {
         Self {
             name,
@@ -222,7 +222,8 @@ pub enum ValueKind<'s> {
     ColorCode(&'s str),
     /// A name.
     Name(&'s str),
-    /// A call, `FUNCTION(ARGUMENT, …)`; boxed, since it would double the size of every value.
+    /// A call: `FUNCTION(ARGUMENT, …)`. It is boxed because it would double the size of every
+    /// value.
     Call(Box<Call<'s>>),
     /// A value in parentheses: `(VALUE)`.
     Parentheses(Box<Value<'s>>),
@@ -244,8 +245,8 @@ pub enum ValueKind<'s> {
         /// The operators and their right operands, in order.
         rest: Vec<Step<'s>>,
     },
-    /// A missing value after a field's name. The next stage reports it: only that stage knows the
-    /// fields, and so whether the value is missing or the name was meant as a value.
+    /// A missing value after a field's name. Lowering reports it, since lowering knows the fields:
+    /// the value may be missing, or the name may have been meant as a value.
     Missing,
     /// Text that was not understood; a problem was reported for it.
     Bad,
@@ -323,13 +324,13 @@ pub enum Operator {
 }
 
 impl Operator {
-    /// Returns the operator that is written `sign`; `None` if there is none.
+    /// Returns the operator with the spelling `sign`; `None` if there is none.
     pub fn of(sign: &str) -> Option<Self> {
         let mut all = [Self::Add, Self::Subtract, Self::Multiply, Self::Divide].into_iter();
         all.find(|operator| sign.chars().eq([operator.sign()]))
     }
 
-    /// Returns whether the operator is `*` or `/`, which bind tighter than `+` and `-`.
+    /// Returns whether the operator is `*` or `/`, which bind more tightly than `+` and `-`.
     pub fn is_of_product(self) -> bool {
         matches!(self, Self::Multiply | Self::Divide)
     }
@@ -345,7 +346,7 @@ impl Operator {
     }
 }
 
-/// Makes a number, or an angle if the text has a unit.
+/// Makes the node of a number, or of an angle if `written` ends with a unit.
 pub(super) fn number(written: &str) -> ValueKind<'_> {
     let units = [("deg", Unit::Degrees), ("rad", Unit::Radians)];
     let angle = units.into_iter().find_map(|(word, unit)| {
@@ -355,14 +356,14 @@ pub(super) fn number(written: &str) -> ValueKind<'_> {
     angle.unwrap_or(ValueKind::Number(written))
 }
 
-/// Makes `-VALUE`.
+/// Makes the node of `-VALUE`.
 pub(super) fn negation(sign: Span, operand: Value<'_>) -> Value<'_> {
     let span = sign.to(operand.span);
     let operand = Box::new(operand);
     Value::new(ValueKind::Negation { sign, operand }, span)
 }
 
-/// Makes `FUNCTION(ARGUMENT, …)`.
+/// Makes the node of `FUNCTION(ARGUMENT, …)`.
 pub(super) fn call<'s>(
     function: Name<'s>,
     arguments: Vec<Element<'s>>,
@@ -377,7 +378,7 @@ pub(super) fn call<'s>(
     Value::new(ValueKind::Call(Box::new(call)), span)
 }
 
-/// Makes `(VALUE)` if there is one element, and `(VALUE, VALUE, …)` otherwise.
+/// Makes the node of `(VALUE)` if there is one element, and of `(VALUE, VALUE, …)` otherwise.
 pub(super) fn group(elements: Vec<Element<'_>>) -> ValueKind<'_> {
     match <[Element<'_>; 1]>::try_from(elements) {
         Ok([only]) => ValueKind::Parentheses(Box::new(only.value)),
@@ -385,8 +386,8 @@ pub(super) fn group(elements: Vec<Element<'_>>) -> ValueKind<'_> {
     }
 }
 
-/// Makes `VALUE OPERATOR VALUE`. If `left` is a chain of the same precedence, appends the operator
-/// and its operand to it.
+/// Makes the node of `VALUE OPERATOR VALUE`. If `left` is a chain of operators of the same
+/// precedence, appends the operator and its operand to that chain.
 pub(super) fn chain<'s>(
     mut left: Value<'s>,
     operator: Operator,

@@ -1,8 +1,8 @@
 //! The words that recovery knows.
 //!
-//! To the grammar, a field, a kind or a value may have any name. Recovery must know which names
-//! exist to tell what a wrong text means: in `radius color olive`, a value is missing. The names
-//! are looked up in the schema and among those that the text defines.
+//! The grammar accepts any name as a field, a kind or a value. To explain a mistake, recovery must
+//! know which names exist: in `radius color olive`, `color` is a field, so the value of `radius` is
+//! missing. Names are looked up in the schema and among the definitions of the text.
 
 use std::{collections::HashMap, sync::OnceLock};
 
@@ -12,14 +12,14 @@ use super::{
 };
 use crate::schema::{self, Condition, Type, predefined};
 
-/// Functions of other languages that make a vector, a point or a colour.
+/// Functions of other languages that construct a vector, a point or a colour, separated by spaces.
 const FOREIGN_FUNCTIONS: &str = "vec vec3 Vec3 vector Vector vector3 Vector3 Vector3D point Point point3 Point3 Point3D rgba color Color";
 
 /// Words of the language, and names that a text defines.
 #[derive(Debug)]
 pub struct Vocabulary<'s> {
     text: &'s str,
-    /// The defined names, each with whether it surely is a number; computed on first use.
+    /// Defined names, each with `true` if it surely is a number; computed on first use.
     lets: OnceLock<HashMap<&'s str, bool>>,
 }
 
@@ -37,8 +37,8 @@ impl<'s> Vocabulary<'s> {
         schema::block(word).is_some()
     }
 
-    /// Returns the type of a block's field. If `kind` is mistyped, uses the nearest kind. Returns
-    /// `None` if either is unknown.
+    /// Returns the type of the field `field` of the block `kind`. A mistyped `kind` stands for the
+    /// nearest kind. Returns `None` if the kind or the field is unknown.
     pub fn takes(&self, kind: &str, field: &str) -> Option<Type> {
         let row = schema::block_or_nearest(kind)?;
         row.field(field).map(|field| field.takes)
@@ -56,7 +56,8 @@ impl<'s> Vocabulary<'s> {
         row.is_some_and(|row| row.must.contains(&Condition::EachMoreThanZero))
     }
 
-    /// Returns the names of a block's fields. If `kind` is mistyped, uses the nearest kind.
+    /// Returns the names of the fields of the block `kind`. A mistyped `kind` stands for the
+    /// nearest kind.
     pub fn fields(&self, kind: &str) -> impl Iterator<Item = &'static str> + use<> {
         let row = schema::block_or_nearest(kind);
         row.into_iter().flat_map(|row| row.field_names())
@@ -67,13 +68,13 @@ impl<'s> Vocabulary<'s> {
         self.lets().contains_key(name)
     }
 
-    /// Returns the names of definitions and indices, each with whether it surely is a number: it is
-    /// an index, or its definition starts with a number without a unit.
+    /// Returns the names of definitions and indices. The value is `true` if the name surely is a
+    /// number: an index, or a definition that starts with a number without a unit.
     fn lets(&self) -> &HashMap<&'s str, bool> {
         self.lets.get_or_init(|| {
             let mut lets = HashMap::new();
             let mut lexer = Lexer::new(self.text, 0);
-            // The last three tokens that are not comments.
+            // The last three tokens, comments left out.
             let mut last = ["", "", ""];
             loop {
                 let token = lexer.token();
@@ -120,9 +121,9 @@ impl<'s> Vocabulary<'s> {
         FOREIGN_FUNCTIONS.split(' ').any(|word| word == name) && !self.is_let(name)
     }
 
-    /// Returns whether a field that follows the grammar may have been meant otherwise: its block
-    /// does not have that field, its value is the name of a field, or it takes a word and has
-    /// something else.
+    /// Returns whether a field that follows the grammar was perhaps meant otherwise: the block
+    /// `kind` has no such field, the value is the name of a field, or the field takes a word and
+    /// its value is something else.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
         let row = schema::block_or_nearest(kind);
         let takes = row.and_then(|row| Some(row.field(field.name.text)?.takes));

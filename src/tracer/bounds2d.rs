@@ -1,12 +1,12 @@
 //! Bounds of an object in the view plane, and of its inverse depth.
 //!
-//! In: an object. Out: its bounds in X and Y, from which the quadtree is built, and the maximum of
-//! its inverse depth. A sphere is bounded by its tangents from the eye, a triangle or a box by the
-//! extremes of its corners.
+//! In: an object. Out: its bounds in the view plane's coordinates X and Y, from which the quadtree
+//! is built, and the maximum of its inverse depth. A sphere is bounded by its tangents from the
+//! eye, a triangle or a box by the extremes of its corners.
 //!
 //! The bounds are those of the object's convex hull. They are widened by far more than all rounding
-//! errors, and by more than the last precision can distinguish. For a ray outside of the bounds,
-//! every test certainly finds that the ray misses the object.
+//! errors, and by more than the smallest difference that the highest precision can distinguish. For
+//! a ray outside of the bounds, every test therefore finds that the ray misses the object.
 
 use super::{
     camera::Camera, convex::Convex, cuboid, interval::Interval, local_form::Patch, object::Object,
@@ -27,16 +27,18 @@ pub struct Extent {
     pub nearest: f64,
 }
 
-/// Relative widening of a bound that is a quotient: 2^−40. Its few rounding errors amount to 2^−50.
+/// Fraction of its value by which a bound that is a quotient is widened: 2^−40. The few rounding
+/// errors of such a bound amount to 2^−50.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Threshold below which a divisor is not used. The rounding error of such a number, 2^−53 of it,
-/// may be below the normal numbers of `f64`, which end at about 1e-308.
+/// Minimum of a divisor; with a smaller one, the object counts as unbounded. The rounding error of
+/// a smaller number, 2^−53 of it, might be below the normal numbers of `f64`, which end at about
+/// 1e-308.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
-    /// Prepares an object, or only the face `face` of a box. Also returns the object's bounds, or
-    /// `None` if it is certainly not seen in the camera's window.
+    /// Prepares an object, or only the face `face` of a box. Returns it with its bounds, or with
+    /// `None` if the object is certainly not seen in the camera's window.
     pub fn with_extent(
         double: &Camera<Double>,
         fast: &Camera<f64>,
@@ -56,7 +58,7 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
         let hull = match (&object, shape) {
-            // In so wide a view, products with Z (`ahead`) lose digits to the range of `f64`.
+            // In such a wide view, products with Z (`ahead`) may underflow and lose digits.
             _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), _) => of_sphere(sphere, ahead),
             (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), ahead),
@@ -90,14 +92,15 @@ enum Hull {
 }
 
 impl Extent {
-    /// Returns whether each range is in order and the inverse depth is not negative. Returns
-    /// `false` for NaN, which an overflow leaves.
+    /// Returns whether the ends of each range are in order and the inverse depth is not negative.
+    /// Returns `false` if an overflow has left NaN.
     fn is_sound(&self) -> bool {
         self.across.iter().all(|range| range.low <= range.high) && self.nearest >= 0.0
     }
 }
 
-/// Bounds a sphere by its tangents from the eye. `ahead` is the Z of all directions.
+/// Returns the bounds of a sphere from its tangents through the eye. `ahead` is the Z of all
+/// directions.
 ///
 /// In the plane of the X (or Y) axis and the Z axis, the ball is a disc with the centre (c, z) and
 /// the radius R. Two lines through the origin are tangent to it. Their slopes are
@@ -110,8 +113,8 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     if z + radius < 0.0 {
         return Hull::Behind;
     }
-    // z − R and z + R are each rounded once, so that their product has a small relative error. The
-    // sum of c² and the positive product then has a small relative error, too.
+    // z − R and z + R have one rounding each, so that their product has a small relative error. If
+    // the product is positive, its sum with c² has a small relative error, too.
     let below = (z - radius) * (z + radius);
     if !(z > radius && below > SMALLEST) {
         return Hull::Unbounded;
@@ -130,8 +133,8 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     })
 }
 
-/// Bounds a convex hull by its corners: the slopes of its points lie between the slopes of the
-/// corners. `ahead` is the Z of all directions.
+/// Returns the bounds of a convex hull from its corners: the slopes X and Y of its points lie
+/// between those of the corners. `ahead` is the Z of all directions.
 fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     let mut across = [Interval {
         low: f64::INFINITY,

@@ -37,8 +37,9 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// Returns a + b, or 0 if the sum does not exceed the rounding errors of a and b (at most four
-/// roundings each). With a roll of 45 degrees, equal numbers cancel.
+/// Returns a + b, or 0 if the sum does not exceed the errors of a and b, at most four roundings
+/// each. With a roll of 45 degrees, components that should be 0 are such differences of equal
+/// numbers.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -248,31 +249,31 @@ impl<T: Real> Camera<T> {
         self.axes.each_ref().map(|axis| crate::math::dot(axis, v))
     }
 
-    /// Returns point − eye in the world's axes, multiplied by 2^`exponent`. The difference is
-    /// computed without cancellation error.
+    /// Returns point − eye along the axes of the world, multiplied by 2 to the power
+    /// [`exponent`](Camera::exponent). The difference is computed without cancellation error.
     pub fn relative(&self, point: DVec3) -> Ball3<T> {
         [0, 1, 2].map(|axis| self.relative_coordinate(axis, point[axis]))
     }
 
-    /// Returns one coordinate of point − eye in the world's axes, multiplied by 2^`exponent`. `at`
-    /// is the point's coordinate.
+    /// Returns the coordinate number `axis` of point − eye along the axes of the world, multiplied
+    /// by 2 to the power [`exponent`](Camera::exponent). `at` is the point's coordinate.
     pub fn relative_coordinate(&self, axis: usize, at: f64) -> Ball<T> {
         Ball::difference(at, self.eye[axis]).scaled(self.exponent)
     }
 
-    /// Multiplies a length of the world by 2^`exponent`.
+    /// Returns a length of the world multiplied by 2 to the power [`exponent`](Camera::exponent).
     pub fn length(&self, length: f64) -> Ball<T> {
         Ball::exact(length).scaled(self.exponent)
     }
 }
 
-/// Range of the binary exponent of a scene's greatest length in which lengths are not scaled.
-/// Squares of lengths up to 2^400, and of lengths down to 2^−200 times 2^−300, are well within the
-/// range of `f64`, which is 2^−1022 to 2^1024.
+/// Range of the binary exponent of a scene's greatest length; outside of the range, all lengths are
+/// scaled. Squares of lengths from 2^−500 to 2^400 are well within the range of `f64`, 2^−1022 to
+/// 2^1024. The lower end, −300, leaves room for lengths 2^−200 times the greatest.
 const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
 /// Returns the binary logarithm of the factor that brings the greatest length of a scene into the
-/// range [`LENGTHS`]. Returns 0 if the length lies there already.
+/// range [`LENGTHS`]. Returns 0 if the length is already within this range.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
     let shapes = scene.objects.iter().map(|object| &object.shape);
     let farthest = shapes.map(|shape| shape.greatest_length(scene.camera.eye));

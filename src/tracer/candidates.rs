@@ -1,10 +1,10 @@
 //! Conservative visibility: which objects may be seen in a part of the picture.
 //!
-//! In: the world, and a rectangle of its view plane. Out: the objects that may be seen there, which
-//! are all those not proved to be missed or hidden. The method is interval arithmetic: the range of
-//! each object's forms over the rectangle, widened by the forms' error bounds. An object that every
-//! ray through the rectangle hits hides every other object whose maximum inverse depth is below the
-//! first object's minimum.
+//! In: the world, and a rectangle of its view plane. Out: the objects that may be seen in the
+//! rectangle, which are all those not proved to be missed or hidden. The method is interval
+//! arithmetic: the range of each object's linear and quadratic forms over the rectangle, widened by
+//! the forms' error bounds. An object that every ray through the rectangle hits hides every other
+//! object whose maximum inverse depth is below the first object's minimum.
 
 use glam::DVec2;
 
@@ -29,11 +29,10 @@ pub struct VisibilityCandidate {
     pub is_whole: bool,
     /// Interval that contains the inverse depths of everything that may be seen of the object.
     pub(crate) inverse_depth: Interval,
-    /// The crossings at which the object may be seen: only the first, unless the near plane may
-    /// cut the object.
+    /// Which crossings of a ray with the object may be seen: the first one, unless the near plane
+    /// may cut the object.
     pub(crate) crossings: Crossings,
-    /// Bounds of the object in the view plane. In a patch outside of the bounds, the object is not
-    /// seen.
+    /// Bounds of the object in the view plane. Outside of them, the object is not seen.
     pub(super) bounds: Rectangle,
 }
 
@@ -44,7 +43,7 @@ impl VisibilityCandidate {
     }
 }
 
-/// Writes those of the candidates `among`, in file order, that may be seen in `part` to `out`.
+/// Replaces `out` by the candidates in `among` that may be seen in `part`. Both are in file order.
 pub fn narrowed(
     world: &World,
     part: Area,
@@ -58,10 +57,10 @@ pub fn narrowed(
     visible_of(world, &patch, objects, out);
 }
 
-/// Writes all objects that may be seen in `part` to `out`, in file order. Returns `false`, and
+/// Replaces `out` by all objects that may be seen in `part`, in file order. Returns `false`, and
 /// leaves `out` unchanged, if there seem to be more than `most` objects, or if `is_worth` returns
-/// `false`. `is_worth` gets the number of objects, and the mean number of objects whose bounds
-/// contain a ray through the part.
+/// `false`. `is_worth` is called with the number of objects, and with the mean number of objects
+/// whose bounds contain a ray through the part.
 #[must_use]
 pub fn within(
     world: &World,
@@ -91,14 +90,14 @@ pub fn within(
     true
 }
 
-/// Returns the inverse depths of the near and the far plane over a patch; `None` for a plane that
-/// the scene does not have.
+/// Returns the ranges of the inverse depths of the near and the far plane over a patch, with `None`
+/// for a plane that the scene does not have.
 pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Interval>; 2] {
     [&world.geometry.fast.near, &world.geometry.fast.far]
         .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
 }
 
-/// Writes those of the objects `among`, in file order, that may be seen in a patch to `out`.
+/// Replaces `out` by the objects in `among` that may be seen in a patch. Both are in file order.
 pub(crate) fn visible_among(
     world: &World,
     patch: &Patch,
@@ -113,8 +112,8 @@ pub(crate) fn visible_among(
     );
 }
 
-/// Writes those of the objects `among`, given with their bounds and in file order, that may be seen
-/// in a patch to `out`.
+/// Replaces `out` by the objects in `among` that may be seen in a patch. Both are in file order;
+/// `among` has each object's bounds as well.
 fn visible_of(
     world: &World,
     patch: &Patch,
@@ -123,8 +122,8 @@ fn visible_of(
 ) {
     out.clear();
     let [near, far] = clips_over(world, patch);
-    // Of all objects that every ray hits, the greatest minimum of the inverse depth. An object
-    // below it is hidden.
+    // `hidden` is the greatest minimum of the inverse depth among the objects that every ray hits.
+    // An object whose maximum is below it is hidden.
     let mut hidden = f64::NEG_INFINITY;
     for (object, bounds) in among {
         let Some(mut candidate) = cover(world, object, patch, near, far) else {
@@ -145,8 +144,9 @@ fn visible_of(
     }
 }
 
-/// Returns an object as a candidate for a patch. `near` and `far` are the inverse depths of the
-/// clip planes over the patch. Returns `None` if the object is certainly not seen there.
+/// Returns the object with the index `index` as a candidate for a patch. `near` and `far` are the
+/// ranges of the inverse depths of the clip planes over the patch. Returns `None` if the object is
+/// certainly not seen in the patch.
 pub(super) fn cover(
     world: &World,
     index: usize,
@@ -168,7 +168,7 @@ pub(super) fn cover(
     {
         let behind = match object.behind(patch) {
             Some(behind) => behind.or_all(),
-            // The object has a single surface, which the near plane removes wholly or in part.
+            // The object has a single surface, and the near plane removes it wholly or in part.
             None if candidate.inverse_depth.low > near.high => return None,
             None => candidate.inverse_depth,
         };
@@ -195,8 +195,8 @@ pub(super) fn cover(
 }
 
 /// Removes flat objects that the nearest flat object hides in the whole patch, although the ranges
-/// of their depths overlap. Of parallel layers, only the nearest remains; of objects in one plane,
-/// only the first in the file.
+/// of their depths overlap. Of parallel layers, only the nearest remains. Of objects in one plane,
+/// only the first in the file remains.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);
@@ -218,9 +218,9 @@ fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCan
     }
 }
 
-/// Returns whether the object `front`, which every ray through the patch hits, hides the object
-/// `back` there. This is decided by the forms of their planes; it is `false` if one of them is a
-/// sphere.
+/// Returns whether the object `front`, which every ray through the patch hits, certainly hides the
+/// object `back` in the whole patch. The decision compares the forms of their planes; the result is
+/// `false` if `front` or `back` is a sphere.
 pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
     let [a, b] = [front, back].map(|object| f64::object(&world.geometry, object));
     let (a, b) = match (a.surface_kind(), b.surface_kind()) {
@@ -230,7 +230,7 @@ pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
     let ahead = |i: usize, j: usize| {
         let (front_face, back_face) = (&a.firsts()[i], &b.firsts()[j]);
         front_face.minus(back_face).over(patch).low > 0.0
-            // Only planes whose forms are equal in `f64` can be the same plane.
+            // If the forms differ in `f64`, the planes are certainly not the same.
             || front < back && front_face.equals(back_face) && {
                 let parts = ((front, a.part(i)), (back, b.part(j)));
                 depth_order::is_one_plane(&world.geometry, parts.0, parts.1)
@@ -251,9 +251,9 @@ pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
     backs.any(is_behind)
 }
 
-/// Returns which of the candidates is seen at the point `at` of a sub-pixel, and whether the answer
-/// was found before the last precision. In the last precision, inverse depths that cannot be told
-/// apart count as equal.
+/// Returns which of the candidates is seen at the point `at` of a sub-pixel (`None` for the
+/// background), and whether the answer is certain. If not, it was decided in the highest precision,
+/// where inverse depths that cannot be distinguished count as equal.
 pub fn object_at<'a>(
     world: &World,
     sub_pixel: SubPixel,

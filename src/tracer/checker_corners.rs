@@ -1,13 +1,13 @@
 //! The squares of a checkerboard at the corners of many pixels at once.
 //!
-//! In: a block of pixels in which nothing but one board is seen. Out: runs of pixels that show one
-//! colour, and for every other pixel the squares that it shows.
+//! In: a block of pixels in which only one board is seen. Out: runs of pixels that show one colour,
+//! and for every other pixel the squares that it shows.
 //!
 //! Where only a board is seen, quartering mostly ends at single pixels, and neighbouring pixels
-//! share corners. The squares that contain the corners of a block are therefore computed row by row
-//! in plain arrays, which the compiler vectorizes. A ratio of linear forms takes its extremes at
-//! corners, so a pixel whose corners lie in one square, each farther from the square's edge than
-//! the error bound, shows nothing else.
+//! share corners. The squares that contain the corners of a block's pixels are therefore computed
+//! row by row in plain arrays, which the compiler vectorizes. A ratio of linear forms takes its
+//! extremes at corners. If all corners of a pixel lie in one square, farther from the square's
+//! edges than the error bound, the pixel therefore shows only this square.
 
 use std::{array, ops::ControlFlow};
 
@@ -24,47 +24,48 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// Minimum ratio of a quotient's denominator l to its error f. From 4 on, (a ± e)/(l ± f) differs
-/// from a/l by at most 4/3 · (e + f·|a/l|)/l. The error bound uses the factor 4 instead of 4/3.
+/// Minimum ratio of a quotient's denominator l to its error f; below it, the quotient's error is
+/// not bounded. For ratios from 4 on, (a ± e)/(l ± f) differs from a/l by at most 4/3 · (e +
+/// f·|a/l|)/l. The error bound uses the factor 4 instead of 4/3.
 const MIN_CLEARANCE: f64 = 4.0;
 
 /// Maximum error of a board coordinate, in squares; with a larger error, the squares are not
-/// computed. At 1/4, only the half of a square's width that is away from its edges would be
-/// certain.
+/// computed. At 1/4, corners are certain only in the middle half of a square's width.
 const MAX_ERROR: f64 = 0.25;
 
-/// Maximum side of a block, in pixels: the side of the squares that quartering begins with.
+/// Maximum side of a block of pixels, in pixels. It is also the side of the squares with which
+/// quartering begins.
 pub(super) const SIDE: usize = 32;
 
-/// Number of corners in a row: 33 are needed, rounded up to whole vectors of eight.
+/// Number of corners in a row of a block: 33 are needed, rounded up to whole vectors of eight.
 const LANES: usize = 40;
 
-/// The squares of a board that one pixel shows.
+/// The squares of a board that one pixel shows, known by those at its corners.
 #[derive(Clone, Copy, Debug)]
 pub struct CheckerPixel {
     pub(crate) squares: CheckerForms,
-    /// The squares of the four corners, in x and in z: top left, top right, bottom left, bottom
-    /// right.
+    /// The squares at the four corners, in x and in z. The order is top left, top right, bottom
+    /// left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
-    /// Whether the corners certainly lie in these squares. If not, they lie in these squares of a
-    /// board whose lines are displaced by at most the error bounds of `squares`.
+    /// Whether the corners certainly lie in the squares `corners`. If not, they lie in these
+    /// squares of a board whose lines are displaced by at most the error bounds of `squares`.
     pub(crate) is_certain: bool,
 }
 
-/// A block of pixels in which nothing but one board is seen.
+/// A block of pixels in which only one board is seen.
 struct BoardBlock {
     block: Area,
     squares: CheckerForms,
-    /// Minimum distance of a corner from the edges of its square, in x and in z, in squares.
-    /// Nearer corners are uncertain.
+    /// Minimum distance of a corner from the edges of its square, in x and in z, in squares. At a
+    /// smaller distance, the square of the corner is uncertain.
     slack: [f64; 2],
-    /// x of each column of corners, in units of the block's width from its centre.
+    /// The x of each column of corners, measured from the block's centre in units of its width.
     columns: [f64; LANES],
 }
 
-/// One row of corners.
+/// The squares at one row of pixel corners in a block.
 struct CornerRow {
-    /// The square of each corner, in x and in z; NaN if it is uncertain.
+    /// The square of each corner, in x and in z; NaN if the square is uncertain.
     squares: [[f64; LANES]; 2],
     /// The parity of each corner's square: 1 if the sum of its two indices is even, −1 if it is
     /// odd.
@@ -82,10 +83,10 @@ pub enum ShownSquares<'a> {
     Unknown,
 }
 
-/// Calls `each` with what the pixels of `part` show of the checkerboard `object`: with runs of
-/// pixels that show one colour, and with every other pixel. Nothing but the board may be seen in
-/// `part`, whose sides are at most [`SIDE`] pixels. Returns `None` if the object is not a
-/// checkerboard, or if the board is too far away. Otherwise returns `Break` if `each` did.
+/// Calls `each` with every run of pixels of `part` that shows one colour of the checkerboard
+/// `object`, and with every other pixel. Only the board may be seen in `part`, whose sides are at
+/// most [`SIDE`] pixels. Returns `None` if the object is not a checkerboard, or if the board is too
+/// far away for its squares to be distinguished. Otherwise, returns `Break` if `each` did.
 pub fn show(
     world: &World,
     part: Area,
@@ -121,15 +122,15 @@ impl CornerRow {
         }
     }
 
-    /// Returns the indices in x and z of the square that contains a corner.
+    /// Returns the indices in x and z of the square at the corner in column `column`.
     fn at(&self, column: usize) -> [f64; 2] {
         [self.squares[0][column], self.squares[1][column]]
     }
 }
 
 impl BoardBlock {
-    /// Prepares a block. Returns `None` if the board is too far away for its squares to be told
-    /// apart.
+    /// Prepares a block. Returns `None` if the board is too far away for its squares to be
+    /// distinguished.
     fn new(squares: CheckerForms, block: Area) -> Option<Self> {
         let CheckerForms { across, .. } = squares;
         let least = squares.least()?;
@@ -192,8 +193,8 @@ impl BoardBlock {
         }
     }
 
-    /// Calls `each` with the pixels of row `row`, between the rows of corners `above` and `below`.
-    /// Stops if `each` breaks.
+    /// Calls `each` with the runs and pixels of row `row`, which lies between the rows of corners
+    /// `above` and `below`. Stops if `each` breaks.
     fn row(
         &self,
         row: u32,
@@ -230,8 +231,8 @@ impl BoardBlock {
         ControlFlow::Continue(())
     }
 
-    /// Returns the squares in which a pixel's corners certainly or probably lie. Returns `None` if
-    /// one of them is not finite.
+    /// Returns the squares in which a pixel's corners lie, with certainty or probably. Returns
+    /// `None` if the index of a square is not finite.
     fn checks(
         &self,
         row: u32,
@@ -281,9 +282,9 @@ impl BoardBlock {
         })
     }
 
-    /// Replaces each uncertain square (NaN) in `corners` with the one in which the corner probably
-    /// lies. Returns the squares, and the maximum distance, in squares, of such a corner from the
-    /// nearest line in x and in z. Returns `None` if a quotient is not finite.
+    /// Replaces each uncertain square (NaN) in `corners` by the one in which the corner probably
+    /// lies. Returns the squares, and for x and z the maximum distance, in squares, between an
+    /// uncertain corner and the nearest line. Returns `None` if a quotient is not finite.
     #[cold]
     fn probable(
         &self,
@@ -299,7 +300,7 @@ impl BoardBlock {
                 if corner[axis].is_nan() {
                     corner[axis] =
                         floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
-                    // Both the computed quotient and the true one lie within `slack` of the line.
+                    // The computed quotient and the true one both lie within `slack` of the line.
                     doubt[axis] = 2.0 * self.slack[axis];
                 }
             }
@@ -313,7 +314,7 @@ impl BoardBlock {
 }
 
 impl CheckerPixel {
-    /// Returns the first and the last square in the pixel, in x and in z.
+    /// Returns the ranges of the squares in the pixel, in x and in z, as first and last square.
     pub(crate) fn ranges(&self) -> [(f64, f64); 2] {
         self.corners.map(|squares| {
             let low = squares.into_iter().fold(f64::INFINITY, f64::min);
@@ -324,7 +325,7 @@ impl CheckerPixel {
 }
 
 /// Returns the position `halves` half pixels from the left or top edge of a block that is `pixels`
-/// pixels long, in units of the block's side from its centre.
+/// pixels long. The result is measured from the block's centre, in units of its side.
 fn middle(halves: u32, pixels: u32) -> f64 {
     (f64::from(halves) - f64::from(pixels)) / f64::from(2 * pixels)
 }
@@ -337,8 +338,8 @@ fn corners_simd(board_block: &BoardBlock, y: f64, length: usize, out: &mut Corne
     board_block.evaluate(y, length, out);
 }
 
-/// Writes the parity sign (1 or −1) of each pixel whose corners all lie in one square to `out`, and
-/// 0 for all other pixels.
+/// Writes to `out` the parity sign (1 or −1) of each pixel whose corners all lie in one square, and
+/// 0 for each other pixel.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
@@ -353,8 +354,8 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
     }
 }
 
-/// The position on a checkerboard as ratios of forms: x = N₀/ℓ and z = N₁/ℓ, in squares. Rounded
-/// down, they are the indices of a square.
+/// The position on a checkerboard as ratios of linear forms: x = N₀/ℓ and z = N₁/ℓ, in squares. x
+/// and z rounded down are the indices of a square.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CheckerForms {
     pub(crate) across: [LocalForm; 2],
@@ -362,7 +363,7 @@ pub(crate) struct CheckerForms {
     pub(crate) odd: bool,
 }
 
-/// Offsets of the corners of a pixel, or of another rectangle, from its centre.
+/// Offsets of the corners of a rectangle from its centre, in units of its sides.
 const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
 
 impl CheckerForms {
@@ -378,21 +379,23 @@ impl CheckerForms {
         }
     }
 
-    /// Returns the least value of ℓ over the pixel. Returns `None` if it is not clearly positive.
+    /// Returns the least value of ℓ over the rectangle. Returns `None` if it is not clearly
+    /// positive.
     fn least(&self) -> Option<f64> {
         let least = self.below.factors[2] - self.below.spread() * UP;
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)
     }
 
-    /// Bounds the error of the quotient of `across` and ℓ, where the quotient's magnitude is at
-    /// most `greatest` and ℓ is at least `least`.
+    /// Returns an upper bound of the error of `across`/ℓ, whose absolute value is at most
+    /// `greatest`. ℓ must be at least `least`.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
         let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
-    /// Returns the first and the last square in the pixel, in x and in z, with at most one square
-    /// too many at each end. Returns `None` if ℓ is not clearly positive or an error is too large.
+    /// Returns the ranges of the squares in the rectangle, in x and in z, as first and last square.
+    /// A range may have one square too many at each end. Returns `None` if ℓ is not clearly
+    /// positive or an error is too large.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
@@ -413,6 +416,6 @@ impl CheckerForms {
 }
 
 pub(super) fn is_odd(whole: f64) -> bool {
-    // `ranges` returns only numbers far below 2^53.
+    // `ranges` returns only whole numbers far below 2^53, so that the conversion is exact.
     whole as i64 & 1 == 1
 }

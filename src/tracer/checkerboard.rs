@@ -1,11 +1,12 @@
 //! The checkerboard: an infinite horizontal plane of squares.
 //!
 //! In: the board's height and squares, and the camera. Out: for a ray, its crossing and the colour
-//! there. Below the horizon the plane's inverse depth ℓ is positive, and x/square is a ratio of
-//! linear forms, N/ℓ. N is measured from the line between squares that is nearest to the eye: far
-//! from the origin, the number of whole squares up to there would cost N its precision. Of this
-//! number only the parity matters, and it is kept apart. Errors: those of the forms; a ratio whose
-//! error interval contains a whole number is in doubt.
+//! there. Below the horizon, the plane's inverse depth ℓ is positive, and x/square is a ratio of
+//! linear forms, N/ℓ. N is measured from the line between squares that is nearest to the eye.
+//! Measured from the world's origin, N would lose its precision to the number of whole squares
+//! between origin and eye. Only the parity of this number matters, and it is stored separately.
+//! Errors are those of the forms; a ratio whose error interval contains a whole number leaves the
+//! colour in doubt.
 
 use super::{
     camera::{Camera, Direction, Window},
@@ -17,32 +18,34 @@ use crate::{
     scene,
 };
 
-/// Limit on the number of squares by which the origin of a board is moved. A rounded quotient of
-/// 2^52 or more need not be the nearest whole number; the origin then stays.
+/// Maximum number of squares by which the origin of a board is moved. Above it, the origin is not
+/// moved, because a rounded quotient need not be the nearest whole number.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
 #[derive(Clone, Debug)]
 pub struct Checkerboard<T: Real> {
-    /// The board's plane. A ray hits it where the plane's inverse depth ℓ is positive.
+    /// The board's plane. A ray hits it if the plane's inverse depth ℓ is positive along the ray.
     pub plane: Convex<T>,
-    /// ℓ, scaled like `across` by the power of two that brings the height of the eye to about 1.
+    /// Inverse depth ℓ of the board's plane as a form, scaled by the power of two that brings the
+    /// height of the eye above the plane to about 1. `across` has the same scale.
     pub below: Form<T>,
-    /// N for x and for z: N/ℓ is the coordinate in squares from the line that is nearest to the
-    /// eye.
+    /// Numerators N of the board's coordinates x and z as forms. N/ℓ, where ℓ is `below`, is the
+    /// coordinate in squares, measured from the line between squares that is nearest to the eye.
     pub across: [Form<T>; 2],
-    /// Whether the sum of these two lines' indices is odd.
+    /// Whether the sum of the indices of the two lines nearest to the eye, in x and in z, is odd.
     pub odd: bool,
 }
 
-/// A checkerboard in a pixel, in a part of one, or in a rectangle of pixels. A point (x, y) of the
-/// rectangle is measured from its centre, in units of its sides. Where ℓ > 0, the point shows the
-/// point (N₀/ℓ, N₁/ℓ) of the board, in squares from a nearby corner of squares.
+/// A checkerboard over a rectangle of the picture: a pixel, a part of one, or several pixels. A
+/// point (x, y) of the rectangle is measured from its centre, in units of its sides. Where ℓ > 0,
+/// it shows the point (N₀/ℓ, N₁/ℓ) of the board, measured in squares from a nearby corner of
+/// squares.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalBoard {
-    /// Factors of x, y and 1 in N₀ and N₁. In the last precision, numbers may exceed the range of
-    /// `f64`, so all forms are scaled by one power of two that brings the largest factor to about
-    /// 1.
+    /// Factors of x, y and 1 in N₀ and N₁. In the highest precision, numbers may exceed the range
+    /// of `f64`. All forms are then scaled by one power of two that brings the largest factor to
+    /// about 1.
     pub across: [[f64; 3]; 2],
     /// Factors of x, y and 1 in ℓ.
     pub below: [f64; 3],
@@ -53,8 +56,8 @@ pub struct LocalBoard {
 }
 
 impl<T: Real> Checkerboard<T> {
-    /// Prepares a checkerboard. Returns `None` if its plane contains the eye, which sees nothing of
-    /// it.
+    /// Prepares a checkerboard. Returns `None` if its plane contains the eye, which then sees
+    /// nothing of the board.
     pub fn new(camera: &Camera<T>, shape: &scene::Checkerboard) -> Option<Self> {
         let scene::Checkerboard { y, square, .. } = *shape;
         if y == camera.eye.y {
@@ -87,7 +90,7 @@ impl<T: Real> Checkerboard<T> {
         })
     }
 
-    /// Returns whether the square that the ray hits has the second colour, which is so if
+    /// Returns whether the square that the ray hits has the second colour, that is whether
     /// floor(x/square) + floor(z/square) is odd.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
@@ -100,12 +103,12 @@ impl<T: Real> Checkerboard<T> {
         Ok(odd)
     }
 
-    /// Expands the board about the direction `center`, in units of `sides`, the sides of a
-    /// rectangle in X and Y.
+    /// Expands the board's forms about the direction `center` of a rectangle, to those of
+    /// [`LocalBoard`]. `sides` are the sides of the rectangle in X and Y, which become the unit.
     ///
     /// A multiple of ℓ is subtracted from N₀ and N₁, which moves the origin to a nearby corner of
     /// squares. The multiple makes N₀ and N₁ small at the corner of the rectangle where ℓ is
-    /// greatest; elsewhere ℓ may be almost 0.
+    /// greatest; elsewhere, ℓ may be almost 0.
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
         let local = |form: &Form<T>| {
             let [a, b, _] = form.factors();
@@ -173,7 +176,7 @@ struct EyeOffset {
 impl EyeOffset {
     /// Splits a coordinate of the eye by the side `square` of the squares, without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
-        // The remainder operation of `f64` is exact, also with an infinite divisor. Differences of
+        // The remainder operation of `f64` is exact, even with an infinite divisor. Differences of
         // numbers within a factor of two of each other are exact, too (Sterbenz).
         let mut rest = coordinate % (2.0 * square);
         let whole = match rest.abs() {

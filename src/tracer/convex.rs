@@ -1,11 +1,12 @@
 //! A convex object with flat faces: the geometry of a triangle, a box, or a checkerboard's plane.
 //!
-//! In: linear forms over the view plane. Out: a ray's crossings; over a rectangle, the intervals of
-//! their inverse depths. A ray hits the object where no edge's form is negative: the edge functions
-//! of Olano and Greer ("Triangle scan conversion using 2D homogeneous coordinates", 1997). There it
-//! enters through the farthest of the planes that the eye sees from outside, and leaves through the
-//! nearest of the others: the slabs of Kay and Kajiya ("Ray tracing complex scenes", 1986) in
-//! inverse depths, which are linear forms. Errors: each form has its own bound.
+//! In: linear forms over the view plane. Out: the crossings of a ray; over a rectangle, the ranges
+//! of the crossings' inverse depths. A ray hits the object if no edge's form is negative: these are
+//! the edge functions of Olano and Greer ("Triangle scan conversion using 2D homogeneous
+//! coordinates", 1997). The ray enters through the farthest of the planes that the eye sees from
+//! outside, and leaves through the nearest of the other planes: the slabs of Kay and Kajiya ("Ray
+//! tracing complex scenes", 1986) in inverse depths, which are linear forms. Each form has its own
+//! error bound.
 
 use std::cmp::Ordering;
 
@@ -24,17 +25,17 @@ pub type Face<T> = (u8, Form<T>);
 /// A convex object with flat faces, prepared for one picture.
 #[derive(Clone, Debug)]
 pub struct Convex<T: Real> {
-    /// First the forms of the edges, each ≥ 0 on the object's side; then the inverse depths of the
-    /// first faces, which rays hit first; then those of the second faces, behind them.
+    /// The forms of the edges, each ≥ 0 on the object's side; then the inverse depths of the first
+    /// faces, which rays hit first; then those of the second faces, which rays hit behind them.
     forms: Vec<Form<T>>,
     /// Number of edges.
     edges: u8,
     /// Number of edges and first faces together.
     firsts: u8,
-    /// Number of each face's plane, the first faces before the second ones.
+    /// Number of each face's plane: those of the first faces, then those of the second faces.
     planes: [u8; 6],
-    /// Whether the eye is inside. A ray then first hits the nearest of the first faces' planes,
-    /// not the farthest.
+    /// Whether the eye is inside. A ray then first hits the nearest of the first faces' planes; if
+    /// the eye is outside, the farthest.
     is_inside: bool,
 }
 
@@ -77,13 +78,14 @@ impl<T: Real> Convex<T> {
         &self.forms[usize::from(self.edges)..usize::from(self.firsts)]
     }
 
-    /// Returns the inverse depths of the faces where rays from outside leave the object.
+    /// Returns the inverse depths of the faces through which rays that start outside leave the
+    /// object.
     pub fn seconds(&self) -> &[Form<T>] {
         &self.forms[usize::from(self.firsts)..]
     }
 
-    /// Returns the forms that bound the object: all are ≥ 0 where rays hit it, and at least one is
-    /// 0 on its silhouette.
+    /// Returns the forms that bound the object: all are ≥ 0 for rays that hit the object, and at
+    /// least one is 0 on its silhouette.
     pub fn bounds(&self) -> &[Form<T>] {
         if self.is_inside {
             return self.edges();
@@ -91,30 +93,31 @@ impl<T: Real> Convex<T> {
         &self.forms[..usize::from(self.firsts)]
     }
 
-    /// Returns whether the eye is inside. Of several faces' planes, the nearest one is then seen.
+    /// Returns whether the eye is inside. A ray then first hits the nearest of the first faces'
+    /// planes.
     pub fn is_inside(&self) -> bool {
         self.is_inside
     }
 
-    /// Returns the surface part of a face. `face` is its index among all faces, the first faces
+    /// Returns the surface part of the face with the index `face`. The index counts the first faces
     /// before the second ones.
     pub fn part(&self, face: usize) -> SurfacePart {
         SurfacePart::Plane(self.planes[face])
     }
 
-    /// Returns the inverse depth of the face that is the given part. Returns `None` if there is
-    /// none.
+    /// Returns the inverse depth of the face `part` as a form. Returns `None` if the object does
+    /// not have this face.
     pub fn face(&self, part: SurfacePart) -> Option<&Form<T>> {
         let mut faces = self.forms[usize::from(self.edges)..].iter().enumerate();
         faces.find_map(|(face, form)| (self.part(face) == part).then_some(form))
     }
 
-    /// Returns the nearest crossing in front of the eye: where the ray enters the closed object or,
-    /// from inside, leaves it. Returns `None` if the ray misses the object.
+    /// Returns the nearest crossing in front of the eye: where the ray enters the object or, from
+    /// inside, leaves it. Returns `None` if the ray misses the object. A ray on an edge hits it.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
-        // In the last precision, an object with edges of which no form is positive is too small, or
-        // too nearly edge-on, to be distinguished from nothing.
+        // In the highest precision, all edges' forms may be 0. The object is then too small, or too
+        // nearly edge-on, to be distinguished from nothing, and the ray misses it.
         let (mut doubt, mut is_met) = (false, self.is_inside || self.edges == 0);
         for edge in self.edges() {
             match edge.at(r).sign() {
@@ -142,19 +145,20 @@ impl<T: Real> Convex<T> {
         Ok(is_met.then_some(crossing))
     }
 
-    /// Returns the crossing behind the first one, for a ray that hits the object. Returns `None` if
+    /// Returns the crossing behind the first one. The ray must hit the object. Returns `None` if
     /// the object has no second faces.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }
 
-    /// Returns the crossing with the least inverse depth of `faces`, or with the greatest if
-    /// `which` is `Greater`. Returns `None` if there are no faces.
+    /// Returns the crossing with one of `faces` that has the least inverse depth, or the greatest
+    /// if `which` is `Greater`. `start` is the index of the first of `faces` among all faces.
+    /// Returns `None` if there are no faces.
     ///
-    /// If two inverse depths are not clearly apart, the centre of the returned ball need not be the
-    /// exact extreme, but is within the larger of the two radii of it. The crossing is then
-    /// assigned to an edge, not to a plane: just outside of an edge, a ray hits one plane slightly
-    /// before it hits the box in the other.
+    /// If two inverse depths are not clearly different, the centre of the returned ball may differ
+    /// from the exact extreme, by at most the larger of the two radii. The crossing then belongs to
+    /// an edge, not to a plane: just outside of an edge, a ray hits one plane slightly before it
+    /// hits the box in the other.
     #[inline]
     fn extreme(
         &self,
@@ -175,7 +179,7 @@ impl<T: Real> Convex<T> {
             if !difference.is_zero() && difference.is_negative() == which.is_lt() {
                 extreme = other;
             }
-            // NaN, which an overflow leaves, is not clear either.
+            // NaN, which an overflow leaves, does not count as clear.
             let is_clear = distance > rad * (2.0 * UP);
             if !is_clear {
                 extreme.part = SurfacePart::Edge;
@@ -189,7 +193,7 @@ impl<T: Real> Convex<T> {
 
 impl Convex<f64> {
     /// Computes how the object covers a rectangle. Returns `None` if no ray through the rectangle
-    /// hits it.
+    /// hits the object.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let mut is_whole = true;
         for edge in self.edges() {
@@ -208,8 +212,8 @@ impl Convex<f64> {
         })
     }
 
-    /// Returns the range of the inverse depths at which rays from outside leave the object. Returns
-    /// `None` if it has no second faces.
+    /// Returns the range of the inverse depths at which rays that start outside leave the object.
+    /// Returns `None` if the object has no second faces.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let faces = self.seconds().iter().map(|face| face.over(patch));
         Interval::fold(faces, f64::max)

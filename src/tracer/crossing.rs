@@ -13,7 +13,7 @@ pub struct Crossing<T: Real> {
     pub part: SurfacePart,
 }
 
-/// A part of an object's surface whose depth follows one formula.
+/// A part of an object's surface on which one formula gives the depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SurfacePart {
     /// The side of a sphere where a ray enters.

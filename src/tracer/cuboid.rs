@@ -30,8 +30,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         let outside = if is_upper { order } else { order.reverse() };
         let faces = match outside {
             _ if eye == at => {
-                // A face whose plane contains the eye is seen edge-on and bounds no depth, but a
-                // ray must not run on the plane's outer side.
+                // A face whose plane contains the eye is seen edge-on and bounds no depth. A ray on
+                // the outer side of the plane misses the box.
                 let inward = if is_upper { -1.0 } else { 1.0 };
                 let normal = normal.map(|x| x.times_power(inward));
                 edges.push(Form::new(camera, &camera.turned(&normal)));
@@ -44,8 +44,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         faces.push((plane, inverse_depth(camera, &normal, &height)));
     }
     for (i, front) in &fronts {
-        // Every ray passes between two parallel faces, so they need no line. A single face is
-        // bounded by the lines that it takes part in; the other lines follow from these.
+        // Every ray passes between two parallel faces, so that these have no common edge. A single
+        // face is bounded only by its own edges; they imply the others.
         let is_bound = |j: &u8| i / 2 != j / 2 && only.is_none_or(|only| [*i, *j].contains(&only));
         let bounding = backs.iter().filter(|(j, _)| is_bound(j));
         edges.extend(bounding.map(|(_, back)| front.minus(back)));
@@ -54,7 +54,7 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         return Convex::new(edges, fronts, backs);
     };
     // A ray enters through the farthest of the front planes, and leaves through the nearest of the
-    // back planes. These comparisons bound the face within its own side of the box.
+    // back planes. These comparisons bound the face against the other faces on its side of the box.
     for (mut faces, is_nearest) in [(fronts, false), (backs, true)] {
         let Some(at) = faces.iter().position(|(number, _)| *number == only) else {
             continue;

@@ -13,9 +13,9 @@ use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
-/// Threshold of a line's error, in units of its greatest slope, from which on double-double was not
-/// precise enough: eight roundings of an `f64`, more than the three roundings of the line's factors
-/// amount to.
+/// Minimum error of a line, in units of its greatest slope, at which the line is computed again in
+/// a higher precision than double-double. The value is eight unit roundoffs of `f64`; the line's
+/// factors alone have three.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A curve that separates objects in a pixel.
@@ -95,7 +95,7 @@ impl<T: Real> SubPixelFrame<T> {
         }
     }
 
-    /// Returns the line on which a form is zero.
+    /// Returns the line on which the form `form` is zero.
     pub fn line(&self, form: &Form<T>) -> Boundary {
         let (factors, rad) = self.local(form);
         line(&factors, rad)
@@ -116,9 +116,10 @@ impl<T: Real> SubPixelFrame<T> {
     /// where c is the centre, R the radius and r the ray's direction. For an eye on the sphere's
     /// surface, returns the line c·r = 0 instead.
     ///
-    /// For an eye outside, the line c·r = 0 is returned as well. No ray on it hits the sphere, but
-    /// it separates the conic's two branches, in front of the eye and behind it. If the sphere
-    /// differs from a plane only by a 1e-200th part, no precision tells these branches apart.
+    /// For an eye outside, returns the line c·r = 0 in addition. No ray on this line hits the
+    /// sphere, but the line separates the conic's two branches, in front of the eye and behind it.
+    /// If the sphere is almost a plane, to a part in 1e200, no precision distinguishes the two
+    /// branches.
     pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Boundary> {
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
@@ -136,7 +137,7 @@ impl<T: Real> SubPixelFrame<T> {
         curves
     }
 
-    /// Returns the curve of rays that hit two surfaces at the same depth. Returns `None` if the
+    /// Returns the curve of rays that hit two surfaces at equal depths. Returns `None` if the
     /// surfaces are equal planes or concentric spheres.
     pub fn crossing(&self, a: &InverseDepth<T>, b: &InverseDepth<T>) -> Option<Boundary> {
         match (a, b) {
@@ -146,8 +147,8 @@ impl<T: Real> SubPixelFrame<T> {
             | (InverseDepth::Sphere(sphere), InverseDepth::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // Converts the plane's form to the sphere's unit of inverse depth. The sphere's
-                // scale is within the range of an `f64`; the inverse of the scale need not be.
+                // The factors are converted to the sphere's unit of inverse depth. The sphere's
+                // scale is within the range of `f64`; the inverse of the scale need not be.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
@@ -156,15 +157,15 @@ impl<T: Real> SubPixelFrame<T> {
         }
     }
 
-    /// Returns the curve of rays that hit two spheres at the same depth, by their radical plane: |q
-    /// − c|² − R² is the same for both spheres where
+    /// Returns the curve of rays that hit two spheres at equal depths, by the spheres' radical
+    /// plane. On it, |q − c|² − R² is equal for both spheres, so that
     ///
     /// 2 (c' − c)·q = C' − C,
     ///
     /// with the centres c and c', and C = c·c − R². Returns `None` for concentric spheres.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
         let ((c, square), (d, other)) = (a.parts(), b.parts());
-        // Brings both spheres to one unit.
+        // Both spheres must have one unit of length.
         let exponent = libm::frexp(a.scale()).1 - libm::frexp(b.scale()).1;
         let d = d.map(|x| x.scaled(exponent));
         let other = other.scaled(2 * exponent);
@@ -182,13 +183,13 @@ impl<T: Real> SubPixelFrame<T> {
         Some(self.circle(&c, &square, &linear, &h))
     }
 
-    /// Returns the cone of the circle in which the plane n·q = h intersects a sphere. A ray of
-    /// direction r hits the plane at q = (h/(n·r)) r, so the cone is
+    /// Returns the cone of rays through the circle in which the plane n·q = h intersects a sphere.
+    /// A ray of direction r hits the plane at q = (h/(n·r)) r, so that the cone is
     ///
     /// |h r − (n·r) c|² = R² (n·r)².
     ///
-    /// `plane` is n·r as a linear form. The left side is a sum of squares that are small where the
-    /// circle is, so the formula does not cancel for a small and far sphere.
+    /// `plane` is n·r as a linear form. The left side is a sum of squares that are small near the
+    /// circle. The formula therefore does not cancel if the sphere is small and far away.
     fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Boundary {
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
@@ -197,7 +198,8 @@ impl<T: Real> SubPixelFrame<T> {
         conic(&[0, 1, 2, 3, 4, 5].map(|i| &outside[i] - square * &inside[i]))
     }
 
-    /// Returns the components of the direction r as linear forms of the point of the sub-pixel.
+    /// Returns the components X, Y and Z of the direction through a point of the sub-pixel, as
+    /// linear forms of the point.
     fn directions(&self) -> [Linear<T>; 3] {
         let [x, y, z] = self.center.clone();
         let zero = || Ball::exact(0.0);
@@ -208,7 +210,8 @@ impl<T: Real> SubPixelFrame<T> {
         ]
     }
 
-    /// Returns v·r as a linear form of the point of the sub-pixel.
+    /// Returns v·r as a linear form of the point of the sub-pixel, where r is the direction through
+    /// the point.
     fn along(&self, v: &Ball3<T>) -> Linear<T> {
         [
             &v[0] * &self.pitch,
@@ -223,12 +226,12 @@ fn line_of<T: Real>(linear: &Linear<T>) -> Boundary {
     line(&factors, linear[0].rad + linear[1].rad + linear[2].rad)
 }
 
-/// Returns the line on which a linear form is zero. The form is divided by its greater slope, so
-/// that forms of the same line, such as the horizon of parallel planes, get the same factors.
+/// Returns the line on which a linear form is zero. The form is divided by its greater slope. Forms
+/// of one line, such as the horizon of parallel planes, therefore get equal factors.
 fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let [a, b, _] = factors;
     let greatest = if a.magnitude() < b.magnitude() { b } else { a };
-    // A form without slope is zero nowhere on a line, and any power of two will do.
+    // A form without slope is zero on no line, so that its scale does not matter.
     let exponent = -greatest.magnitude().exponent();
     let greatest = greatest.scaled(exponent);
     let slope = if greatest.is_zero() {
@@ -239,10 +242,10 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // This covers the roundings of the quotients, and of their conversion to `f64`.
+    // The rounding errors of the quotients and of their conversion to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-    // The quotient of the error bound is rounded, too, and so is the slope's conversion to `f64`.
+    // The quotient of the error bound and the conversion of the slope to `f64` are rounded, too.
     let rad = rad.scaled(exponent).to_f64() / slope.to_f64().abs() * (1.0 + 8.0 * f64::UNIT);
     Boundary::Line(BoundaryLine {
         factors,
@@ -273,7 +276,7 @@ fn conic<T: Real>(factors: &Quadratic<T>) -> Boundary {
         .iter()
         .fold(T::Radius::ZERO, |size, x| size.max(x.size()));
     let exponent = -size.exponent();
-    // The factors' errors are summed, since |x| and |y| are at most 1/2.
+    // The errors of the factors are added, because |x| and |y| are at most 1/2.
     let rad = factors.iter().fold(T::Radius::ZERO, |rad, x| rad + x.rad);
     Boundary::Conic(Conic {
         factors: factors.each_ref().map(|x| double(&x.mid.scaled(exponent))),
@@ -288,17 +291,18 @@ fn double<T: Real>(x: &T) -> Double {
 }
 
 impl Conic {
-    /// Bounds the part of the pixel's area between the true conic and the computed one. These
-    /// points satisfy |F| ≤ ε, where F is the computed form and ε its error bound. Three bounds of
-    /// their area hold, and the least one is returned:
+    /// Returns an upper bound of the area between the true conic and the computed one, in pixels.
+    /// All points between them satisfy |F| ≤ ε, where F is the computed form and ε its error bound.
+    /// The result is the least of three bounds of the area of these points:
     ///
     /// - By the coarea formula, 2ε · length/(least gradient). A conic in the pixel is no longer
     ///   than twice the pixel's perimeter.
-    /// - For an ellipse 2πε/√(AC − B²), the difference of two ellipses' areas.
-    /// - In any case 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg (1973)
+    /// - For an ellipse, 2πε/√(AC − B²), the difference of two ellipses' areas.
+    /// - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg (1973)
     ///   for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest |F| is at
-    ///   least 1/16: a factor of at least 1/2 is a combination of values of F, the factor A of
-    ///   three values with the weights 2, 4 and 2, and the other factors of fewer.
+    ///   least 1/16: some factor is at least 1/2, and each factor is a combination of values of F.
+    ///   The factor A combines three values with the weights 2, 4 and 2, and the other factors
+    ///   fewer.
     pub fn doubtful_area(&self) -> f64 {
         let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
         let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
@@ -316,12 +320,11 @@ impl Conic {
         area
     }
 
-    /// Returns the range of the conic's form over the pixel.
+    /// Returns an interval that contains the values of the conic's form over the pixel.
     ///
-    /// Its extremes lie at corners, or where a derivative vanishes along a side or in all
-    /// directions. Such an extreme may be computed at an inaccurate position. This hardly matters:
-    /// the form differs there by half the product of the distance and the gradient, which is almost
-    /// 0.
+    /// Extremes lie at corners, or where the derivative vanishes along a side or in all directions.
+    /// An extreme may be computed at an inaccurate position. This hardly matters, because the form
+    /// differs there by half the product of the distance and the gradient, which is almost 0.
     pub fn over_pixel(&self) -> Interval {
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
         let at = |x: f64, y: f64| x * (a * x + 2.0 * (b * y + d)) + y * (c * y + 2.0 * e) + f;
@@ -345,8 +348,7 @@ impl Conic {
         let determinant = a * c - b * b;
         hold((b * e - c * d) / determinant, (b * d - a * e) / determinant);
         let size = 0.25 * (a.abs() + 2.0 * b.abs() + c.abs()) + d.abs() + e.abs() + f.abs();
-        // The form sums six terms of three roundings each. Its extremes lie at the points above, so
-        // no further slack is needed.
+        // The form is a sum of six terms of three roundings each.
         let rad = self.rad + 16.0 * f64::UNIT * size;
         Interval {
             low: range.low - rad,
@@ -356,7 +358,7 @@ impl Conic {
 }
 
 impl BoundaryLine {
-    /// Returns the range of ax + by + c over the pixel.
+    /// Returns an interval that contains the values of ax + by + c over the pixel.
     pub fn over_pixel(&self) -> Interval {
         let [a, b, c] = self.factors;
         Interval::about(c, 0.5 * (a.abs() + b.abs()) + self.rad)

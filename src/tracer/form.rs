@@ -1,9 +1,9 @@
 //! Linear forms: the boundaries and inverse depths of everything flat.
 //!
-//! In: a vector in the camera's axes. Out: the linear form aX + bY + c over the view plane that it
-//! defines. Every edge of a flat surface is a line on which such a form is zero, and the inverse
-//! depth of a surface's plane is such a form. Errors: one bound for all values in the window, from
-//! the errors of the factors and the roundings of the evaluation.
+//! In: a vector in the camera's axes. Out: the linear form aX + bY + c over the view plane that the
+//! vector defines. Every edge of a flat surface is a line on which such a form is zero, and the
+//! inverse depth of a plane is such a form. One error bound holds for all values in the camera's
+//! window; it includes the errors of the factors and the rounding errors of the evaluation.
 
 use super::camera::{Camera, Direction, Window};
 use crate::math::{Ball, Ball3, Double, Real, UP};
@@ -15,15 +15,15 @@ pub struct Form<T: Real> {
     factors: [T; 3],
     /// Error bound of a computed value.
     rad: T::Radius,
-    /// For big numbers only: error bounds in units of |X|, |Y| and |Z| of a ray. The bound `rad`
-    /// holds in the whole window, so in the middle of a very wide view it is far greater than a
-    /// ray's own error. Other precisions can afford that, since a doubt is passed to the next one;
-    /// big numbers are the last.
+    /// Error bounds per unit of |X|, |Y| and |Z| of a ray; only in the highest precision, big
+    /// numbers. The bound `rad` holds in the whole window, and in the middle of a very wide view it
+    /// is far greater than a ray's own error. Other precisions can afford this, because the next
+    /// precision decides what they leave in doubt.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
 /// Number of roundings in a value of a form: five in a coordinate, one in its product, two in the
-/// sum. Half as many again cover the products of roundings.
+/// sum, and half as many again for the products of rounding errors.
 const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
@@ -36,7 +36,8 @@ impl<T: Real> Form<T> {
             v[2].mid.times(&camera.z),
         ];
         let inherited = v[0].rad * window.x + v[1].rad * window.y + v[2].rad * window.z;
-        // In the widest views, Z is below the normal numbers, so its rounding error is added.
+        // In the widest views, Z is below the normal numbers, so that its rounding error is
+        // absolute.
         let lost = v[2].size() * T::TINY;
         let rad = (inherited + lost + rounding(&factors, window)) * UP;
         let by_component = |x: &Ball<T>| (x.rad + x.size() * (FORM_ROUNDINGS * T::UNIT)) * UP;
@@ -73,16 +74,17 @@ impl<T: Real> Form<T> {
         self.rad
     }
 
-    /// Returns the difference of two forms, self − other.
+    /// Returns the difference `self` − `other`.
     pub fn minus(&self, other: &Self) -> Self {
         let sizes = [0, 1, 2].map(|i| self.factors[i].magnitude() + other.factors[i].magnitude());
         let sum = sizes[0] + sizes[1] + sizes[2];
         Self {
             factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
-            // The difference's own roundings are bounded with |X|, |Y| and Z at most 1.
+            // The bound of the difference's own roundings assumes that |X|, |Y| and Z are at most
+            // 1.
             rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
-            // The error bounds of a form already contain the roundings of its own factors. Twice
-            // their sum also covers the roundings of the difference.
+            // The error bounds of a form contain the rounding errors of its factors. Twice the sum
+            // of the two forms' bounds therefore also covers the rounding errors of the difference.
             rads: self
                 .rads
                 .as_ref()
@@ -112,18 +114,18 @@ impl Form<Double> {
     }
 }
 
-/// Returns the error that roundings add to a form's values in the window.
+/// Returns an upper bound of the rounding errors of a form's values in the window.
 fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius {
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
     (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
         + T::TINY * (a + b)
-        // Each of fewer than 16 products below the normal numbers loses at most half of the least
-        // number.
+        // Each of fewer than 16 products may be below the normal numbers, and then loses at most
+        // half of the least number.
         + T::TINY * 8.0
 }
 
-/// Returns the inverse depth of the plane n·q = h as a form. The normal n is in the world's axes,
-/// and q are points relative to the eye.
+/// Returns the inverse depth of the plane n·q = h as a form. The normal n is given along the axes
+/// of the world, and the points q are relative to the eye.
 pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> Form<T> {
     let n = camera.turned(n).map(|component| component / h);
     Form::new(camera, &n)

@@ -1,4 +1,4 @@
-//! Intervals of numbers over a rectangle of the picture.
+//! Intervals of real numbers, for bounds over a rectangle of the picture.
 
 use crate::math::UP;
 
@@ -31,14 +31,14 @@ pub enum Side {
 }
 
 impl Interval {
-    /// All numbers.
+    /// The interval of all numbers.
     pub const ALL: Self = Self {
         low: f64::NEG_INFINITY,
         high: f64::INFINITY,
     };
 
-    /// Returns an interval that contains all numbers at a distance of at most `reach` from
-    /// `middle`.
+    /// Returns an interval that contains all numbers at most `reach` from `middle`, rounding errors
+    /// included.
     pub fn about(middle: f64, reach: f64) -> Self {
         let reach = reach * UP + f64::MIN_POSITIVE;
         Self {
@@ -47,8 +47,8 @@ impl Interval {
         }
     }
 
-    /// Returns the interval itself, or all numbers if its ends are NaN or in the wrong order, as an
-    /// overflow leaves them.
+    /// Returns the interval itself. If an overflow has left its ends NaN or in the wrong order,
+    /// returns the interval of all numbers.
     pub fn or_all(self) -> Self {
         if self.low <= self.high {
             self
@@ -69,16 +69,16 @@ impl Interval {
         }
     }
 
-    /// Returns whether 0 may lie in the interval. Ends that are NaN count as unlimited.
+    /// Returns whether 0 may lie in the interval. An end that is NaN counts as unlimited.
     pub fn holds_zero(self) -> bool {
         !(self.low > 0.0 || self.high < 0.0)
     }
 
-    /// Returns the interval of the greatest (or the least) of several numbers, one from each
-    /// interval. `which` is `f64::max` for the greatest and `f64::min` for the least. Returns
-    /// `None` without intervals.
+    /// Returns an interval that contains the greatest (or the least) of several numbers, one from
+    /// each interval of `ranges`. `which` is `f64::max` for the greatest and `f64::min` for the
+    /// least. Returns `None` if `ranges` is empty.
     pub fn fold(ranges: impl Iterator<Item = Self>, which: fn(f64, f64) -> f64) -> Option<Self> {
-        // NaN is replaced first, since `max` and `min` would return the other interval's end.
+        // NaN is replaced first, because `max` and `min` would return the other interval's end.
         ranges.map(Self::or_all).reduce(|a, b| Self {
             low: which(a.low, b.low),
             high: which(a.high, b.high),

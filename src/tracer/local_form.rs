@@ -1,10 +1,10 @@
 //! Linear and quadratic forms over a rectangle of the view plane: a pixel, a part of one, or many.
 //!
 //! In: a form over the view plane, and the rectangle. Out: the same form as a function of the
-//! offset from the rectangle's centre, in units of its sides, and the range of its values. Errors:
-//! one bound for all values there, from the errors of the form's factors and of its value at the
-//! centre, and from the roundings of the evaluation. What the range proves for the rectangle
-//! therefore holds for every sample in it.
+//! offset from the rectangle's centre, in units of its sides, and the range of its values. One
+//! error bound holds for all values in the rectangle; it includes the errors of the form's factors
+//! and of its value at the centre, and the rounding errors of the evaluation. What the range proves
+//! therefore holds for every sample in the rectangle.
 
 use super::{
     camera::{Camera, Direction},
@@ -17,15 +17,15 @@ use crate::{
     math::{Real, UP},
 };
 
-/// Rounding error of a value of a [`LocalForm`], relative to the sum of its factors' magnitudes. It
-/// counts one rounding for each factor, one for its division by the error bound, and two for
-/// products and sums, since offsets are at most ½.
+/// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
+/// values of its factors. It counts one rounding for each factor, one for its division by the error
+/// bound, and two for products and sums, because offsets are at most ½.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
-/// Rounding error of a value of a [`LocalQuadratic`], relative to the sum of its factors'
-/// magnitudes. There are at most five roundings in each of six terms; 16 roundings of the sum cover
-/// them.
+/// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
+/// absolute values of its factors. Each of the six terms has at most five roundings; 16 roundings
+/// of the sum cover them.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
-/// Error bound of products below the normal numbers: each of at most 16 products loses at most half
+/// Error bound of products below the normal numbers. Each of at most 16 products loses at most half
 /// of the least number.
 const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 
@@ -46,12 +46,12 @@ pub struct LocalForm {
     pub rad: f64,
 }
 
-/// A linear form divided by its error bound: its sign is certain where its value is above 1 or
-/// below −1.
+/// A linear form divided by its error bound, as factors of x, y and 1. Its sign is certain where
+/// its value is above 1 or below −1.
 pub type ScaledLine = [f64; 3];
 
-/// A quadratic form of the offset (x, y) from the centre of a [`Patch`], in units of its sides:
-/// factors of 1, x, y, x², xy and y², and an error bound of the values.
+/// A quadratic form of the offset (x, y) from the centre of a [`Patch`], in units of its sides. It
+/// has the factors of 1, x, y, x², xy and y², and an error bound `rad` of its values.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalQuadratic {
     pub factors: [f64; 6],
@@ -109,8 +109,8 @@ impl Form<f64> {
 }
 
 impl LocalForm {
-    /// Builds a form from its factors. The error bound is `inherited`, the error from the factors,
-    /// plus the roundings of the evaluation.
+    /// Builds a form from its factors. `inherited` is the error of its values from the errors of
+    /// the factors; the rounding errors of the evaluation are added.
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
@@ -118,7 +118,7 @@ impl LocalForm {
         Self { factors, rad }
     }
 
-    /// Returns half the difference between the greatest and the least value.
+    /// Returns half the difference between the form's greatest and least value in the rectangle.
     pub fn spread(&self) -> f64 {
         let [a, b, _] = self.factors;
         0.5 * (a.abs() + b.abs())
@@ -139,7 +139,7 @@ impl LocalForm {
         a * x + b * y + c
     }
 
-    /// Returns self − k · other for a whole number k.
+    /// Returns the form `self` − k · `other` for a whole number k.
     pub fn less(&self, k: f64, other: &Self) -> Self {
         let sizes: f64 = (0..3)
             .map(|i| self.factors[i].abs() + (k * other.factors[i]).abs())
@@ -152,16 +152,16 @@ impl LocalForm {
 }
 
 impl LocalQuadratic {
-    /// Builds a form from its factors. The error bound is `inherited`, the error from the factors,
-    /// plus the roundings of the evaluation.
+    /// Builds a form from its factors. `inherited` is the error of its values from the errors of
+    /// the factors; the rounding errors of the evaluation are added.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
         let rad = (inherited + sizes * LOCAL_ROUNDING + UNDERFLOW_ERROR) * UP;
         Self { factors, rad }
     }
 
-    /// Returns an interval that contains the form's values over the rectangle: the sum of the
-    /// extremes along each axis, widened by a bound of the mixed term.
+    /// Returns an interval that contains the form's values over the rectangle. It is the sum of the
+    /// ranges along each axis, widened by a bound of the mixed term.
     pub fn range(&self) -> Interval {
         let [c, x, y, xx, xy, yy] = self.factors.map(|factor| 0.25 * factor);
         let c = 4.0 * c;
@@ -176,8 +176,8 @@ impl LocalQuadratic {
         }
     }
 
-    /// Divides the form by its error bound, so that its sign is certain where its value is above 1
-    /// or below −1.
+    /// Returns the form divided by its error bound. The sign of the result is certain where its
+    /// value is above 1 or below −1.
     pub fn certain(&self) -> Self {
         Self {
             factors: self.factors.map(|factor| factor / self.rad),
@@ -192,8 +192,8 @@ impl LocalQuadratic {
     }
 }
 
-/// Returns the greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0. It is taken at t = 1, or
-/// where the derivative vanishes before it.
+/// Returns the greatest value of 2at + bt² for t from −1 to 1, with a ≥ 0. It occurs at t = 1, or
+/// at a smaller t where the derivative vanishes.
 fn greatest(a: f64, b: f64) -> f64 {
     if a < -b { a * a / -b } else { 2.0 * a + b }
 }

@@ -4,12 +4,12 @@
 //! there, as a slot of the palette. The tracer knows no text and no names: an object is its index
 //! in the file.
 //!
-//! All rays share the eye, so everything happens in the view plane. Boundaries are lines and conics
-//! there. Of the surfaces at a point, the nearest has the greatest inverse depth, which is a linear
-//! form for every flat surface. Everything that does not depend on the sample point is prepared
-//! once per picture, and a quadtree over the view plane finds the objects that a ray may hit. Every
-//! decision is made in `f64` with an error bound. If that leaves doubt, the decision is made in
-//! double-double, and if that fails, in big numbers.
+//! All rays share the eye, so that everything happens in the view plane, where boundaries are lines
+//! and conics. Of the surfaces at a point, the nearest has the greatest inverse depth, which is a
+//! linear form for every flat surface. Everything that does not depend on the sample point is
+//! prepared once per picture, and a quadtree over the view plane finds the objects that a ray may
+//! hit. Every decision is made in `f64` with an error bound. If `f64` leaves doubt, the decision is
+//! made in double-double, and if this fails, in the highest precision, big numbers.
 
 mod camera;
 mod crossing;

@@ -1,8 +1,8 @@
-//! The objects near a small part of the picture, by their bounds alone.
+//! The objects near a small part of the picture, selected by their bounds alone.
 //!
-//! In: a part with too many objects to tell all of them apart. Out: the objects that rays through
-//! the part may hit, the nearest first; and from these, the objects that rays through one pixel may
-//! hit. Finding them once takes less time than a search of the quadtree for each ray.
+//! In: a part with too many objects to find out exactly where each is seen. Out: the objects that
+//! rays through the part may hit, the nearest first; and from these, the objects that rays through
+//! one pixel may hit. Finding them once takes less time than a search of the quadtree for each ray.
 
 use super::{
     candidates,
@@ -13,15 +13,15 @@ use super::{
 use crate::area::Area;
 
 /// Returns the objects that rays through a part of the picture may hit, the nearest first. Returns
-/// `None` if there are so many that the quadtree finds a single ray's objects sooner.
+/// `None` if there are so many that searching the quadtree for each ray is faster.
 pub fn nearby(world: &World, part: Area) -> Option<Vec<BoundedObject>> {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     world.quadtree.nearby(&patch)
 }
 
-/// Writes those of the objects `nearby` that rays through `part` may hit to `out`, in the same
-/// order. `nearby` must contain the objects of an area around the part. Returns a palette slot if
-/// its colour is certainly seen in the whole part.
+/// Replaces `out` by the objects of `nearby` that rays through `part` may hit, in unchanged order.
+/// `nearby` must contain all objects near an area around the part. Returns the palette slot of a
+/// colour if the whole part certainly shows it.
 pub fn in_part(
     world: &World,
     part: Area,
@@ -32,7 +32,7 @@ pub fn in_part(
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let rectangle = world.quadtree.rectangle(&patch)?;
     let [near, far] = candidates::clips_over(world, &patch);
-    // The object that fills the part and whose minimum inverse depth is the greatest.
+    // `front` fills the part and has the greatest minimum of the inverse depth, `hidden`.
     let (mut front, mut hidden) = (None, Nearness::NONE);
     for item in nearby {
         if item.nearest <= hidden {

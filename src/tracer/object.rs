@@ -1,4 +1,4 @@
-//! Any object, prepared for one picture.
+//! An object of any kind, prepared for one picture.
 //!
 //! In: an object of the scene and the camera in one precision. Out: what the rest of the tracer
 //! needs of every kind of object: crossings of a ray, intervals over a rectangle, and the curves
@@ -23,8 +23,8 @@ use crate::{
     scene::{self, Shape},
 };
 
-/// The geometry of an object's surface. A `match` on it names every kind, so that the compiler
-/// lists the places to complete when a kind is added.
+/// The geometry of an object's surface. Each `match` on this type names every kind of surface, so
+/// that the compiler lists the places to complete when a kind is added.
 pub enum SurfaceKind<'a, T: Real> {
     /// Flat faces.
     Flat(&'a Convex<T>),
@@ -32,20 +32,20 @@ pub enum SurfaceKind<'a, T: Real> {
     Round(&'a Sphere<T>),
 }
 
-/// An object prepared for one picture. A sphere is stored without a box, since scenes may have very
-/// many spheres.
+/// An object prepared for one picture. A sphere is stored without a pointer, because scenes may
+/// have very many spheres.
 #[derive(Clone, Debug)]
 pub enum Object<T: Real> {
     /// A sphere.
     Sphere(Sphere<T>),
-    /// A triangle or a box; without faces if the eye lies in a flat object's plane.
+    /// A triangle or a box. It has no faces if the eye lies in the plane of a flat object.
     Convex(Convex<T>),
     /// A checkerboard.
     Checkerboard(Box<Checkerboard<T>>),
 }
 
 impl<T: Real> Object<T> {
-    /// Prepares an object.
+    /// Prepares an object of the scene in the precision `T`.
     pub fn new(camera: &Camera<T>, shape: &Shape) -> Self {
         match shape {
             Shape::Sphere(scene::Sphere { center, radius, .. }) => {
@@ -83,7 +83,7 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the crossing behind the first one, for a ray that hits the object. Returns `None` if
+    /// Returns the crossing behind the first one. The ray must hit the object. Returns `None` if
     /// there is no second crossing.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         match self.surface_kind() {
@@ -92,8 +92,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns whether the ray hits the second colour of a checkerboard; `false` for all other
-    /// objects.
+    /// Returns whether the ray hits the second colour of a checkerboard. Returns `false` for every
+    /// other kind of object.
     #[inline]
     pub fn is_odd(&self, r: &Direction<T>) -> Result<bool, Doubt> {
         match self {
@@ -102,8 +102,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the inverse depth of a flat surface part as a form. Returns `None` for a sphere or a
-    /// part that the object does not have.
+    /// Returns the inverse depth of the surface part `part` as a form. Returns `None` for a sphere,
+    /// or if the object does not have this part.
     pub fn plane(&self, part: SurfacePart) -> Option<&Form<T>> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.face(part),
@@ -111,8 +111,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the curves that bound the rays that hit the object. The form of each line is ≥ 0 on
-    /// the object's side.
+    /// Returns the boundary of the rays that hit the object. The form of each line is ≥ 0 on the
+    /// object's side.
     pub fn outline(&self, frame: &SubPixelFrame<T>) -> Vec<Boundary> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.bounds().iter().map(|f| frame.line(f)).collect(),
@@ -142,7 +142,7 @@ impl<T: Real> Object<T> {
 
 impl Object<f64> {
     /// Computes how the object covers a rectangle. Returns `None` if no ray through the rectangle
-    /// hits it.
+    /// hits the object.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.cover(patch),
@@ -151,7 +151,7 @@ impl Object<f64> {
     }
 
     /// Returns the range of the inverse depths of second crossings over a rectangle. Returns `None`
-    /// if the object has none.
+    /// if the object has no second crossings.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.behind(patch),

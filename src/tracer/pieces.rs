@@ -1,8 +1,9 @@
 //! Boxes whose faces have colours of their own, taken apart into their faces.
 //!
 //! In: a scene. Out: the scene in which every such box is replaced by one object for each face that
-//! may be seen, and the origin of each object. The tracer treats a face as a flat object. Two faces
-//! that share an edge have the same line for it, so that no ray passes between them.
+//! may be seen, and the object from which each new object comes. The tracer treats a face as a flat
+//! object. Two faces that share an edge have the same line for it, so that no ray passes between
+//! them.
 
 use std::{array, borrow::Cow, sync::Arc};
 
@@ -19,14 +20,15 @@ pub(super) enum Faces {
     All,
 }
 
-/// For each object of the divided scene, the index in the file of the object that it comes from,
-/// and its face if it is one. Empty if no object was divided.
+/// For each object of the divided scene, the index in the file of the object from which it comes,
+/// and the number of its face if it is one. Empty if no object was divided.
 #[derive(Debug, Default)]
 pub(super) struct Pieces(Vec<(usize, Option<u8>)>);
 
 impl Pieces {
-    /// Divides every box with coloured faces into the faces `which`. Returns the new scene, or the
-    /// scene itself if it has no such box, and the origin of each object.
+    /// Divides every box with coloured faces into the faces `which`. Returns the new scene, or
+    /// `scene` itself if it has no such box, and the index of the original object for each new
+    /// object.
     pub fn of(scene: &Scene, which: Faces) -> (Cow<'_, Scene>, Self) {
         let faces = |object: &Object| match object.shape {
             Shape::Box(cuboid) => cuboid.faces,
@@ -46,7 +48,7 @@ impl Pieces {
             };
             cuboid.faces = None;
             let fronts = fronts(&cuboid, scene.camera.eye);
-            // From inside there are no front faces, and rays first meet the back faces.
+            // From inside, no face is a front face, and rays first hit the back faces.
             let only_fronts = only_fronts && fronts.contains(&true);
             for (face, is_front) in (0..).zip(fronts) {
                 if only_fronts && !is_front {
@@ -67,20 +69,19 @@ impl Pieces {
         (Cow::Owned(Scene { objects, ..scene }), Self(pieces))
     }
 
-    /// Returns the index in the file of the object that a piece comes from.
+    /// Returns the index in the file of the object from which a piece comes.
     pub fn owner(&self, piece: usize) -> usize {
         self.0.get(piece).map_or(piece, |(owner, _)| *owner)
     }
 
-    /// Returns the number of the face that a piece is. Returns `None` if the piece is a whole
-    /// object.
+    /// Returns the face number of a piece. Returns `None` if the piece is a whole object.
     pub fn face(&self, piece: usize) -> Option<u8> {
         self.0.get(piece)?.1
     }
 }
 
-/// Returns for each face whether the eye is on its outer side. Faces are numbered as in
-/// [`cuboid`](super::cuboid).
+/// Returns for each face whether the eye is on its outer side. The face's number is twice that of
+/// its axis, plus one for the greater coordinate.
 fn fronts(cuboid: &Cuboid, eye: DVec3) -> [bool; 6] {
     array::from_fn(|face| match (face / 2, face % 2) {
         (axis, 0) => eye[axis] < cuboid.min[axis],

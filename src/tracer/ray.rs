@@ -31,14 +31,14 @@ pub struct Hit {
     pub point: DVec3,
     /// The colour at the point.
     pub color: Color,
-    /// Whether this crossing is the one that is seen.
+    /// Whether this crossing is the one that is seen in the picture.
     pub visible: bool,
 }
 
-/// Follows the ray through a point of the picture plane, given in pixels from the picture's top
-/// left corner. Returns the ray's direction, of length 1, and all its crossings in front of the
-/// eye, the nearest first. Crossings at the same depth are in file order. The point must lie within
-/// the `reach` of [`World::for_rays`].
+/// Traces the ray through the point `pixels` of the picture plane, given in pixels from the
+/// picture's top left corner. Returns the ray's direction, of length 1, and all crossings in front
+/// of the eye, the nearest first. Crossings at the same depth are in file order. The point must be
+/// within the `reach` of [`World::for_rays`].
 pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     let camera = &world.geometry.big.camera;
     let point = camera.picture_point(pixels);
@@ -82,11 +82,12 @@ pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
     (direction, crossings.into_iter().map(hit).collect())
 }
 
-/// Sorts crossings by depth, the nearest first. Crossings whose depths cannot be told apart are in
-/// file order.
+/// Sorts crossings by depth, the nearest first. Crossings whose depths cannot be distinguished are
+/// in file order.
 fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
-    // First sorts by the computed depths, which have a total order. Then neighbours with equal
-    // depths are put into file order, compared as the tracer compares them.
+    // First, crossings are sorted by their computed depths, which have a total order. Then
+    // neighbours whose depths are equal, compared as the tracer compares them, are put into file
+    // order.
     crossings.sort_by(|(.., a), (.., b)| {
         let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
         difference.to_f64().total_cmp(&0.0)
@@ -104,8 +105,8 @@ fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
     }
 }
 
-/// Wraps a coordinate of a ray's direction, or its square, in a ball whose radius covers up to 32
-/// roundings.
+/// Wraps a coordinate of a ray's direction, or its squared length, in a ball whose radius covers up
+/// to 32 roundings.
 fn rounded(x: &Big) -> Ball<Big> {
     Ball {
         rad: x.magnitude() * (32.0 * Big::UNIT),
@@ -113,8 +114,8 @@ fn rounded(x: &Big) -> Ball<Big> {
     }
 }
 
-/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0: a point in the
-/// plane y = 0 must not get a height of 1e-97.
+/// Returns the nearest `f64`, or 0 if the number cannot be distinguished from 0. Otherwise, a point
+/// in the plane y = 0 might be printed with a height of 1e-97.
 fn settled(x: &Ball<Big>) -> f64 {
     match x.sign() {
         Ok(Ordering::Equal) => 0.0,

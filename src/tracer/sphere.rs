@@ -1,13 +1,13 @@
 //! The sphere: a conic in the view plane.
 //!
-//! In: centre, radius and the camera. Out: for a ray, its crossings; for a rectangle, the intervals
-//! of their inverse depths. Let c be the centre as seen from the eye, R the radius, and C = c·c −
-//! R² (the power of the eye). The ray λr hits the sphere where λ² r·r − 2λ c·r + C = 0. A quarter
-//! of the discriminant is Q = R² r·r − |c × r|² by Lagrange's identity. Unlike (c·r)² − (r·r) C,
-//! this does not subtract large squares if the sphere is small and far.
+//! In: centre, radius and the camera. Out: for a ray, its crossings; for a rectangle, the ranges of
+//! the crossings' inverse depths. Let c be the centre relative to the eye, R the radius, and C =
+//! c·c − R² (the power of the eye). The ray λr hits the sphere where λ² r·r − 2λ c·r + C = 0. A
+//! quarter of the discriminant is Q = R² r·r − |c × r|² by Lagrange's identity. Unlike (c·r)² −
+//! (r·r) C, this does not subtract large squares if the sphere is small and far away.
 //!
-//! Errors: Q and c·r have one bound each over the whole window, their roundings included. C is
-//! computed exactly where it is small.
+//! Q and c·r each have one error bound for the whole window, which includes rounding errors. C is
+//! computed exactly if it is small.
 
 use std::cmp::Ordering;
 
@@ -22,8 +22,8 @@ use super::{
 use crate::math::{Ball, Ball3, Double, Doubt, Dyadic, Radius, Real, UP, dot};
 
 /// A sphere prepared for one picture. Its lengths are scaled by a power of two that brings the
-/// greatest one to about 1. Letters: c is the centre as seen from the eye, R the radius, r the
-/// ray's direction, Q = R² r·r − |c × r|², and C = c·c − R².
+/// greatest length to about 1. Let c be the centre relative to the eye, R the radius and r the
+/// ray's direction. Then Q = R² r·r − |c × r|², and C = c·c − R².
 #[derive(Clone, Debug)]
 pub struct Sphere<T: Real> {
     /// The centre relative to the eye, in the camera's axes.
@@ -34,12 +34,12 @@ pub struct Sphere<T: Real> {
     square: T,
     /// Error bound of R².
     rad_square: T::Radius,
-    /// C = c·c − R² with a small relative error, however close the eye is to the surface.
+    /// C = c·c − R², with a small relative error however close the eye is to the surface.
     power: Ball<T>,
-    /// The exact sign of C: greater if the eye is outside, equal if it is on the surface, less if
-    /// it is inside.
+    /// The exact sign of C: `Greater` if the eye is outside, `Equal` if it is on the surface,
+    /// `Less` if it is inside.
     side: Ordering,
-    /// Factor from a scaled inverse depth to one of the world: a power of two.
+    /// Power of two that converts an inverse depth in the sphere's unit to the world's unit.
     scale: f64,
     /// Error bound of Q in the window.
     rad_q: T::Radius,
@@ -47,12 +47,12 @@ pub struct Sphere<T: Real> {
     rad_b: T::Radius,
 }
 
-/// Number of roundings of a value of Q, in units of [`Real::UNIT`]: twelve as in the value of a
-/// linear form, twice as many for squares, and eight for the sum of squares.
+/// Number of roundings of a value of Q, in units of [`Real::UNIT`]: twelve in the value of a linear
+/// form, twice as many in its square, and eight in the sum of squares.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
-    /// Prepares a sphere.
+    /// Prepares a sphere in the precision `T`.
     pub fn new(camera: &Camera<T>, center: DVec3, radius: f64) -> Self {
         let from_eye = camera.relative(center);
         let radius_ball = camera.length(radius);
@@ -60,8 +60,8 @@ impl<T: Real> Sphere<T> {
             .iter()
             .map(Ball::size)
             .fold(radius_ball.size(), Radius::max);
-        // The scale is a power of two in the range of `f64`; a factor of 2^74 more or less does no
-        // harm.
+        // The scale is limited to powers of two in the range of `f64`. A factor of 2^74 too much or
+        // too little does no harm.
         let exponent = (-greatest.exponent()).clamp(-1000, 1000);
         let from_eye = from_eye.map(|x| x.scaled(exponent));
         let radius_ball = radius_ball.scaled(exponent);
@@ -97,7 +97,7 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns Q and c·r for a ray of direction r.
+    /// Returns Q and c·r for the ray of direction `r`.
     #[inline]
     fn discriminant(&self, r: &Direction<T>) -> (Ball<T>, Ball<T>) {
         let [cx, cy, cz] = &self.center;
@@ -106,8 +106,8 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // No precision follows, so the error is bounded for this ray separately: in the middle
-            // of the widest views it is far smaller than elsewhere.
+            // No other precision follows. The errors are therefore bounded for this ray alone: in
+            // the middle of the widest views, they are far smaller than elsewhere.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
@@ -129,8 +129,8 @@ impl<T: Real> Sphere<T> {
         (q, b)
     }
 
-    /// Returns the nearest crossing in front of the eye. Returns `None` if the ray misses the
-    /// sphere; a ray that only touches it misses it.
+    /// Returns the nearest crossing in front of the eye. Returns `None` if the ray misses or only
+    /// touches the sphere.
     #[inline]
     pub fn first(&self, r: &Direction<T>) -> Result<Option<Crossing<T>>, Doubt> {
         let (q, b) = self.discriminant(r);
@@ -150,8 +150,8 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns the crossing behind the first one, for a ray that hits the sphere. Returns `None` if
-    /// the eye is not outside.
+    /// Returns the crossing behind the first one. The ray must hit the sphere. Returns `None` if
+    /// the eye is not outside the sphere.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         if self.side != Ordering::Greater {
             return None;
@@ -160,15 +160,15 @@ impl<T: Real> Sphere<T> {
         Some(self.exit(&q, &b, r))
     }
 
-    /// Returns the crossing where the ray leaves the sphere. Of the two forms of the root, the one
-    /// without cancellation is used.
+    /// Returns the crossing where the ray leaves the sphere. Of the two formulas for the root, this
+    /// uses the one without cancellation.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
             mid: r.square.clone(),
         };
-        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r. There (c·r)²
-        // − (r·r) C, which equals Q, is more accurate.
+        // Close to the inner surface of a huge sphere, Q is much smaller than R² r·r. There, the
+        // equal value (c·r)² − (r·r) C is more accurate.
         let other = b * b - &self.power * &square;
         let root = if other.rad < q.rad { &other } else { q }.sqrt();
         let inverse = if b.mid.is_negative() {
@@ -189,17 +189,17 @@ impl<T: Real> Sphere<T> {
 }
 
 impl Sphere<f64> {
-    /// Returns the centre and the radius of a ball that contains the sphere, errors included, in
-    /// the sphere's own unit of length. Returns `None` if the eye is not outside the sphere.
+    /// Returns the centre and the radius of a ball that certainly contains the sphere, in the
+    /// sphere's own unit of length. Returns `None` if the eye is not outside the sphere.
     pub fn ball(&self) -> Option<([f64; 3], f64)> {
-        // Covers three roundings of 2^−53.
+        // The factor covers three roundings, of 2^−53 each.
         const ROOT_SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
         let radius = (self.square + self.rad_square).sqrt() + 2.0 * self.rad_c;
         (self.side == Ordering::Greater).then_some((self.center, radius * ROOT_SLACK))
     }
 
     /// Computes how the sphere covers a rectangle. Returns `None` if no ray through the rectangle
-    /// hits it.
+    /// hits the sphere.
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let (q, b) = self.local(patch);
         let (q, b) = (q.range(), b.range());
@@ -233,8 +233,8 @@ impl Sphere<f64> {
         })
     }
 
-    /// Returns the range of the inverse depths at which rays from outside leave the sphere. Returns
-    /// `None` if the eye is not outside.
+    /// Returns the range of the inverse depths at which rays that start outside leave the sphere.
+    /// Returns `None` if the eye is not outside the sphere.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let exits = || {
             let (q, b) = self.local(patch);
@@ -248,7 +248,8 @@ impl Sphere<f64> {
     ///
     /// 1/λ = r·r/(b + √Q) = (√Q − b)/(−C)
     ///
-    /// falls as b grows. For an eye inside, the second form gives the upper bound if b may be ≤ 0.
+    /// falls as b grows. If b may be ≤ 0 and the eye is inside, the second formula gives the upper
+    /// bound.
     fn exits(&self, q: Interval, b: Interval, patch: &Patch) -> Interval {
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
@@ -279,8 +280,8 @@ impl Sphere<f64> {
     /// Expands Q and c·r about the centre of a rectangle.
     ///
     /// The factors of Q consist of the same products as Q, and the rectangle lies within the
-    /// window. Q's error bound therefore counts once for the value at the centre, twice for each of
-    /// the two gradients, and once for each of the three second derivatives: eight times.
+    /// window. Q's error bound therefore counts eight times: once for the value at the centre,
+    /// twice for each of the two gradients, and once for each of the three second derivatives.
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
@@ -307,18 +308,17 @@ impl Sphere<f64> {
 
     /// Returns the factor by which c·r + √Q is multiplied to give the inverse depth of the near
     /// side, and the factor's relative error. Returns `None` if the eye is not outside, or if C has
-    /// a relative error of 1/4 or more. Below 1/4, twice the relative error of a number covers that
-    /// of its inverse.
+    /// a relative error of 1/4 or more. Below 1/4, the relative error of an inverse is at most
+    /// twice that of the number.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
     }
 
     /// Converts a range of inverse depths to the world's unit, and widens it by more than all
-    /// roundings so far.
+    /// rounding errors so far.
     fn widened(&self, range: Interval) -> Interval {
-        // Covers a few roundings of 2^−53, and the relative error of C, which is compared with it
-        // below.
+        // The factor covers a few roundings of 2^−53, and a relative error of C of at most 2^−30.
         const WIDER: f64 = 1.0 + 1.0 / (1u64 << 30) as f64;
         let power = self.power.rad / self.power.size();
         // For an eye on the surface, C is 0 and its relative error does not matter.
@@ -347,8 +347,8 @@ impl<T: Real> Sphere<T> {
         (self.center.each_ref().map(ball), square)
     }
 
-    /// Returns the factor from the sphere's own unit of inverse depth to the world's: a power of
-    /// two.
+    /// Returns the power of two that converts an inverse depth in the sphere's own unit to the
+    /// world's unit.
     pub fn scale(&self) -> f64 {
         self.scale
     }
@@ -392,8 +392,8 @@ impl Sphere<Double> {
     }
 }
 
-/// Computes C = c·c − R², multiplied by the square of 2^`exponent`, with a small relative error.
-/// Also returns the exact sign of C.
+/// Computes C = c·c − R² with a small relative error, multiplied by the square of 2^`exponent`.
+/// Returns it with the exact sign of C.
 fn power<T: Real>(
     eye: DVec3,
     center: DVec3,
@@ -415,9 +415,9 @@ fn power<T: Real>(
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Bounds the errors of Q and c·r for |X|, |Y| and |Z| up to `[x, y, z]`. `[cx, cy, cz]` are the
-/// magnitudes of the centre's coordinates, and `rad_c` is their error; `square` is R², and
-/// `rad_square` its error.
+/// Returns upper bounds of the errors of Q and c·r for rays whose |X|, |Y| and |Z| are at most `[x,
+/// y, z]`. `[cx, cy, cz]` are the absolute values of the centre's coordinates, and `rad_c` is their
+/// error; `square` is R², and `rad_square` its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,
@@ -428,7 +428,7 @@ fn radii<T: Real>(
     let unit = SPHERE_ROUNDINGS * T::UNIT;
     let mut rad_q = T::Radius::ZERO;
     let mut cross = T::Radius::ZERO;
-    // The components of c × r, each a difference of two products.
+    // Each component of c × r is a difference of two products.
     for (size, reach) in [
         (cy * z + cz * y, y + z),
         (cz * x + cx * z, x + z),
@@ -441,8 +441,8 @@ fn radii<T: Real>(
     let r_square = x * x + y * y + z * z;
     rad_q = rad_q + rad_square * r_square + (square * r_square + cross) * unit;
     let rad_b = rad_c * (x + y + z) + (cx * x + cy * y + cz * z) * unit;
-    // Errors of numbers below the normal ones: no coordinate of the centre is greater than 2, and Z
-    // may be off by `TINY`.
+    // Errors of numbers below the normal numbers: no coordinate of the centre is greater than 2,
+    // and the error of Z may be `TINY`.
     let tiny = T::TINY * 64.0;
     ((rad_q + tiny) * UP, (rad_b + tiny) * UP)
 }

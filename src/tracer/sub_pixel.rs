@@ -1,15 +1,15 @@
-//! A pixel, or a square part of one: where exact pictures are computed.
+//! A pixel, or a square part of one, for exact integration.
 //!
 //! In: a pixel, and quarterings of it. Out: points of the part as offsets from the pixel's centre.
-//! Offsets have no rounding error, since sides are powers of two.
+//! Offsets have no rounding error, because sides are powers of two.
 
 use glam::DVec2;
 
 use super::camera::{Camera, Direction};
 use crate::math::Real;
 
-/// A pixel, or a square part of one. A point (x, y) of it is measured from its centre in units of
-/// its side, x to the right and y down.
+/// A pixel, or a square part of one. A point (x, y) of the part is measured from the part's centre
+/// in units of the part's side, x to the right and y down.
 #[derive(Clone, Copy, Debug)]
 pub struct SubPixel {
     /// The pixel's column.

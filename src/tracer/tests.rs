@@ -1,5 +1,5 @@
-//! Tests of the quadtree against the plain loop over all objects, in scenes that are hard on its
-//! bounds.
+//! Tests of the quadtree against the plain loop over all objects, in scenes with hard cases for the
+//! objects' bounds.
 
 use std::{cmp::Ordering, sync::Arc};
 
@@ -61,7 +61,7 @@ impl SceneGenerator {
                 DVec3::splat(size.x),
                 self.within(0.0, 360.0),
             ),
-            // A triangle in a plane that contains the eye, about parallel to the rays.
+            // A triangle in a plane that contains the eye, and that is about parallel to the rays.
             2 => triangle(
                 eye + dvec3(1.0, 0.0, -2.0),
                 dvec3(0.0, 1.0, 0.0),
@@ -87,8 +87,8 @@ impl SceneGenerator {
                 0 if !shapes.is_empty() => shapes[self.below(shapes.len())],
                 _ => self.shape(eye),
             };
-            // Most objects that hide everything else are left out: they would leave nothing to
-            // decide.
+            // Most objects that hide everything else are left out, because they would leave nothing
+            // to decide.
             let hides = matches!(shape, Shape::Sphere(shape) if shape.radius > 3.0);
             if !hides || self.below(8) == 0 {
                 shapes.push(shape);
@@ -149,8 +149,8 @@ fn the_quadtree_changes_nothing() {
         let scene = random.scene(3 + seed as usize * 4);
         let world = World::new(&scene);
         let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
-        // Points at the ends of the bounds, within the last bits of their coordinates, are tested
-        // as well.
+        // The samples include points on the edges of the bounds, within the last bits of their
+        // coordinates.
         for Extent { across, .. } in extents(&world, &scene).into_iter().flatten() {
             for _ in 0..2 {
                 let [x, y] = across.map(|range| match random.below(3) {
@@ -170,8 +170,9 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// The rows at the horizon leave about 1e-10 of the samples in doubt. Objects in one plane must
-/// leave no doubt, since resolving it would take a hundred times as long as a decision in `f64`.
+/// In the rows at the horizon, `f64` leaves about 1e-10 of the samples in doubt. Objects in one
+/// plane must leave no doubt, because resolving it would take a hundred times as long as a decision
+/// in `f64`.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [
@@ -235,8 +236,8 @@ fn what_a_ray_meets_is_within_bounds() {
 
 #[test]
 fn bounds_are_tight() {
-    // A ray at the height of the eye hits the left and right ends of a sphere whose centre is at
-    // that height. It hits those of a box at a corner.
+    // At the height of the eye, rays hit the left and right ends of a sphere whose centre is at
+    // this height, and the left and right corners of a box.
     for shape in [
         sphere(dvec3(0.4, 0.0, -8.0), 0.5),
         sphere(dvec3(-2.0, 0.0, -8.0), 1e-6),
@@ -277,7 +278,7 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
             assert!(all_found);
             let patch = Patch::new(camera, part);
             candidates::visible_among(&world, &patch, 0..world.object_count(), &mut all);
-            // The quadtree's bounds may exclude more objects, but never admit others.
+            // The quadtree's bounds may exclude more objects, but never include additional ones.
             let objects = |candidates: &[VisibilityCandidate]| -> Vec<_> {
                 candidates
                     .iter()
@@ -300,9 +301,9 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
     assert!(seen > 1000, "{seen} points show an object");
 }
 
-/// With objects in one plane, a test whether they are is needed at nearly every sample point. If
-/// objects were prepared in a higher precision for this test, a point would cost as much as in a
-/// scene with too many objects for the cache.
+/// If objects lie in one plane, nearly every sample point needs a test whether they do. If objects
+/// were prepared in a higher precision for this test, a point would cost as much as in a scene with
+/// too many objects for the cache.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![
@@ -338,8 +339,8 @@ fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
 
 #[test]
 fn very_many_objects() {
-    // There are enough objects for several threads to prepare them. Half of them are spread over
-    // the whole picture, and half lie in one place.
+    // There are enough objects for several threads to prepare them. Half of the objects are spread
+    // over the whole picture, and half lie in one place.
     let mut random = SceneGenerator::new(1);
     let eye = DVec3::ZERO;
     let mut stage = scene(camera(eye, dvec3(0.0, 0.0, -1.0)), &[sphere(eye, 1.0)]);

@@ -1,7 +1,8 @@
 //! The triangle: three edges, each a line in the view plane.
 //!
 //! In: the triangle's numbers and the camera. Out: a [`Convex`] object of one face and three edges,
-//! whose forms are the determinants of the edge's ends and the ray; and the triangle's corners.
+//! and the triangle's corners. The form of an edge is the determinant of the edge's two ends and
+//! the ray.
 
 use std::{array, cmp::Ordering};
 
@@ -17,7 +18,7 @@ use crate::{
     scene::{self, CenteredTriangle, TriangleOutline},
 };
 
-/// Prepares a triangle. Returns it with its corners relative to the eye, in the camera's axes.
+/// Prepares a triangle. Returns it with its corners relative to the eye, along the camera's axes.
 /// Returns `None` if the triangle's plane contains the eye, which then sees nothing of the
 /// triangle.
 pub fn prepare<T: Real>(
@@ -30,8 +31,9 @@ pub fn prepare<T: Real>(
     }
 }
 
-/// Prepares a triangle that is given by its vertices. Two triangles that share an edge compute it
-/// from the same two points. For a ray near the edge, their decisions therefore agree exactly.
+/// Prepares a triangle that is given by its vertices. Two triangles that share an edge compute the
+/// edge from the same two points. For a ray near this edge, their decisions therefore agree
+/// exactly.
 fn by_vertices<T: Real>(
     camera: &Camera<T>,
     vertices: &[DVec3; 3],
@@ -43,8 +45,8 @@ fn by_vertices<T: Real>(
     Some((triangle, corners))
 }
 
-/// Returns the normal a × b of the plane through the eye and an edge from a to b. Only the sign of
-/// the normal's form matters, so its scale is free.
+/// Returns the normal a × b of the plane through the eye and the edge from a to b; `corner` is a
+/// relative to the eye. The normal may have any scale, because only the sign of its form matters.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
         // a × b = a × (b − a)
@@ -57,7 +59,7 @@ fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> B
         }
     }
     // Vertices may be so far away that their directions from the eye differ only after hundreds of
-    // bits.
+    // bits. The normal is then computed exactly.
     let [a, b] = [a, b].map(|corner| Dyadic::between(camera.eye, corner));
     let normal = Dyadic::cross(&a, &b).map(|x| Ball::<Big>::from_big(&x.to_big()));
     camera.turned(&scaled_to_one(&normal).map(|x| Ball::from_big(&x.mid)))
@@ -68,8 +70,9 @@ fn by_centroid<T: Real>(
     shape: &CenteredTriangle,
 ) -> Option<(Convex<T>, [Ball3<T>; 3])> {
     let plane = SeenPlane::across(camera, shape)?;
-    // A corner lies at c + o relative to the eye, where c is the centroid and o the corner's offset
-    // from it. The ratio of c to o may be of any size, so each is scaled on its own.
+    // A corner lies at c + o relative to the eye, where c is the centroid and o is the corner's
+    // offset from the centroid. c and o may differ in size by any factor, so that each has its own
+    // scale.
     let from_eye = camera.relative(shape.centroid);
     let offsets = offsets::<T>(shape);
     let [far, near] = [
@@ -82,9 +85,9 @@ fn by_centroid<T: Real>(
     let sum = |c: &Ball3<T>, o: &Ball3<T>, exponent: i32| -> Ball3<T> {
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
-    // Only the signs of the edges' forms matter, so lengths may be scaled. Computed from the
-    // corners themselves, a small and far triangle would lose most digits. With a = c + o and b = c
-    // + p, a × b is therefore computed as c × (p − o) + o × p.
+    // Lengths may be scaled, because only the signs of the edges' forms matter. With a = c + o and
+    // b = c + p, a × b is computed as c × (p − o) + o × p. Computed from the corners themselves, it
+    // would lose most digits if the triangle is small and far away.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);
@@ -103,14 +106,15 @@ fn scaled_to_one<T: Real>(v: &Ball3<T>) -> Ball3<T> {
     v.each_ref().map(|x| x.scaled(-exponent))
 }
 
-/// Returns the binary exponent of the greatest coordinate of some vectors.
+/// Returns the binary exponent of the greatest coordinate of all vectors `points`.
 fn exponent_of<T: Real>(points: &[Ball3<T>]) -> i32 {
     let sizes = points.iter().flatten().map(Ball::size);
     sizes.fold(T::Radius::ZERO, Radius::max).exponent()
 }
 
-/// Returns the vertices of a triangle in world coordinates: as they are written, or the left end of
-/// the base, the right end, and the apex. Computed coordinates are rounded once.
+/// Returns the vertices of a triangle in world coordinates, as the scene gives them. For a triangle
+/// given by its centroid, computes the left end of the base, the right end, and the apex, each
+/// coordinate rounded once.
 pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
     let shape = match &shape.outline {
         TriangleOutline::Vertices(vertices) => return *vertices,
@@ -122,9 +126,9 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
 }
 
 /// A plane n·q = h, with points q relative to the eye. n and h are divided by the greatest
-/// component of n, and each number is then correctly rounded. Triangles in one plane therefore get
-/// the same n and h, whatever the lengths of their normals, and planes along the axes get those of
-/// a box's faces.
+/// component of n, and each number is then correctly rounded. All triangles in one plane therefore
+/// get equal n and h, whatever the lengths of their normals. In a plane along the axes, these equal
+/// those of a box's face.
 struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
@@ -160,8 +164,8 @@ impl<T: Real> SeenPlane<T> {
         })
     }
 
-    /// Returns the triangle in this plane that `edges` bound. If the eye sees the triangle from
-    /// behind, every edge is reversed.
+    /// Returns the triangle in this plane that `edges` bound. Reverses every edge if the eye sees
+    /// the triangle from behind.
     fn with_edges(&self, camera: &Camera<T>, edges: [Ball3<T>; 3]) -> Convex<T> {
         let facing = |n: Ball3<T>| if self.side.is_lt() { n.map(|x| -x) } else { n };
         let edges = edges.into_iter().map(|n| Form::new(camera, &facing(n)));
@@ -170,8 +174,8 @@ impl<T: Real> SeenPlane<T> {
     }
 }
 
-/// Returns the vertices relative to the centroid, in the world's axes: the left end of the base,
-/// the right end, and the apex.
+/// Returns the vertices relative to the centroid, along the axes of the world: the left end of the
+/// base, the right end, and the apex.
 ///
 /// In the triangle's plane, with the base along x from 0 to c, the apex lies at
 ///
@@ -216,7 +220,7 @@ fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
         let right = [Ball::exact(1f64.copysign(y)), zero.clone(), zero.clone()];
         return (right, [zero.clone(), zero, -one]);
     }
-    // Y × n = (z, 0, −x). Its length is computed apart from y, which may be larger by any factor.
+    // Y × n = (z, 0, −x). Its length is computed without y, which may be larger by any factor.
     let exponent = -libm::frexp(x.abs().max(z.abs())).1;
     let [sx, sz] = [x, z].map(|k| Ball::<T>::exact(k).scaled(exponent));
     let across = (&sx * &sx + &sz * &sz).sqrt();

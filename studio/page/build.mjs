@@ -1,5 +1,6 @@
-// Builds the page: `node build.mjs` for the served host into dist/, `node build.mjs static FOLDER`
-// for a site. The bytes depend only on the sources and the lock file.
+// Builds the page: `node build.mjs` writes it to dist/ for the host `pinhole studio`, and `node
+// build.mjs static FOLDER` writes it for a website. The bytes depend only on the sources and the
+// lock file.
 
 import { mkdirSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -21,9 +22,9 @@ sampler { method multi_jittered  per_pixel 16  seed 1 }
 `;
 
 const { metafile } = await build({
-  // The served host runs the engine itself; a site has it in a worker.
+  // The host `pinhole studio` runs the engine itself. On a website, a worker of the page runs it.
   entryPoints: { studio: "src/main.ts", ...(host === "static" ? { engine: "src/worker.ts" } : {}) },
-  // Made by `npm run site` from the engine.
+  // `npm run site` makes this file from the engine.
   alias: { "pinhole-engine": "./engine/pinhole.js" },
   bundle: true,
   format: "esm",
@@ -37,8 +38,8 @@ const { metafile } = await build({
 });
 await build({ entryPoints: ["src/studio.css"], bundle: true, minify: true, logLevel: "warning", outdir: folder });
 
-// A site sends no headers of its own, so the page contains its policy. The served host sends a
-// stricter one, with a nonce for the editor's styles.
+// A website sends no headers of its own, so the page contains its content security policy. The host
+// `pinhole studio` sends a stricter one, with a nonce for the editor's styles.
 const policy = [
   "default-src 'none'",
   "script-src 'self' 'wasm-unsafe-eval'",
@@ -49,11 +50,12 @@ const policy = [
   "base-uri 'none'",
   "form-action 'none'",
 ].join("; ");
-// The reference of the language, without links, which would leave the page.
+// The page contains the reference of the language, without its links, which would leave the page.
 const renderer = new Renderer();
 renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
 renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
-// Without its end: overrides and columns are for the command line, and Shift-Alt-F formats.
+// The end of the reference is left out, from the section on overrides on. It is about the command
+// line, and about the layout, which Shift-Alt-F writes.
 const [reference, ...end] = readFileSync("../../grammar/language.md", "utf8").replace(/^# .*\n/, "").split("\n## Overrides\n");
 if (end.length !== 1) throw new Error("the reference has no section on overrides to end before");
 let page = readFileSync("src/index.html", "utf8").replace("__REFERENCE__", () => marked.parse(reference, { renderer }));
@@ -61,18 +63,19 @@ if (host === "static") {
   page = page
     .replace('<meta name="pinhole-host" content="served">', `<meta http-equiv="Content-Security-Policy" content="${policy}">\n    <meta name="pinhole-host" content="static">`)
     .replace('    <meta name="pinhole-nonce" content="__NONCE__">\n', "")
-    // A link to a site works for everybody.
+    // A link to a website works for everybody, so this note is hidden.
     .replace('<p id="share-local">', '<p id="share-local" hidden>')
-    // A site cannot choose its port.
+    // A website cannot choose its port, so this note is hidden.
     .replace('<span id="kept-served">', '<span id="kept-served" hidden>')
-    // The engine in the browser writes no EXR.
+    // The engine in the browser writes no EXR, so this button is hidden.
     .replace('<button type="button" id="download-exr">', '<button type="button" id="download-exr" hidden>')
-    // Indentation before a tag is not needed. Scenes have no tags, as their `<` is written `&lt;`.
+    // Indentation before a tag is removed. This does not change scenes, in which `<` is written
+    // `&lt;`.
     .replace(/^ +</gm, "<");
 }
 writeFileSync(path.join(folder, "index.html"), page);
 
-// Licences of the packages in the bundle.
+// Collect the licences of the packages in the bundle.
 const folders = new Set(Object.keys(metafile.inputs).map(file => file.match(/^.*node_modules\/(@[^/]+\/)?[^/]+/)?.[0]).filter(Boolean));
 const texts = [...folders].sort().map(folder => {
   const { name, version } = JSON.parse(readFileSync(path.join(folder, "package.json"), "utf8"));

@@ -12,7 +12,7 @@ const SCENE: &str =
 sphere Ball { center (-1.6, 1, 0) color olive } checkerboard {}
 ";
 
-/// Script that measures the page; it is appended to the page and prints its findings as JSON.
+/// Script that is appended to the page, measures the page and prints its findings as JSON.
 const SCRIPT: &str = include_str!("../browser.html");
 
 /// Returns the findings of [`SCRIPT`] for `page` in a window `width` pixels wide, in the dark or

@@ -1,4 +1,4 @@
-//! The camera: its axes, singular views, roll and lenses.
+//! The camera: its axes, views along the up vector, rolls and lenses.
 
 use glam::{DVec3, dvec3};
 use pinhole::{
@@ -26,8 +26,8 @@ fn rolled(roll: Angle) -> Camera {
 }
 
 /// In the view direction (1, 1, 1), the x components of u and v have the ratio sin 60° : cos 60°.
-/// In the rotated u, the products cancel exactly; if they were rounded first, an error would
-/// remain.
+/// In the rotated u, the two products cancel exactly. If they were rounded before they are
+/// subtracted, an error would remain.
 #[test]
 fn a_roll_into_a_coordinate_plane_is_exact() {
     for (x, degrees) in [(1.0, 60.0), (1.0, -120.0), (-1.0, -60.0)] {
@@ -41,13 +41,13 @@ fn a_roll_into_a_coordinate_plane_is_exact() {
 #[test]
 fn views_along_the_up_vector_are_oriented_like_a_map() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
-    // Each case maps (direction, up) to the expected (right, top).
+    // Each case maps (direction, up) to the expected (right, top). Here, up is along the y axis.
     let cases = [
         ((-y, y), (x, -z)),
         ((y, y), (x, z)),
         ((-y, -y), (-x, z)),
         ((y, -y), (-x, -z)),
-        // The same rule holds for up vectors along the other axes.
+        // Here, up is along the z or the x axis.
         ((-z, z), (x, y)),
         ((z, z), (x, -y)),
         ((-x, x), (-y, -z)),
@@ -62,14 +62,14 @@ fn views_along_the_up_vector_are_oriented_like_a_map() {
     }
 }
 
-/// A positive roll lowers the right side of the picture's frame.
+/// A positive roll turns the right side of the picture's frame downwards.
 #[test]
 fn any_number_of_quarter_rolls_is_exact() {
     let (x, y) = (DVec3::X, DVec3::Y);
     for turns in [0.0, 4.0, -4.0, 4e20] {
         for (quarter, right, top) in [(0.0, x, y), (1.0, -y, x), (2.0, -x, -y), (3.0, y, -x)] {
             if turns > 1e15 && quarter > 0.0 {
-                continue; // Adding 90 to such a number of degrees does not change it.
+                continue; // In such a large number of degrees, adding 90 changes nothing.
             }
             let roll = Angle::from_degrees(turns * 90.0) + Angle::from_degrees(quarter * 90.0);
             assert_eq!(axes(&rolled(roll)), [right, top, DVec3::Z]);

@@ -37,10 +37,10 @@ pub fn spheres(count: usize) -> String {
     text
 }
 
-/// Runs `work` to its end and measures its time. Then cancels it from another thread, once after
-/// 1/16 and once after 1/4 of that time, and asserts that each run ends within half of that time,
-/// although at least three quarters of the work are left. Other load on the machine may delay a
-/// run, so one success in five tries is enough.
+/// Runs `work` to its end and measures its time. Then runs it again and cancels it from another
+/// thread, once after 1/16 and once after 1/4 of that time. Asserts that each run then ends within
+/// half of that time, although at least three quarters of the work are left. Other load on the
+/// machine may delay a run, so one success in five tries is enough.
 #[track_caller]
 fn assert_stops_early<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
     for share in [16, 4] {

@@ -1,5 +1,5 @@
 //! A picture traced with culling and in batches has the same bits as one traced sample by sample.
-//! The tests of `tracer` compare the latter with the oracle.
+//! Pictures traced sample by sample are compared with the oracle in the tests of `tracer`.
 
 use std::{
     collections::BTreeSet,
@@ -118,8 +118,8 @@ fn culling_is_exact_for_generated_scenes() {
         let colors =
             scenes.map(|((_, scene), method)| compare(&scene, method, Count::PerPixel(24)));
         let colors: usize = colors.sum();
-        // A picture of ordinary numbers has at least ten colours on average, because pixels at
-        // edges mix colours.
+        // Scenes of ordinary numbers have at least ten colours per picture on average, because
+        // pixels at edges mix colours.
         assert!(colors > 100 * 10 || wild > 5, "{wild}: {colors}");
     }
 }
@@ -129,16 +129,16 @@ sampled_and_exhaustive!(culling_is_exact_for_scenes_full_of_ties);
 fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 77);
     for (_, scene) in effort.first(60, scenes.take(300)) {
-        // The samples lie at odd eighths of a pixel, or a single one at its centre. So they hit
-        // edges exactly, and rays lie in planes.
+        // The samples lie at odd eighths of a pixel, or at its centre if there is only one. Many
+        // hit edges exactly, and many rays lie in planes of surfaces.
         for n in [1, 4, 16] {
             compare(&scene, Method::Regular, Count::PerPixel(n));
         }
     }
 }
 
-/// Renders overlapping triangles in a tilted plane and in the board's plane. They are more than the
-/// cache of higher precisions holds.
+/// Renders overlapping triangles in a tilted plane and in the board's plane. There are more
+/// triangles than the cache of higher precisions holds.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);
@@ -148,8 +148,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut many = String::new();
     for index in 0..4000 {
         let (a, b) = (place(), place());
-        // Different normals describe the same plane. Triangles of even index lie in the plane
-        // y = −z/3, the others in the board's plane.
+        // Triangles of even index lie in the plane y = −z/3, the others in the board's plane. The
+        // normals of one plane differ in their lengths.
         let (centroid, normal) = match index % 2 {
             0 => ((a, b / 2.0, -1.5 * b), (0, 3, 1)),
             _ => ((a, 0.0, b), (0, 1, 0)),
@@ -165,7 +165,7 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
         }
     }
     few += "checkerboard {}\n";
-    // Each triangle occurs again with another normal and colour. The first one in the file is
+    // Each triangle occurs twice, with different normals and colours. The first one in the file is
     // visible.
     many.insert_str(0, &few);
     let [few, many] = [&few, &many].map(|text| read(text));
@@ -193,7 +193,8 @@ fn culling_is_exact_for_parallel_layers() {
     for (count, apart) in [(9, 0.1), (33, 0.1), (33, 1e-13), (33, 1e-30), (120, 0.05)] {
         let mut text = "image { width 24 height 18 } camera { eye (0.3, 0.2, 4) lookat (0, 0, 0) roll 10deg }\n".to_owned();
         for index in 0..count {
-            // The layers are shuffled, and every third one has a hidden duplicate.
+            // The layers are not in the order of their heights, and every third layer is hidden by
+            // an equal one.
             let place = f64::from(index * 37 % count);
             let height = 1.0 + apart * (place - place % 3.0 % 2.0);
             let sign = if index % 2 == 0 { "-" } else { "" };
@@ -218,7 +219,7 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
     let mut random = Random::new(12);
     let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     let mut methods = Method::SAMPLED.into_iter().cycle();
-    // In the larger picture, a pixel has only few candidate objects, so that several samples are
+    // In the larger picture, only few objects may be seen in a pixel, so several samples are
     // compared in one batch.
     for (roll, clips, size, counts) in [
         (0, "", "width 31 height 23", &[2, 4, 8, 9, 100][..]),
@@ -243,8 +244,8 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
                  triangle {{ centroid -{at} normal {normal} sides (0.1, 0.1, 0.05) color {color} }}"
             );
         }
-        // Add two equal spheres, of which the first is visible, a sphere that touches them, and
-        // very large ones.
+        // This adds two equal spheres, of which the first is visible, a sphere that touches them,
+        // and very large spheres.
         text += "sphere { center (0, 0, 0) radius 0.7 color red }
             sphere { center (0, 0, 0) radius 0.7 color lime }
             sphere { center (1.4, 0, 0) radius 0.7 color blue }
@@ -254,10 +255,10 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
         let objects = Arc::make_mut(&mut all.objects);
         let (_, others) = scenes.next().unwrap();
         objects.extend_from_slice(&others.objects);
-        // The first objects hide these duplicates of some of them.
+        // These duplicates are hidden by the equal objects before them.
         objects.extend_from_within(3500..4500);
-        // Where objects are dense, the samples are traced one by one if each pixel has a single
-        // sample, and together if it has many.
+        // Where objects are dense, a single sample per pixel is traced by itself, but many samples
+        // are traced together.
         let world = World::new(&all);
         let parts = Quartering::for_samples(&world, 1.0);
         let flow = parts.parts(

@@ -65,8 +65,8 @@ fn sets(file: &Source) -> impl Iterator<Item = (usize, &str)> {
     lines.filter_map(|(index, line)| Some((index + 1, line.strip_prefix(SET)?)))
 }
 
-/// Returns the correct expectations for a fixture, each with the number of the line that it belongs
-/// below, counted from 1. The number is 0 for the start of the text.
+/// Returns the correct expectations for a fixture, each with the number of the line below which it
+/// belongs, from 1. The number is 0 for the start of the text.
 fn expectations(sources: &Sources) -> Vec<(usize, String)> {
     let mut expected = Vec::new();
     for diagnostic in scene::read(sources).diagnostics {
@@ -109,7 +109,7 @@ fn underlined(sources: &Sources, label: &Label, sign: &str) -> (usize, String) {
 /// Returns the bytes of a fixture with its expectations replaced by the correct ones.
 fn annotated(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    // Repeat this, because a message may name a line, and new expectations move lines.
+    // A message may name a line, and new expectations move lines, so this is repeated.
     for _ in 0..4 {
         let expected = expectations(&read("fixture.scn", &bytes));
         let below = |line: usize| {
@@ -239,7 +239,8 @@ fn long_source_lines_are_cut_in_reports() {
 #[test]
 fn a_text_in_utf_16_is_one_mistake() {
     let marked = "\u{feff}sphere { center (0, 1, 0) }\n";
-    // Some programs write UTF-16 without a byte order mark. The comment here is not ASCII.
+    // Some programs write UTF-16 without a byte order mark. This text also has a comment that is
+    // not ASCII.
     let bare = "// Кубы\nsphere { center (0, 1, 0)  radius 2 }\n";
     let texts = [marked, bare, &marked[3..]].into_iter();
     let encoded = texts.flat_map(|text| {
@@ -256,8 +257,8 @@ fn a_text_in_utf_16_is_one_mistake() {
     }
 }
 
-/// In a narrow terminal, excerpts are cut around the label, and all other lines wrap at words. An
-/// excerpt with several labels in a line may be wider.
+/// In a narrow terminal, excerpts are cut around the label, and all other lines wrap at words. Only
+/// an excerpt with several labels in a line may be wider than the terminal.
 #[test]
 fn reports_fit_into_the_terminal() {
     let mut cut = 0;

@@ -3,10 +3,10 @@
 //! `cargo test -- --ignored` runs all cases, as the continuous integration does. It also needs
 //! Neovim, QEMU and Chromium.
 
-/// Which cases of its table a test tries.
+/// How many cases of its table a test tries.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Effort {
-    /// The first case of each table, or the first few.
+    /// The first case of each table, or a given number of first cases.
     Sample,
     /// All cases of each table.
     Exhaustive,
@@ -31,8 +31,7 @@ impl Effort {
         table.into_iter().take(count)
     }
 
-    /// Scales a length or a number of repetitions. Returns 1/64 of `whole` for [`Self::Sample`],
-    /// else `whole`.
+    /// Scales `whole`, a length or a number of repetitions: to 1/64 of it for [`Self::Sample`].
     pub fn part_of(self, whole: usize) -> usize {
         match self {
             Self::Sample => whole / 64,

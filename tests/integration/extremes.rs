@@ -27,14 +27,15 @@ use crate::{
 /// Number of scenes in an exhaustive run, unless `PINHOLE_SCENES` overrides it.
 const SCENES: usize = 1200;
 
-/// Number of random samples per pixel.
+/// Number of random samples per pixel, whose mean is compared with the exact mean.
 const SAMPLES: u64 = 64;
 
-/// Maximum distance between the mean of the samples of a pixel and the exact mean. By Hoeffding's
-/// inequality for numbers from 0 to 1, one mean of 10^13 is farther off.
+/// Maximum distance between the mean of a pixel's samples and the exact mean. By Hoeffding's
+/// inequality for numbers from 0 to 1, only one mean of 10^13 is farther off, so a greater distance
+/// is an error.
 const FAR: f64 = 0.49;
 
-/// Percentages of a scene's numbers that may have any magnitude.
+/// Percentages of a scene's numbers that may have any magnitude, one per kind of scenes.
 const WILD: [u64; 4] = [0, 5, 30, 100];
 
 fn assert_light(film: &Film, text: &str) {
@@ -45,8 +46,9 @@ fn assert_light(film: &Film, text: &str) {
 }
 
 /// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures.
-/// `is_decided` is false if squares and positions may have any magnitude. Hundreds of bits are then
-/// needed to decide which square a sample hits, so samples are not compared with the exact picture.
+/// `is_decided` is false if squares and positions may have any magnitude. Which square a sample
+/// hits is then decided only with hundreds of bits, so the samples are not compared with the exact
+/// picture.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));
@@ -90,7 +92,7 @@ fn channels_stay_between_0_and_1_for_scenes_of_any_numbers(effort: Effort) {
 
 sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 
-/// The candidates of a pixel are the same for any crop and any number of threads.
+/// The objects that may be seen in a pixel are the same for any crop and any number of threads.
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = one_thread();
     let others = Control {
@@ -106,10 +108,12 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
         let scenes = generated(Numbers::Wild(wild), [1, 1], seed);
         for (index, (_, mut scene)) in scenes.take(count).enumerate() {
             if index % 5 == 0 {
-                // The eye is so far away that differences lose coordinates near the origin.
+                // The eye is so far away that the differences from it round away coordinates near
+                // the origin.
                 scene.camera.eye = dvec3(3e267, -3e267, 1e267) * random.within(0.0, 1.0);
             }
-            // Small pictures that extend over several cells of the candidate grid.
+            // The pictures are small, but extend over several cells of the grid of candidate
+            // objects.
             let (width, height) = [(37, 3), (3, 35), (7, 9)][index % 3];
             let scene = resized(scene, width, height);
             let mut below = |n: u32| random.bits() as u32 % n;
@@ -147,7 +151,8 @@ fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     }
 }
 
-/// The silhouette is a hyperbola, whose two branches coincide even in the highest precision.
+/// The sphere's silhouette is a hyperbola whose two branches coincide even in the highest
+/// precision.
 #[test]
 fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     for radius in ["1e3", "1e10", "1e100", "1e200", "1.7976931348623157e308"] {
@@ -158,8 +163,8 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
         );
         let exact = exact(&read(&text));
         let bound = f64::from(exact.bounds[0]);
-        // With the eye at the height h above the surface, the horizon is √(2h/R) above the middle,
-        // for a view plane that is as far away as it is high.
+        // With the eye at the height h above the surface, the horizon is √(2h/R) above the middle
+        // of a view plane whose distance equals its height.
         let above = libm::sqrt(0.5 / radius.parse::<f64>().unwrap());
         for channel in exact.film.pixels()[0] {
             assert!(
@@ -171,8 +176,8 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     }
 }
 
-/// Near the picture's centre, the directions of rays are tiny compared with all others, and so are
-/// the numbers by which the tracer compares their surfaces.
+/// Near the picture's centre, the directions of rays in the board's plane are tiny compared with
+/// those of all other rays. So are the numbers by which the tracer compares the depths of surfaces.
 #[test]
 fn the_nearest_surface_is_seen_at_the_centre_of_the_widest_views() {
     for view in [

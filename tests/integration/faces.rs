@@ -36,7 +36,7 @@ fn triangles(min: DVec3, max: DVec3) -> String {
 }
 
 /// Rows of a camera and the two corners of a box. The eye sees the box from outside, from inside,
-/// cut by the near or far plane, from the plane of a face, along an edge, and from far away.
+/// cut by the near or far plane, in the plane of a face, along an edge, and from far away.
 const VIEWS: &[(&str, [f64; 3], [f64; 3])] = &[
     (
         "eye (4, 3, 8) lookat (0, 1, 0)",
@@ -118,7 +118,7 @@ fn a_box_with_face_colours_looks_like_triangles_of_its_faces() {
     }
 }
 
-/// Asserts that the hits of rays name objects by their index in the file.
+/// Asserts that each hit of a ray names its object by the index in the file.
 fn objects_keep_their_places(scene: &Scene) {
     let world = World::new(scene);
     for (x, y) in [(18, 11), (3, 20), (30, 5)] {

@@ -12,10 +12,12 @@ use crate::{random::Random, scenes::sources};
 /// Kind of the random numbers in a generated scene.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Numbers {
-    /// Multiples of a unit. With the unit 1/2, eyes often lie on surfaces, rays in planes, through
-    /// corners and along edges, and faces in common planes or at the near and far depths.
+    /// Multiples of a unit. With the unit 1/2, ties are frequent: eyes lie on surfaces; rays lie in
+    /// planes and pass through corners and along edges; faces lie in common planes, or at the near
+    /// and far depths.
     MultiplesOf(f64),
-    /// Whole, round and other numbers. The given percentage of them may have any magnitude.
+    /// Whole, round and other numbers. A percentage of them, which is given, may have any
+    /// magnitude.
     Wild(u64),
 }
 
@@ -32,14 +34,15 @@ pub fn generated(
         shared: [1.0; 3],
     };
     let texts = iter::repeat_with(move || generator.scene(size));
-    // Skip texts with mistakes, such as a triangle with impossible sides or a zero direction.
+    // Texts with mistakes are skipped; for example, triangles with impossible sides or directions
+    // of length 0.
     texts.filter_map(|text| Some((text.clone(), scene::read(&sources(&text)).scene?)))
 }
 
 struct Generator {
     random: Random,
     numbers: Numbers,
-    /// Numbers that several parts of a scene use.
+    /// Numbers that occur in several parts of a scene, so that parts coincide.
     shared: [f64; 3],
 }
 
@@ -67,7 +70,7 @@ impl Generator {
         }
     }
 
-    /// Returns a positive number, because a length of 0 is a mistake.
+    /// Returns a positive number for a length, since a length of 0 is a mistake.
     fn length(&mut self, size: f64) -> f64 {
         match self.number(size).abs() {
             0.0 => size,
@@ -129,7 +132,7 @@ impl Generator {
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
                 // No side is longer than the other two together, but often one is exactly as long.
-                // In the last case, the vertices can be rational.
+                // The sides 2.5, 2.5 and 3 allow rational vertices.
                 let sides = match self.random.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],

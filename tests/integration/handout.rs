@@ -1,4 +1,4 @@
-//! The card of the handout is made of the language's own table.
+//! The handout's reference card has the same content as the tables of the language.
 
 use std::path::Path;
 

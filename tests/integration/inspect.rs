@@ -44,8 +44,8 @@ fn the_default_triangle_has_the_sides_of_the_assignment() {
             ((left + right + apex) / 3.0).distance(dvec3(1.0, 2.0, 3.0)),
             0.0,
         ),
-        // The base is level, and the apex above it. `right` is on the right as seen from the tip
-        // of the normal.
+        // The base is level, and the apex is above it. Seen from the tip of the normal, `right` is
+        // on the right.
         (left.y, right.y),
         (normal.distance(dvec3(0.3, -0.2, 1.0).normalize()), 0.0),
     ] {
@@ -150,13 +150,13 @@ fn probe_sees_the_colour_that_the_picture_shows() {
 fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
     let text =
         "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
-    // The sphere's distance to the right is 10 times its depth. So it is seen at x = 20 in the view
-    // plane, where a unit is 225 pixels.
+    // The sphere is ten times as far to the right as its depth, so it is seen at x = 10 · 2 = 20 in
+    // the view plane, where 1 m is 225 pixels.
     let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
     assert_eq!(probe.color.to_string(), "#808000");
     assert!(probed(text, -1e300, 1e300).hits.is_empty());
-    // In the worked example, a point of the floor is twice its view plane point (1, −1.5). That
-    // point is 160 pixels to the right of the picture's centre and 240 pixels above it.
+    // In the worked example, a point of the floor is twice its view plane point (1, −1.5). The view
+    // plane point is 160 pixels to the right of the picture's centre and 240 pixels above it.
     let worked = example("looking_down_the_y_axis");
     let hits = probed(&worked, 560.0, 160.0).hits;
     let floor = hits
@@ -177,7 +177,7 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // In the widest view, the box covers less of the pixel than an `f64` can express.
+        // In the widest view, the part of a pixel that the box covers is too small for an `f64`.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }
@@ -212,9 +212,9 @@ fn inspect_reports_what_is_visible_of_each_object() {
         (4, r#""outside":"above the window""#),
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
-        // Its silhouette is an ellipse from 41.5 to 29.2 pixels left of the picture's centre. In a
-        // view plane at 1 m, where 50 pixels are 1 m, a sphere at distance c and depth z has the
-        // area
+        // The sphere's silhouette is an ellipse from 41.5 to 29.2 pixels left of the picture's
+        // centre. In a view plane at 1 m, where 1 m is 50 pixels, the silhouette of a sphere with
+        // distance c and depth z has the area
         //     π·r²·√(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
@@ -296,7 +296,8 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         said.contains("  1_000 more, which --format json lists"),
         "{said}"
     );
-    // All except the first eight are beside the window, which is 17.8 m wide at their depth.
+    // All objects except the first eight lie beside the window, which is 17.8 m wide at their
+    // depth.
     let rest = "  1_000 more: 0 seen, 0 %; 1_000 outside of the picture; 0 hidden or too small";
     assert!(said.contains(rest), "{said}");
     let json = folder.done("inspect a.scn --format json").json();

@@ -9,7 +9,7 @@ use std::{
 use crate::program::{Folder, Outcome};
 
 /// Runs a command and interrupts it after `after` milliseconds, when it has begun but is far from
-/// done. Asserts that it then ends within five seconds. Returns its output.
+/// done. Asserts that it ends within five seconds after that. Returns its output.
 pub fn interrupted(command: &mut Command, after: u64) -> Outcome {
     let (said, time) = end_with_signal("INT", command, after);
     assert!(time < Duration::from_secs(5));

@@ -27,14 +27,14 @@ fn worlds(seed: u64, method: Method) -> impl Iterator<Item = Scene> {
     let scenes = generated(Numbers::MultiplesOf(1.0 / 64.0), [24, 24], seed);
     let scenes = scenes.map(move |(_, scene)| {
         let mut scene = with_samples(&scene, method, Count::PerPixel(9));
-        // The eye is moved off all surfaces.
+        // The eye is moved off all surfaces, so that no ray lies in a surface.
         scene.camera.eye.y += 1.0 / 128.0;
         for board in shapes(&mut scene).filter_map(board) {
             board.square = 1.0;
         }
         scene
     });
-    // Keep only scenes that have a board and more than two colours in the picture.
+    // Only scenes are used that have a board and more than two colours in the picture.
     let is_full = |scene: &Scene| {
         let mut objects = scene.objects.iter();
         let has_board = objects.any(|object| matches!(object.shape, Shape::Checkerboard(_)));
@@ -140,7 +140,7 @@ fn swap_colors(scene: &mut Scene) {
 }
 
 /// Asserts that the pictures of two scenes are equal if each pixel is moved as `goes` says. Sampled
-/// pictures must have the same bits, and exact pictures must agree within their error bounds.
+/// pictures must have the same bits. Exact pictures must agree within their error bounds.
 #[track_caller]
 fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32; 2]) -> [u32; 2]) {
     let [one, other] = [before, after].map(sampled);
@@ -161,7 +161,7 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
         let (light, bound) = pixel(&one, x, y);
         let (other, other_bound) = pixel(&other, other_x, other_y);
         let difference = difference(light, other);
-        // Each of the two values also has a rounding error.
+        // Rounding may add an error to each of the two values.
         let most = bound + other_bound + f64::EPSILON;
         assert!(difference <= most, "{x}, {y}: {difference:e} of {before:?}");
         assert!(bound <= 1e-6, "{x}, {y}: {bound:e} of {before:?}");
@@ -171,11 +171,12 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
 #[test]
 fn quarter_turns_about_y_swap_the_boards_colours() {
     for (world, turns) in worlds(1, Method::MultiJittered).zip([1, 2, 3].into_iter().cycle()) {
-        // A turn moves the square (i, j) to (j, −1 − i).
+        // A quarter turn moves the square (i, j) to (j, −1 − i).
         let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         let mut after = mapped(&world, turn, turn, 1.0);
-        // If a triangle's normal is along the axis, its base stays parallel to the world's x axis,
-        // so turning the normal does not turn the triangle. Its spin does.
+        // If a triangle's normal is vertical, its base is parallel to the world's x axis whatever
+        // the normal's direction. Turning the normal does not turn such a triangle, so its spin is
+        // changed.
         for triangle in shapes(&mut after).filter_map(centered) {
             if triangle.normal.xz() == DVec2::ZERO {
                 let degrees = 90.0 * f64::from(turns);
@@ -216,7 +217,7 @@ fn scaling_by_a_power_of_two_changes_nothing() {
 
 #[test]
 fn a_mirror_in_x_mirrors_the_picture() {
-    // Test pictures with an even and an odd number of columns.
+    // The pictures have an even or an odd number of columns, in turn.
     for (world, width) in worlds(4, Method::Regular).zip([24, 23].into_iter().cycle()) {
         let world = resized(world, width, 24);
         let mirror = |v: DVec3| dvec3(-v.x, v.y, v.z);

@@ -19,8 +19,9 @@ fn groups(source: &Path) -> Vec<Vec<String>> {
     groups.filter(|group: &Vec<_>| !group.is_empty()).collect()
 }
 
-/// Returns the program text of a file or a folder without comments and unit tests; none if it is
-/// not there, as a module is one of the two or both.
+/// Returns the program text of a file, or of all files of a folder, without comments and unit
+/// tests. Returns an empty text if the path does not exist: a module may be a file, a folder, or
+/// both.
 fn code(path: &Path) -> String {
     if path.is_dir() {
         let entries = fs::read_dir(path).unwrap();
@@ -36,7 +37,8 @@ fn code(path: &Path) -> String {
     lines.map(|line| line.to_owned() + "\n").collect()
 }
 
-/// Returns the first names behind every `crate::`, also those of a list in braces.
+/// Returns the first name behind every `crate::`. If a list in braces follows, returns the first
+/// name of each of its elements.
 fn imports(code: &str) -> BTreeSet<String> {
     let name = |text: &str| -> String {
         let signs = text.trim_start().chars();
@@ -91,7 +93,7 @@ fn modules_import_one_way_in_the_order_of_the_library() {
                 "{module} imports {wrong:?}, which come after it"
             );
         }
-        // A module that imports none of the rest is in no circle.
+        // A module that imports none of the remaining modules is in no circle, so it is removed.
         while !rest.is_empty() {
             let is_free = |module: &&String| {
                 let mut others = rest.keys().filter(|it| *it != module);

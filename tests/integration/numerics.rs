@@ -1,4 +1,5 @@
-//! The hard cases of `report --numerics`: the program decides none wrongly, and each is hard.
+//! The hard cases of `report --numerics`: Pinhole decides none wrongly, and the textbook's formulas
+//! decide many wrongly.
 
 use std::{
     collections::BTreeSet,
@@ -16,7 +17,7 @@ use pinhole::{
 
 use crate::effort::{Effort, sampled_and_exhaustive};
 
-/// Number of inputs that are tried of each case.
+/// Number of inputs per case.
 const INPUTS: u64 = 1_000;
 
 fn run(inputs: u64, threads: Option<usize>) -> NumericsTable {
@@ -52,15 +53,16 @@ fn hard_cases_break_the_textbook_formulas_and_stay_within_the_claimed_bound() {
     for row in &table().rows {
         let (id, tally) = (row.case.id, &row.tally);
         match tally.error[1] {
-            // A distance is rounded, so its last bit is sometimes wrong. If the error were 0,
-            // nothing would have been measured.
+            // A distance is rounded, so its last bit is sometimes wrong. An error of 0 would mean
+            // that nothing was measured.
             Some(error) => assert!(error > 0.0 && error <= row.case.bound, "{id}: {error}"),
-            // Rays parallel to the board never hit it.
+            // In P2, no ray hits the board, so no distance is measured.
             None => assert_eq!(id, "P2"),
         }
         if row.case.decides() {
             let share = tally.wrong[0] as f64 / INPUTS as f64;
-            // In S7, one formula decides equal spheres correctly in any precision.
+            // In S7, one of the textbook's formulas decides equal spheres correctly in any
+            // precision.
             let least = if id == "S7" { 0.002 } else { 0.05 };
             assert!(share >= least, "{id}: {share}");
         } else {
@@ -90,7 +92,7 @@ fn the_numerics_report_shows_progress_and_can_be_cancelled() {
     let table = numerics::run(1_000_000, &control).unwrap();
     let done = done.load(Ordering::Relaxed);
     assert!((1..10_000).contains(&done));
-    // The table contains exactly the inputs that were tried before the cancellation.
+    // The table contains exactly the inputs that were tested before the cancellation.
     assert_eq!((table.inputs(), table.is_complete()), (done, false));
     assert!(table.rows.iter().all(|row| row.tally.inputs > 0));
 }

@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// Names of processors in QEMU. The first has only vectors of two doubles; the second also has
-/// vectors of four.
+/// vectors of four doubles.
 const PROCESSORS: [&str; 2] = ["qemu64", "Haswell"];
 
 const SCENES: [&str; 5] = [
@@ -32,8 +32,8 @@ const SCENES: [&str; 5] = [
 /// Environment variable with a folder. If it is set, the test only writes pictures into the folder.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
-/// Runs its own binary in QEMU, only once per processor: QEMU translates most of the code anew in
-/// each process.
+/// Runs this test's own binary in QEMU, only once per processor, since QEMU translates most of the
+/// code anew in each process.
 #[test]
 #[ignore = "needs QEMU"]
 fn all_processors_make_the_same_pictures() {

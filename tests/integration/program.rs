@@ -1,4 +1,4 @@
-//! Running the program from outside.
+//! Runs the program under test as a user would.
 
 use std::{
     ffi::OsStr,
@@ -38,7 +38,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Splits a line into words as a shell does: at white space, except in single quotes.
+/// Splits a line into words as a shell does: at white space, except within single quotes.
 pub fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
@@ -87,7 +87,7 @@ impl From<Output> for Outcome {
     }
 }
 
-/// Temporary folder in which commands, given as lines, run the program.
+/// A temporary folder in which the program is run. Commands are given as lines of arguments.
 pub struct Folder(TempDir);
 
 impl Folder {
@@ -150,7 +150,7 @@ impl Folder {
         let mut command = self.command(line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        // A command that does not read its input may have ended already.
+        // Writing fails if the command has ended without reading its input, so errors are ignored.
         let _ = child.stdin.take().unwrap().write_all(input.as_ref());
         child.wait_with_output().unwrap().into()
     }

@@ -21,12 +21,12 @@ use crate::{
     scenes::{one_thread, rendered, sources, whole, with_samples},
 };
 
-/// Generator of the texts of random objects, with the points that the objects share.
+/// Generator of the texts of random objects. Objects often share points.
 struct Text<'r> {
     random: &'r mut Random,
-    /// Vertices, centres, and points of surfaces of the objects so far.
+    /// Points of the objects so far: vertices, centres, and points of surfaces.
     points: Vec<DVec3>,
-    /// One in `wild` numbers has any magnitude; 0 means none.
+    /// Frequency of numbers of any magnitude: one in `wild` numbers, or none if it is 0.
     wild: u64,
 }
 
@@ -60,7 +60,7 @@ impl Text<'_> {
         }
     }
 
-    /// Returns a point that other objects use, a point near such a point, or a new point.
+    /// Returns a point that other objects use, a point near one, or a new point.
     fn point(&mut self) -> DVec3 {
         let new = dvec3(self.number(3.0), self.number(3.0), self.number(3.0));
         if self.points.is_empty() || self.one_in(3) {
@@ -95,7 +95,7 @@ impl Text<'_> {
             2 | 3 => {
                 let (v1, mut v2) = (self.point(), self.point());
                 if self.one_in(3) {
-                    // Make the triangle a sliver.
+                    // The triangle becomes a sliver.
                     let thickness = *self.random.one_of(&[1e-15, 1e-9, 1e-3]);
                     v2 = p + self.random.within(-1.0, 2.0) * (v1 - p) + thickness * v2;
                 }
@@ -161,7 +161,8 @@ impl Text<'_> {
         };
         for clip in ["near", "far"] {
             if self.one_in(4) {
-                // The depth of the near or far plane is often the depth of a shared point.
+                // The depth of the near or far plane is often the depth of a point that objects
+                // share.
                 let point = self.point();
                 let depth = (point - eye).dot(toward.normalize_or(DVec3::X)).abs();
                 let depth =
@@ -183,7 +184,8 @@ fn vector(DVec3 { x, y, z }: DVec3) -> String {
 fn random_scene(random: &mut Random) -> (String, Scene) {
     loop {
         let most = [3, 3, 10, 60][random.bits() as usize % 4];
-        // A pixel of many objects takes long to compute, so the picture is smaller then.
+        // A pixel with many objects takes long to compute, so a scene with many objects has a
+        // smaller picture.
         let [columns, rows] = if most > 3 { [4, 3] } else { [12, 8] };
         let (width, height) = (1 + random.bits() % columns, 1 + random.bits() % rows);
         let (count, wild) = (random.bits() % (most + 1), [0, 0, 30, 5]);
@@ -212,7 +214,8 @@ fn three_threads() -> Control<'static> {
 }
 
 /// Divides the picture at a random column and row into four parts. Asserts that the picture,
-/// rendered by one thread, has the same bits as its parts, rendered by three threads. Returns it.
+/// rendered by one thread, has the same bits as the parts, rendered by three threads. Returns the
+/// picture.
 fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendered {
     let area = whole(scene);
     let picture: Rendered = rendered(scene, area, &one_thread());
@@ -235,8 +238,8 @@ fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendere
     picture
 }
 
-/// Asserts that the area `part` of a picture has the same bits as the picture `crop` of that area:
-/// both their pixels and the error bounds.
+/// Asserts that the area `part` of the picture `one` has the same bits as the picture `crop`, in
+/// its pixels and in its error bounds.
 #[track_caller]
 fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     let numbers = |picture: &Rendered, x, y| {
@@ -253,8 +256,8 @@ fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     }
 }
 
-/// Returns whether samples can be compared with the exact picture. If squares are smaller than
-/// 10⁻⁹⁸ of the eye's distance, samples have a single colour, as the language specifies.
+/// Returns whether samples can be compared with the exact picture. The language specifies that
+/// samples have a single colour if squares are smaller than 10⁻⁹⁸ of the eye's distance.
 fn is_comparable(scene: &Scene) -> bool {
     scene.objects.iter().all(|object| match &object.shape {
         Shape::Checkerboard(board) => {
@@ -267,14 +270,14 @@ fn is_comparable(scene: &Scene) -> bool {
 
 /// Compares each pixel of an exact picture, and the mean of all pixels, with independent samples.
 ///
-/// Light is from 0 to 1. If its mean μ is within b of m, its variance is at most
+/// Light is from 0 to 1. If the mean μ of the light is within b of m, the variance is at most
 ///     m·(1 − m) + b,
 /// because μ·(1 − μ) has a slope of at most 1. Let V be the sum of the variances of N samples. By
 /// Bernstein's inequality, the mean of the samples is farther off than
 ///     √(2·L·V)/N + 2·L/(3·N)
-/// with a probability of at most 2·e^−L. A picture has at most 97 · 3 comparisons. If 2·e^−L is
-/// 3e-18, then √(2·L) = 9.1 and 2·L/3 = 27.4, and one of 10⁶ pictures fails with a probability of
-/// at most 1e-9.
+/// with a probability of at most 2·e^−L. A picture has at most 97 · 3 comparisons. For 2·e^−L =
+/// 3e-18, √(2·L) = 9.1 and 2·L/3 = 27.4, and one of 10⁶ pictures fails with a probability of at
+/// most 1e-9.
 fn assert_agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
     let area = whole(scene);
     let each = (1 << 15) / area.pixels();
@@ -321,8 +324,8 @@ fn random_scenes_render_alike_in_parts_and_agree_with_samples() {
         let Rendered::Exact(exact) = assert_parts_agree(&computed, random, &text) else {
             panic!("not computed");
         };
-        // In an optimized build on an idle machine, the picture and its parts each take at most a
-        // second per pixel.
+        // In an optimized build on an idle machine, the picture takes at most a second per pixel,
+        // and so do its parts.
         let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
         assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
         if is_comparable(&scene) {

@@ -34,7 +34,7 @@ fn read(document: &str) -> String {
     fs::read_to_string(root().join(document)).unwrap()
 }
 
-/// Returns what `command` prints to either output when a shell runs it in a folder.
+/// Returns what a shell that runs `command` in a folder prints to both outputs.
 fn run(command: &str, folder: &Folder) -> String {
     let said = folder.shell(&format!("{{ {command}; }} 2>&1"));
     match said.text() {
@@ -119,7 +119,7 @@ fn every_command_is_in_the_readme_and_has_examples() {
             readme.contains(&format!("`{call}")),
             "no {call} in README.md"
         );
-        // Editors start the server; nobody types its messages.
+        // The command `lsp` has no examples, since editors start it; nobody types its messages.
         let help = folder.done(&format!("{command} --help"));
         let examples = help.text().split_once("Examples:");
         let is_shown = examples.is_some_and(|(_, examples)| examples.contains(&call));
@@ -143,7 +143,7 @@ fn relative_links_lead_to_files() {
     .to_vec();
     let (mut followed, mut missing) = (0, Vec::new());
     while let Some(path) = paths.pop() {
-        // Skip folders of installed and built files.
+        // Folders of installed and built files are skipped.
         let is_made = ["node_modules", "dist"]
             .iter()
             .any(|name| path.ends_with(name));
@@ -151,7 +151,7 @@ fn relative_links_lead_to_files() {
             paths.extend(names(&path).into_iter().map(|name| path.join(name)));
         } else if path.extension().is_some_and(|ending| ending == "md") {
             let text = fs::read_to_string(&path).unwrap();
-            // A fenced block is code and has no links, so skip every second part.
+            // Fenced blocks contain code and no links, so every second part is skipped.
             let parts = text.split("```").step_by(2);
             let links = parts.flat_map(|part| part.split("](").skip(1));
             for link in links {

@@ -30,8 +30,8 @@ fn coarse_steps_become_finer_and_show_the_centres_of_blocks() {
             assert_eq!(coarse.film.width(), 97_u32.div_ceil(coarse.side));
             assert_eq!(coarse.film.height(), 61_u32.div_ceil(coarse.side));
             for (pixel, block) in coarse.film.pixels().iter().zip(part.tiles(coarse.side)) {
-                // Find the block's centre in a different way: from its middle pixel and an offset
-                // of 0 or 1/2 pixel.
+                // The block's centre is computed in another way than by the program: from the
+                // block's middle pixel and an offset of 0 or 1/2 pixel.
                 let (right, down) = (block.width - 1, block.height - 1);
                 let offset = dvec2(f64::from(right % 2), f64::from(down % 2)) / 2.0;
                 let (x, y) = (block.x + right / 2, block.y + down / 2);

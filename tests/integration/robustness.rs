@@ -46,7 +46,7 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // Reading takes a second on an idle machine and two on a busy one. Without optimization, it
+    // On an idle machine, reading takes a second, and on a busy one two. Without optimization, it
     // takes up to four seconds.
     let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
     assert!(time < bound, "{time:?} for {length} bytes");
@@ -104,7 +104,8 @@ fn random_bytes_are_read_soon_and_refused(effort: Effort) {
 
 sampled_and_exhaustive!(every_short_sequence_of_words_is_parsed_to_its_end);
 
-/// Parses all short sequences of some words, alone and within a block: the parser always advances.
+/// Parses all short sequences of some words, alone and within a block, and asserts that the parser
+/// reaches the end.
 fn every_short_sequence_of_words_is_parsed_to_its_end(effort: Effort) {
     let words = "{ } ( ) , = < - for let sphere e 8 # radius // \n";
     let words: Vec<&str> = words.split(' ').collect();
@@ -121,7 +122,7 @@ fn every_short_sequence_of_words_is_parsed_to_its_end(effort: Effort) {
             let word = |place| words[number / words.len().pow(place) % words.len()];
             let most: Vec<&str> = (0..length - 1).map(word).collect();
             let most = format!("{before} {}", most.join(" "));
-            // Each watchdog is a thread, so one watches several texts.
+            // Each call of `ends_soon` starts a thread, so several texts are tried in one call.
             ends_soon(
                 || format!("{most} and one of {words:?}"),
                 || (words.iter()).for_each(|last| try_one(&format!("{most} {last}"))),
@@ -141,7 +142,7 @@ fn a_token_repeated_many_times_is_read_soon(effort: Effort) {
         read(format!("{CAMERA} sphere {{ center {within}"));
     }
     assert!(!read(""));
-    // Misspell each field in its block.
+    // Each field is misspelled in its block.
     for block in BLOCKS {
         for field in block.field_names() {
             let piece = format!("x{field} 1\n");
@@ -151,8 +152,8 @@ fn a_token_repeated_many_times_is_read_soon(effort: Effort) {
     }
 }
 
-/// If a text has too many mistakes, the first ten thousand are reported, and a message says that
-/// others are left out, wherever they are.
+/// Of too many mistakes, the first ten thousand are reported. A message says that the others are
+/// left out, wherever they are.
 #[test]
 fn reports_stop_at_the_maximum_number_of_problems() {
     let many = |piece: &str| piece.repeat(20_000);
@@ -178,7 +179,7 @@ fn reports_stop_at_the_maximum_number_of_problems() {
         let is_told = |it: &Diagnostic| it.message.contains("the others are left out");
         assert!(found.iter().any(is_told), "{text:.40}");
     }
-    // Correct text that stands before the omitted mistakes is not reported.
+    // Correct text before the omitted mistakes is not reported as wrong.
     let signs = format!(
         "{CAMERA}sphere {{ center (0, 1, 0) {} radius 1 }}",
         many(", ")
@@ -189,7 +190,7 @@ fn reports_stop_at_the_maximum_number_of_problems() {
         codes,
         ["pinhole::needless_separator", "pinhole::unexpected"]
     );
-    // Needless separators are reported in one diagnostic, up to the limit.
+    // Needless separators are reported in a single diagnostic, with labels up to the limit.
     let spheres = many("sphere { center (0, 1, 0) };\n");
     let found = scene::read(&sources(&format!("{CAMERA}{spheres}"))).diagnostics;
     let signs = found
@@ -206,7 +207,7 @@ fn deeply_nested_values_are_refused_and_long_sums_accepted() {
         };
         open.repeat(100_000) + inner + &close.repeat(100_000)
     });
-    // A delimiter within quotes does not close anything.
+    // A delimiter within quotes does not close anything, so these values are nested, too.
     let quotes = ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "];
     let quotes = quotes.map(|piece| piece.repeat(100_000)).into_iter();
     let few_quotes = "( \")\" ".repeat(300);
@@ -259,7 +260,7 @@ fn many_mistakes_and_many_names_are_read_soon(effort: Effort) {
     ] {
         assert!(!read(format!("{CAMERA}{}", lines(wrong))));
     }
-    // Each mistake examines the text around it. The mistakes are all on one line.
+    // Each of these mistakes examines the text around it, and all are on one line.
     let wrong_order = lines("let aN = bN /* N */ ") + &lines("/* N */ let bN = N ");
     assert!(!read(wrong_order));
     let chain = lines("let aM = aN + 1\n");
@@ -302,7 +303,8 @@ fn windows_line_ends_and_a_byte_order_mark_are_accepted() {
 
 sampled_and_exhaustive!(scenes_with_random_slips_are_read_soon_and_alike_in_parts);
 
-/// If formatting a text fails, the text has an error. A text read in parts means the same.
+/// Reads texts with random mistakes, as a whole and in parts. A text that cannot be formatted must
+/// have an error.
 fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
     let mut scenes = all_scenes();
     scenes.retain(|text| (1..1000).contains(&text.len()));
@@ -330,7 +332,7 @@ fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
             bytes.splice(at..end, slips[up_to(slips.len())].iter().copied());
         }
         if let Ok(text) = str::from_utf8(&bytes) {
-            // `formatted` asserts that a refused text has an error.
+            // If the text cannot be formatted, `formatted` asserts that it has an error.
             let _ = formatted(text);
             parts::assert_same_in_parts(text, 1 + up_to(99), &[]);
         }
@@ -340,7 +342,8 @@ fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
 
 sampled_and_exhaustive!(reading_time_grows_linearly_with_the_text);
 
-/// For any kind of line, reading 8 times as many lines takes about 8 times as long, not 64 times.
+/// For any kind of line, reading eight times as many lines takes about eight times as long, not 64
+/// times.
 fn reading_time_grows_linearly_with_the_text(effort: Effort) {
     let few = match effort {
         Effort::Sample => 1_000,

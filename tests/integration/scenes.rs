@@ -1,4 +1,4 @@
-//! Helpers for scenes: those of the repository, those read from a text, and their pictures.
+//! Helpers for scenes: the scenes of the repository, scenes from texts, and their pictures.
 
 use std::{
     fs,
@@ -72,7 +72,7 @@ pub fn whole(scene: &Scene) -> Area {
     Area::whole(scene.image.width, scene.image.height)
 }
 
-/// Returns a control with which only the calling thread renders.
+/// Returns a control that renders on the calling thread only.
 pub fn one_thread() -> Control<'static> {
     Control {
         threads: NonZero::new(1),
@@ -98,7 +98,7 @@ pub fn read_with<'s>(text: &str, sets: impl IntoIterator<Item = &'s str>) -> Sce
         .unwrap_or_else(|| panic!("{text}\n{found:#?}"))
 }
 
-/// Returns the picture of a scene, sampled as the scene says.
+/// Returns the picture of a scene by the sampling method that the scene selects.
 pub fn sampled(scene: &Scene) -> Film {
     rendered(scene, whole(scene), &Control::default()).into_film()
 }
@@ -118,7 +118,8 @@ pub fn exact(scene: &Scene) -> Exact {
     render_exact(&World::new(scene), whole(scene), &Control::default()).unwrap()
 }
 
-/// Returns the contents of those fenced blocks of a document whose info string is `kind`.
+/// Returns the contents of the fenced blocks of a document that begin with three backticks and
+/// `kind`.
 pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
     let start = format!("```{kind}\n");
     let parts = text.split(&start).skip(1);

@@ -7,7 +7,7 @@ use crate::{
     table::{escaped, unescaped},
 };
 
-/// Asserts that a file has this content. With `PINHOLE_BLESS`, writes the file instead.
+/// Asserts that a file has the content `content`. With `PINHOLE_BLESS`, writes the file instead.
 #[track_caller]
 pub fn assert_file(path: &Path, content: &str) {
     if std::env::var_os("PINHOLE_BLESS").is_some() {
@@ -20,10 +20,11 @@ pub fn assert_file(path: &Path, content: &str) {
     assert_eq!(content, expected, "{}", path.display());
 }
 
-/// Asserts the answers in the text files of a folder. Each line is a query, and the lines below it
-/// that begin with `<` are its answer.
+/// Asserts the answers in the text files of a folder. In such a file, each line is a query, and the
+/// lines below it that begin with `<` are the expected answer.
 ///
-/// The first word of a line is the kind of query; the rest is the text that it is about. A second
+/// The first word of a query is its kind; the rest is the text that the query is about. A second
+/// argument may follow after an arrow. `--` begins a comment.
 /// argument follows an arrow. `--` begins a comment.
 #[track_caller]
 pub fn assert_answers(folder: &str, answer: impl Fn(&str, &str, &str) -> String) {

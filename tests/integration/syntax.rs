@@ -99,8 +99,8 @@ pub fn tokens(text: &str) -> Vec<&str> {
     tokens.collect()
 }
 
-/// If an invisible character, such as a no-break space, splits an operator of two characters, the
-/// parser reads two tokens. It reads the rest of the text, and does not hang.
+/// An invisible character, such as a no-break space, may split an operator of two characters. The
+/// parser then reads two tokens and the rest of the text, and does not hang.
 #[test]
 fn operators_split_by_an_invisible_character_do_not_hang_the_parser() {
     let mut torn = 0;
@@ -122,7 +122,7 @@ fn operators_split_by_an_invisible_character_do_not_hang_the_parser() {
         let mut start = 0;
         for line in text.split_inclusive('\n') {
             let is_sign = |at: usize| line.as_bytes()[at].is_ascii_punctuation();
-            // Skip lines that begin with `//`: they are expectations.
+            // Lines that begin with `//` are expectations, so they are skipped.
             let places = (1..line.len()).filter(|_| !line.starts_with("//"));
             for at in places.filter(|at| is_sign(at - 1) && is_sign(*at)) {
                 is_read(text, start + at);

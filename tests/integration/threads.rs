@@ -9,8 +9,8 @@ use std::{
 
 use crate::{cancel::spheres, program::Folder};
 
-/// Runs a command to its end. Returns the largest number of threads observed. The real maximum may
-/// be higher, because threads are counted only at intervals.
+/// Runs a command to its end. Returns the largest number of threads observed at intervals, which
+/// may be below the real maximum.
 fn peak_threads(command: &mut Command) -> usize {
     let command = command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut process = command.spawn().expect("the program");
@@ -23,8 +23,8 @@ fn peak_threads(command: &mut Command) -> usize {
     most
 }
 
-/// Asserts that the program renders with one thread, or with six if six are requested. The main
-/// thread and the threads that wait for Ctrl-C come on top.
+/// Asserts that the program renders with the requested number of threads, one or six. It has a few
+/// more: the main thread, and threads that wait for Ctrl-C.
 fn assert_thread_limit(folder: &Folder, line: &str) {
     let most =
         |threads: u32| peak_threads(&mut folder.command(&format!("{line} --threads {threads}")));

@@ -38,7 +38,7 @@ fn red() -> Folder {
     Folder::with([("a.scn", scene("red").as_str())])
 }
 
-/// Running `pinhole watch` with its own folder.
+/// A running `pinhole watch`, in a folder of its own.
 struct Watch {
     folder: Folder,
     child: RefCell<Child>,
@@ -72,7 +72,7 @@ impl Watch {
         self.folder.write("a.scn", text);
     }
 
-    /// Replaces the scene by renaming a new file to it.
+    /// Replaces the scene's file by renaming a new file to its name.
     fn replace(&self, text: &str) {
         self.folder.write("new", text);
         fs::rename(self.path("new"), self.path("a.scn")).unwrap();
@@ -163,13 +163,13 @@ fn a_picture_follows_every_save_and_ctrl_c_ends_it() {
 #[test]
 fn saves_by_renaming_and_a_pipe_in_between_are_noticed() {
     let watch = Watch::of_red();
-    // Save as some editors do: write a new file, which then replaces the old one.
+    // Some editors write a new file, which then replaces the old one.
     watch.replace(&scene("blue"));
     watch.shows("blue");
-    // Save as other editors do: rename the old file to a backup, then write a new one.
+    // Other editors rename the old file to a backup, then write a new one.
     fs::rename(watch.path("a.scn"), watch.path("a.scn~")).unwrap();
     watch.becomes("lime");
-    // Save again, because the program may be watching the backup by mistake now.
+    // A second save shows that the program does not watch the backup.
     watch.becomes("red");
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
     // If a pipe takes the file's place, the program reports it and waits for a file.
@@ -210,8 +210,8 @@ fn links_and_the_file_at_their_end_are_watched() {
     watch.shows("red");
     far.write("a.scn", scene("gold"));
     watch.shows("gold");
-    // The folder of the middle link is not watched, so changing the link causes no event. The
-    // program notices the change nevertheless, whatever other events occur.
+    // The folder of the middle link is not watched, so a change of the link causes no event. The
+    // program notices the change when any other event occurs.
     symlink(far.path("blue"), middle.path("other")).unwrap();
     fs::rename(middle.path("other"), middle.path("middle")).unwrap();
     watch.wait("the picture is blue", || {
@@ -247,7 +247,7 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
         watch.save(&scene(["navy", "teal", "gold", "plum"][round % 4]));
     }
     watch.becomes("lime");
-    // No picture of an older save appears afterwards.
+    // After the last save's picture, no picture of an older save is written.
     let said = watch.count("wrote");
     watch.becomes("blue");
     watch.wait("it is written", || watch.count("wrote") > said);
@@ -280,11 +280,12 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let watch = Watch::of_red();
     watch.says("wrote", 1);
     watch.folder.write("other.txt", "not a scene");
-    // Editors set permissions after a save, and other programs read the file: neither is a change.
+    // Editors set permissions after a save, and other programs read the file. Neither counts as a
+    // change.
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // Wait longer than the pause that ends a burst of events.
+    // This is longer than the pause that ends a burst of events.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);
@@ -298,7 +299,7 @@ fn saving_an_unchanged_text_renders_it_again() {
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.becomes("red");
     watch.says("after the save", 1);
-    // This save replaces the file by another file.
+    // This save replaces the file itself by another file.
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.replace(&scene("red"));
     watch.shows("red");

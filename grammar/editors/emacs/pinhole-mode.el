@@ -17,7 +17,7 @@
     (modify-syntax-entry ?* ". 23" table)
     (modify-syntax-entry ?\n "> b" table)
     (modify-syntax-entry ?_ "w" table)
-    ;; Quotation marks have no meaning: an apostrophe opens no text.
+    ;; Quotation marks have no meaning in scenes, so they do not start a string.
     (modify-syntax-entry ?\" "." table)
     table))
 

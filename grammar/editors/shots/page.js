@@ -1,9 +1,9 @@
-// The page of the screenshots: Monaco, the editor of VS Code, with all answers from Pinhole's
+// The page of the screenshots: Monaco, the editor of VS Code, which gets all answers from Pinhole's
 // language server.
 //
-// `window.ask` and `window.tell` send requests and notifications to the server; `window.told` is
-// called with its notifications. They use the protocol's JSON, which is converted to Monaco's types
-// here.
+// `window.ask` sends a request to the server, and `window.tell` a notification; the server's
+// notifications are passed to `window.told`. All three use the protocol's JSON, which this file
+// converts to Monaco's types.
 
 import * as monaco from "monaco-editor";
 import { colors, types } from "./theme.js";

@@ -1,6 +1,6 @@
-// Makes the README's pictures of an editor at work: Monaco, the editor of VS Code, in headless
-// Chromium, with the real `pinhole lsp`. Nothing in the pictures is drawn by hand; everything comes
-// from the server.
+// Takes the README's screenshots of an editor: Monaco, the editor of VS Code, in headless Chromium,
+// with the real `pinhole lsp`. Nothing in the pictures is drawn by hand; all highlighting and all
+// answers come from the server.
 //
 //     npm ci && PINHOLE=../../../target/release/pinhole npm run shoot
 

@@ -1,4 +1,4 @@
-// The pictures: a scene, and the actions in the editor before each is taken.
+// The screenshots: for each, a scene and the actions in the editor before the picture is taken.
 
 const mistaken = `// A ball and a crate. Two words are not quite right.
 let ball = (-1.6, 1, 0)

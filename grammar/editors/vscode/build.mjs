@@ -1,6 +1,9 @@
-// Bundles into dist/: the extension with its dependencies and their licences, its page with the
-// pictures embedded, Pinhole's own licences, and the program that the environment variable BUNDLE
-// names, if it is set.
+// Bundles into dist/:
+//
+// - the extension with its dependencies and their licences;
+// - its page, with embedded pictures;
+// - Pinhole's own licences;
+// - the program that the environment variable BUNDLE names, if it is set.
 
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -27,7 +30,7 @@ const texts = [...folders].sort().map(folder => {
 });
 writeFileSync("dist/LICENSES.txt", `dist/extension.js contains the packages below, each under its licence.\n\n${texts.join("\n\n")}`);
 
-// The editor fetches nothing when it shows the page.
+// The pictures are embedded in the page, since the editor loads no pictures from elsewhere.
 const page = readFileSync("README.md", "utf8");
 writeFileSync("dist/README.md", page.replace(/\]\(([^)]+\.png)\)/g, (_, file) => `](data:image/png;base64,${readFileSync(file, "base64")})`));
 

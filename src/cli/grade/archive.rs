@@ -15,21 +15,24 @@ use zip::{DateTime, ZipArchive, result::ZipError};
 
 use crate::{files, lock::lock};
 
-/// Maximum length of a submitted file, inside or outside of a zip file, in bytes.
+/// Maximum length of a submitted file, inside or outside of a zip file, in bytes. A longer file is
+/// not read.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
-/// Maximum number of entries of a zip file.
+/// Maximum number of entries of a zip file. A file with more is rejected.
 const MOST_ENTRIES: usize = 10_000;
 
-/// Maximum number of bytes that are read to list the entries. An entry takes 46 bytes and its name,
-/// so this suffices for [`MOST_ENTRIES`] entries with names of a thousand letters.
+/// Maximum number of bytes that are read of a zip file to list its entries; a longer list is an
+/// error. An entry takes 46 bytes plus its name, so the limit suffices for [`MOST_ENTRIES`] entries
+/// with names of a thousand letters.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// Maximum number of bytes that all zip files of a class together may unpack to.
+/// Maximum number of bytes that all zip files of a class together may unpack to. The files beyond
+/// it are not compared.
 const WHOLE_LIMIT: u64 = 4 << 30;
 
-/// Number of bytes that may still be unpacked from the zip files of a class. The bytes themselves
-/// are counted, not the lengths in the headers.
+/// Number of bytes that may still be unpacked from the zip files of a class. Unpacking counts down
+/// the bytes themselves, since the lengths in the headers may be wrong.
 #[derive(Debug)]
 pub struct UnpackBudget(AtomicU64);
 
@@ -92,16 +95,17 @@ pub struct Archive(Mutex<ZipArchive<Bounded>>);
 #[derive(Debug)]
 pub struct ArchiveEntry {
     pub index: usize,
-    /// The name, with `/` between folders.
+    /// Name of the entry, with `/` between folders.
     pub name: String,
     pub is_folder: bool,
-    /// Modification time in seconds since 1970. Zip files store only even seconds.
+    /// Modification time, in seconds since 1970; an even number, as zip files store it.
     pub time: Option<i64>,
-    /// The unpacked length in bytes, according to the header.
+    /// Unpacked length, in bytes, according to the header, which may be wrong.
     pub length: u64,
     /// The CRC-32 of the unpacked bytes. It is verified when they are unpacked.
     pub sum: u32,
-    /// Why the entry is not read, such as that it is encrypted or a link; otherwise `None`.
+    /// Reason why the entry cannot be read, for example because it is encrypted or a link. `None`
+    /// if it can be read.
     pub refused: Option<&'static str>,
 }
 
@@ -122,7 +126,7 @@ impl Archive {
             0 => format!("it is no zip file, or lists more than {MOST_ENTRIES} entries, and at most that many are read"),
             _ => in_words(&error),
         })?;
-        // The list has been read; from here on, the budget counts the unpacked bytes instead.
+        // The entries are listed. From here on, [`UnpackBudget`] limits the bytes instead.
         left.store(u64::MAX, Ordering::Relaxed);
         if zip.len() > MOST_ENTRIES {
             let count = zip.len();
@@ -158,7 +162,7 @@ impl Archive {
     ///
     /// The entry is damaged or too large.
     pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
-        /// Number of bytes that are unpacked between two checks of the budget.
+        /// Maximum number of bytes that are unpacked before the budget is checked again.
         const PIECE: u64 = 1 << 16;
         let mut zip = lock(&self.0);
         let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;
@@ -189,8 +193,8 @@ fn name(raw: &[u8], decoded: Option<&str>) -> String {
 
 /// Converts a time in a zip file, which has no time zone, to seconds since 1970.
 fn seconds(time: DateTime) -> i64 {
-    // Years begin in March in this calculation, so that a leap day is the last day of its year:
-    // Hinnant, "chrono-compatible low-level date algorithms", days_from_civil.
+    // In this calculation, years begin in March, so that a leap day is the last day of its year.
+    // Source: Hinnant, "chrono-compatible low-level date algorithms", days_from_civil.
     let month = (i64::from(time.month()) + 9) % 12;
     let year = i64::from(time.year()) - i64::from(month >= 10);
     let leaps = year / 4 - year / 100 + year / 400;

@@ -1,8 +1,8 @@
 //! Converts submissions (single pictures, folders and zip files) to students with files.
 //!
-//! In a folder or zip file on the command line, each folder and each file beside the folders is one
-//! student's submission. Moodle writes the students' names into file names, and Gradescope writes
-//! them into a file beside the folders. No student is left out.
+//! In a folder or zip file on the command line, each folder is the submission of one student, and
+//! so is each file beside the folders. Moodle writes the students' names into file names, and
+//! Gradescope into a file beside the folders. No student is left out.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -29,7 +29,7 @@ use crate::{
     files,
 };
 
-/// Reason for not comparing a picture that is the same in every submission.
+/// Reason that is shown for a picture that is not compared because every submission contains it.
 const TEMPLATE: &str = "equal in every folder: --picture chooses it";
 
 /// The students of a class, with their files.
@@ -38,7 +38,7 @@ pub struct Class {
     pub students: Vec<Student>,
     /// Whether a picture on the command line is missing or not a file.
     pub is_one_missing: bool,
-    /// The number of bytes that may still be unpacked from zip files.
+    /// Number of bytes that may still be unpacked from the class's zip files.
     pub budget: UnpackBudget,
 }
 
@@ -91,7 +91,7 @@ impl Class {
         let slug = folder.and_then(|name| name.strip_suffix(names::CLONES).map(str::to_owned));
         tree.found.sort_by(|(a, _), (b, _)| a.cmp(b));
         let mut works: BTreeMap<(String, String), Student> = BTreeMap::new();
-        // A student with an empty folder is listed, too.
+        // A folder without files must also become a student, so the folders are added to the files.
         let folders = tree.folders.iter().filter(|names| names.len() == 1);
         let folders = folders.map(|names| (vec![names[0].clone(), String::new()], None));
         let found = tree
@@ -139,7 +139,8 @@ impl Class {
                 .extend(file.map(|file| SubmittedFile { path, ..file }));
         }
         for (folder, name) in submitters.all() {
-            // A student whose folder is missing is listed without files.
+            // The metadata may name a student whose folder is missing. Such a student is listed
+            // without files.
             works
                 .entry((folder.to_owned(), String::new()))
                 .or_insert_with(|| Student {
@@ -156,8 +157,8 @@ impl Class {
     }
 
     /// Removes the files that are equal in every submission, since they come from the assignment's
-    /// template. Pictures among them are listed as not compared. If no student would have a picture
-    /// left, all files are kept, because all students then made the same picture.
+    /// template. Their pictures are listed as not compared. If this leaves no student a picture,
+    /// all files are kept, because then all students made the same picture.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -199,7 +200,7 @@ impl Class {
         let Some(same) = same.collect::<Option<Vec<_>>>() else {
             return false;
         };
-        // The CRC-32 sums in zip files are compared without unpacking.
+        // Zip files contain CRC-32 sums, so their files can be compared without unpacking.
         if file.sum.is_some() && same.iter().all(|other| other.sum.is_some()) {
             return same.iter().all(|other| other.sum == file.sum);
         }
@@ -251,8 +252,8 @@ fn student_of_picture(path: &Path) -> Student {
     }
 }
 
-/// Moves each file beside pictures to the student whose picture has the same name except for the
-/// extension. A file without such a picture remains a student of its own.
+/// Moves each file that is not a picture to the student whose picture has the same name except for
+/// the extension. A file without such a picture remains a student of its own.
 fn with_companions(students: Vec<Student>) -> Vec<Student> {
     let stem = |student: &Student| {
         let [file] = &student.files[..] else {
@@ -285,16 +286,17 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds arguments that a shell expanded from a pattern such as `class/*`. Returns the parent
-/// folders, each with the names in it that are on the command line; each name is a student. A
-/// parent is recognised by a repository in one of the folders, by Moodle's names, by Gradescope's
-/// metadata, or by two folders with a picture of the same name.
+/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Returns each class's
+/// folder with the names in it that are on the command line; each name is a student. A folder is
+/// recognised as a class by a repository in one of its subfolders, by Moodle's names, by
+/// Gradescope's metadata, or by two subfolders with a picture of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // A link on the command line is followed instead, and `..` has no name.
+        // A link is not an entry of its parent here, since arguments that are links are followed. A
+        // path such as `..` has no name.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }
@@ -331,7 +333,7 @@ fn folder_name(path: &Path) -> Option<String> {
     Some(path.file_name()?.to_string_lossy().into_owned())
 }
 
-/// Distinguishes students with equal names: adds the number of the submission or its place to the
+/// Appends the number of the submission, or else its place, to the names of students with equal
 /// names.
 fn tell_apart(students: &mut [Student]) {
     let mut counts = BTreeMap::<String, usize>::new();
@@ -346,7 +348,7 @@ fn tell_apart(students: &mut [Student]) {
     }
 }
 
-/// Makes the error that there are no students.
+/// Makes the error that the arguments contain no pictures of students.
 pub fn no_students(paths: &[PathBuf]) -> Trouble {
     let names: Vec<_> = paths.iter().map(|path| shown(path)).collect();
     Trouble(format!(

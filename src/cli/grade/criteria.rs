@@ -1,5 +1,5 @@
-//! Criteria of grading. Each mistake belongs to the camera, an object, the board, colours,
-//! sampling, or hits.
+//! Criteria of grading: the camera, an object, the board, colours, sampling, and hits. Each mistake
+//! belongs to one of them.
 
 use std::collections::BTreeSet;
 
@@ -13,22 +13,22 @@ use crate::{
 /// Criterion that a mistake belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
-    /// The camera and the window.
+    /// Mistakes in the camera or the window.
     Camera,
-    /// An object, by its index.
+    /// Mistakes in an object, given by its index.
     Object(usize),
-    /// The checkerboards.
+    /// Mistakes in the checkerboards.
     Board,
-    /// Colours and their encoding.
+    /// Mistakes in colours or their encoding.
     Colours,
-    /// The positions of samples, and their average.
+    /// Mistakes in the positions of samples or in their average.
     Sampling,
-    /// Which hit of a ray is visible, and everything that belongs to no other criterion.
+    /// Mistakes in which hit of a ray is visible, and mistakes of no other criterion.
     Hits,
 }
 
-/// Criteria of mistakes by prefixes of their ids. A mistake whose id has none of these prefixes is
-/// about a field of the camera or about hits.
+/// Criteria of mistakes, by prefixes of the mistakes' ids. If an id has none of these prefixes, the
+/// mistake is about a field of the camera or about hits.
 const BEGINNINGS: &[(&str, Criterion)] = &[
     ("board_", Criterion::Board),
     ("half_pixel", Criterion::Sampling),
@@ -71,7 +71,8 @@ const BEGINNINGS: &[(&str, Criterion)] = &[
     ("behind_seen", Criterion::Hits),
     ("depth_ignored", Criterion::Hits),
     ("sphere_", Criterion::Hits),
-    // Those of an object are told by their messages.
+    // If such a mistake is about a certain object, the message says so, and the object is the
+    // criterion.
     ("object_", Criterion::Hits),
     ("box_", Criterion::Hits),
     ("faces_", Criterion::Hits),
@@ -89,7 +90,8 @@ pub fn criterion(finding: &Finding, scene: &Scene) -> Criterion {
     of_id(finding.id).unwrap_or(Criterion::Hits)
 }
 
-/// Returns the criterion of an id, whatever object it is about; `None` for the field of an object.
+/// Returns the criterion of a mistake's id, without regard to the object that the mistake is about.
+/// Returns `None` for the field of an object.
 fn of_id(id: &str) -> Option<Criterion> {
     let mut beginnings = BEGINNINGS.iter();
     let found = beginnings.find(|(beginning, _)| id.starts_with(beginning));
@@ -104,8 +106,8 @@ fn of_id(id: &str) -> Option<Criterion> {
     }
 }
 
-/// Returns the index of the object that a mistake is about, which is the object whose title begins
-/// the message. Returns `None` if there is no such object.
+/// Returns the index of the object that a mistake is about: the object with whose title the message
+/// begins. Returns `None` if there is no such object.
 pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
     let title = |index: usize| {
         let object = &scene.objects[index];
@@ -117,8 +119,8 @@ pub fn object(finding: &Finding, scene: &Scene) -> Option<usize> {
     (0..scene.objects.len()).find(|&index| finding.message.starts_with(&title(index)))
 }
 
-/// Returns the ids of all mistakes in alphabetical order: those of the table, and the names of
-/// fields whose values may be wrong.
+/// Returns the ids of all mistakes in alphabetical order: the ids in the table of mistakes, and the
+/// names of fields whose values may be wrong.
 pub fn ids() -> impl Iterator<Item = &'static str> {
     let blocks = schema::block_names().filter(|name| *name != "sampler");
     let fields = blocks

@@ -6,7 +6,7 @@
 pub struct Glob(Vec<char>);
 
 impl Glob {
-    /// Makes a pattern that ignores case.
+    /// Makes a pattern. Upper and lower case are not distinguished.
     pub fn new(text: &str) -> Self {
         Self(text.to_lowercase().chars().collect())
     }
@@ -18,7 +18,8 @@ impl Glob {
         let name = path.rsplit('/').next().unwrap_or_default();
         let text = if self.0.contains(&'/') { &path } else { name };
         let text: Vec<char> = text.chars().collect();
-        // ends[n] says whether the pattern up to `at` matches the first n characters.
+        // `ends[n]` says whether the pattern up to the index `at` matches the first n characters of
+        // `text`.
         let mut ends = vec![false; text.len() + 1];
         ends[0] = true;
         let mut at = 0;

@@ -11,50 +11,52 @@ use crate::cli::Status;
 /// A student, with the results of the submitted pictures.
 pub struct GradedStudent {
     pub name: String,
-    /// The number of the submission in Moodle.
+    /// Number of the submission in Moodle.
     pub number: Option<String>,
-    /// Path of the folder or file, for output.
+    /// Path of the student's folder or file, for output.
     pub place: String,
     /// The pictures that were compared, the best one first.
     pub compared: Vec<ComparedPicture>,
-    /// The pattern of `--picture`.
+    /// The pattern of file names in `--picture`.
     pub chosen: Option<String>,
-    /// The other files, each with the reason why it was not compared.
+    /// Files of the student that were not compared, some with the reason.
     pub not_compared: Vec<String>,
-    /// Names of other students whose best picture is equal in every pixel.
+    /// Names of other students whose best picture equals this student's in every pixel.
     pub equal_to: Vec<String>,
-    /// The points; `None` if there are no points, or the picture is wrong for unknown reasons.
+    /// The student's points; `None` if there is no scheme of points, or the picture is wrong for
+    /// unknown reasons.
     pub score: Option<f64>,
 }
 
 /// A picture that was compared.
 pub struct ComparedPicture {
-    /// Path within the student's submission.
+    /// Path of the picture within the student's submission.
     pub path: String,
-    /// Path that starts with the argument on the command line.
+    /// Path of the picture, starting with the argument on the command line, for output.
     pub shown: String,
     pub result: Result<JudgedPicture, String>,
 }
 
 /// The result of judging a picture.
 pub struct JudgedPicture {
-    /// The fields of the JSON output.
+    /// Fields of the verdict in the JSON output.
     pub fields: Map<String, Value>,
     /// A warning if the file's format changes colours.
     pub warning: Option<&'static str>,
     /// SHA-256 of the picture's width and pixels.
     pub hash: [u8; 32],
-    /// The pictures for the HTML page; `None` if no page is written.
+    /// Pictures that the HTML page shows; `None` if no page is written.
     pub pictures: Option<Pictures>,
 }
 
-/// A mistake, or a guess.
+/// A mistake that explains differences, or a guess at one.
 pub struct Finding<'j> {
     pub id: &'j str,
     pub message: &'j str,
     pub help: &'j str,
     pub set: Vec<&'j str>,
-    /// The share of the squared difference beyond noise that the mistake explains.
+    /// Share that the mistake explains of the squared difference from the exact picture, as far as
+    /// noise does not explain it.
     pub explains: f64,
 }
 
@@ -66,7 +68,7 @@ impl JudgedPicture {
             .unwrap_or_default()
     }
 
-    /// Returns the verdict as a word.
+    /// Returns the verdict as a word: `right`, `noise`, `wrong` or `unknown`.
     pub fn word(&self) -> &str {
         self.text("verdict")
     }
@@ -90,7 +92,7 @@ impl JudgedPicture {
         self.fields.get("samples_per_pixel")?.as_f64()
     }
 
-    /// Returns the share of the difference that the mistakes and guesses do not explain.
+    /// Returns the share of the difference that neither the mistakes nor the guesses explain.
     pub fn rest(&self) -> Option<f64> {
         self.fields.get("rest")?.as_f64()
     }
@@ -139,8 +141,8 @@ fn finding(one: &Value) -> Finding<'_> {
 }
 
 impl ComparedPicture {
-    /// Returns the key by which a student's pictures are sorted, smaller for better ones. The best
-    /// picture counts.
+    /// Returns the key by which a student's pictures are sorted; a better picture has a smaller
+    /// key. The first one after sorting is graded.
     pub fn rank(&self) -> (u8, f64) {
         let Ok(judged) = &self.result else {
             return (4, 0.0);
@@ -156,7 +158,7 @@ impl ComparedPicture {
 }
 
 impl GradedStudent {
-    /// Returns the result of the best picture, or the reason why there is none.
+    /// Returns the result of the best picture, or the reason why there is no result.
     pub fn best(&self) -> Result<&JudgedPicture, String> {
         match self.compared.first() {
             Some(best) => best.result.as_ref().map_err(Clone::clone),
@@ -167,7 +169,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the path of the best picture, or that of the submission if there is no picture.
+    /// Returns the path of the best picture, or that of the submission if no picture was compared.
     pub fn file(&self) -> &str {
         self.compared
             .first()
@@ -204,7 +206,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the exit status for this student.
+    /// Returns the exit status for this student: [`Status::Done`] if the best picture is right.
     pub fn status(&self) -> Status {
         match self.best() {
             Ok(judged) if judged.is_right() => Status::Done,
@@ -212,7 +214,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the student's JSON object.
+    /// Returns the JSON object of the student.
     pub fn json(&self) -> Value {
         let mut fields = Map::new();
         let mut put = |key: &str, value: Value| {
@@ -252,7 +254,7 @@ impl GradedStudent {
         Value::Object(fields)
     }
 
-    /// Returns the comment that the student gets to read.
+    /// Returns the comment on the picture that the student gets to read.
     pub fn comment(&self) -> String {
         let judged = match self.best() {
             Ok(judged) => judged,
@@ -290,7 +292,7 @@ impl GradedStudent {
     }
 }
 
-/// Formats a share in whole per cent; shares below 1 % as `less than 1 %`.
+/// Formats a share in whole per cent. A share below 1 % becomes `less than 1 %`.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
         few if few < 1.0 => "less than 1 %".to_owned(),

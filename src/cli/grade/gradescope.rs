@@ -13,8 +13,8 @@ use crate::{
     scene::{Scene, Shape},
 };
 
-/// Returns the content of the file for a student. Without a scheme of points, each test counts 1.
-/// If the verdict is unknown, no scores are written, so that nobody gets a score by mistake.
+/// Returns the content of `results.json` for a student. Without a scheme of points, each test
+/// counts 1. If the verdict is unknown, no scores are written, since Gradescope would count them.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
@@ -28,7 +28,7 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
     for (at, mistake) in mistakes.iter().enumerate() {
         let of = criterion(mistake, scene);
         if let Some(test) = criteria.iter().position(|(one, _)| *one == of) {
-            // Without points, a test is either passed or failed.
+            // Without a scheme of points, any mistake takes the whole score of its test.
             let off = off.as_ref().map_or(scores[test], |off| off[at]);
             scores[test] = (scores[test] - off).max(0.0);
         }
@@ -73,7 +73,7 @@ fn whole(one: &GradedStudent, score: Option<f64>, tests: Vec<Value>) -> Value {
     results
 }
 
-/// Returns the criteria that are tests, with the tests' names.
+/// Returns the criteria that become tests in Gradescope, with the names of the tests.
 fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     let objects = scene.objects.iter().enumerate();
     let is_board = |shape: &Shape| shape.checkerboard().is_some();
@@ -100,7 +100,7 @@ fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
 }
 
 /// Returns the maximum score of each test. The test of an object gets the `object` points of the
-/// scheme, and the other tests share the rest equally.
+/// scheme. The remaining points are shared equally by the other tests.
 fn shares(criteria: &[(Criterion, String)], points: Option<&PointScheme>) -> Vec<f64> {
     let Some(points) = points else {
         return vec![1.0; criteria.len()];
@@ -131,7 +131,7 @@ pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
         };
         let name: String = one.name.chars().map(plain).take(60).collect();
         let name = name.trim_matches('.');
-        // Windows reserves names such as `con`, even with a dot and more text after them.
+        // Windows reserves names such as `con`, even if a dot and more text follow.
         let base = match name {
             "" => "student".to_owned(),
             name if is_reserved(name) => format!("_{name}"),
@@ -153,7 +153,7 @@ fn is_reserved(name: &str) -> bool {
         let rest = stem.strip_prefix(word);
         rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
     };
-    // The names after `nul` are those of the page's own files.
+    // `pictures`, `index` and `grade` are taken by the page's own files.
     matches!(
         &*stem,
         "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"

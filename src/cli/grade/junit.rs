@@ -4,8 +4,8 @@
 use super::graded::GradedStudent;
 use crate::diagnostic::escaped;
 
-/// Returns the content of the file. A wrong picture is a `failure`, a picture that is wrong for
-/// unknown reasons is `skipped`, and a picture that is missing or cannot be read is an `error`.
+/// Returns the content of the JUnit file. A wrong picture is a `failure`, a picture that is wrong
+/// for unknown reasons is `skipped`, and a picture that is missing or cannot be read is an `error`.
 pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
     let count = |word: &str| graded.iter().filter(|one| one.word() == word).count();
     let counts = format!(
@@ -33,7 +33,7 @@ pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
         };
         let message = attribute(&one.line());
         let word = match kind {
-            // `skipped` has no attribute `type`.
+            // In JUnit XML, `skipped` has no attribute `type`.
             "skipped" => String::new(),
             _ => format!(" type=\"{}\"", one.word()),
         };

@@ -62,7 +62,7 @@ use crate::{
     scene::Scene,
 };
 
-/// Files of the output folder, apart from pictures.
+/// Names of the files that `grade` writes into the output folder, besides the pictures.
 const FILES: [&str; 3] = ["index.html", "grade.csv", "grade.jsonl"];
 
 /// Grades the submissions that the arguments name, and writes the results.
@@ -143,8 +143,8 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     Ok(class)
 }
 
-/// Returns the names of all files that may be written into the output folder, which is checked
-/// before the work.
+/// Returns the names of all files that may be written into the output folder. Before any picture is
+/// judged, the folder is checked for other files of these names.
 fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
     let pictures = (0..class.students.len()).flat_map(page::names);
     let own = FILES.map(str::to_owned).into_iter().chain(pictures);
@@ -155,7 +155,7 @@ fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
 
 fn worksheet_name(args: &GradeArgs) -> Option<String> {
     let name = args.worksheet.as_ref()?.file_name()?.to_string_lossy();
-    // The name must differ from those of the page's own files.
+    // The page's own files have the other names in the folder.
     Some(if FILES.contains(&&*name) {
         format!("moodle-{name}")
     } else {
@@ -241,8 +241,8 @@ fn page_files(
     files
 }
 
-/// Records which students have equal pictures. Pictures that are right without noise are skipped,
-/// since all of them are equal.
+/// Records which students have equal pictures. Pictures that are right and have no noise are
+/// skipped, since they are all equal.
 fn mark_equal(graded: &mut [GradedStudent]) {
     let mut same = BTreeMap::<[u8; 32], Vec<usize>>::new();
     for (index, one) in graded.iter().enumerate() {
@@ -260,8 +260,8 @@ fn mark_equal(graded: &mut [GradedStudent]) {
     }
 }
 
-/// The results of all students, and the exact picture as a PNG, which is empty if no page is
-/// written.
+/// The results of all students, and the exact picture as a PNG file. The file is empty if no page
+/// is written.
 type Answers = (Vec<GradedStudent>, Vec<u8>);
 
 /// Grades the students in parallel, by default on as many threads as there are processors. The
@@ -332,8 +332,8 @@ fn graded(
     Ok(graded.map(|graded| (graded, exact)))
 }
 
-/// Judges a picture. The inner error says why it cannot be judged; the outer one is about
-/// rendering.
+/// Judges a picture. The inner error says why the picture cannot be judged; the outer one is an
+/// error of rendering.
 fn grade(
     file: &SubmittedFile,
     class: &Class,

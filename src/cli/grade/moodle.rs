@@ -22,11 +22,11 @@ use crate::{
     suggest::choice,
 };
 
-/// Maximum length of a worksheet, in bytes.
+/// Maximum length of a worksheet, in bytes. A longer file is an error.
 const LIMIT: u64 = 64 << 20;
 
-/// The English headings of the columns, which `--columns` may replace. The last two columns are
-/// optional.
+/// English headings of the worksheet's columns, which `--columns` may replace. The last two columns
+/// may be missing.
 const HEADINGS: [&str; 5] = [
     "Identifier",
     "Grade",
@@ -69,7 +69,7 @@ pub fn filled(
     {
         rows.push(row.clone());
     }
-    // The CSV reader reports that a record after a CRLF begins at the line feed, so that is
+    // After CRLF, the CSV reader reports the line feed as the start of the next record, so it is
     // skipped.
     let start = |row: &ByteRecord| {
         let at = row.position().map_or(0, |at| at.byte() as usize);
@@ -132,7 +132,7 @@ pub fn filled(
             )));
         }
         let cells = row.iter().enumerate().map(|(at, cell)| match at {
-            // Without points, the grades are not changed.
+            // Without a scheme of points, the grades are not changed.
             _ if at == grade && total.is_some() => {
                 one.score.map_or_else(String::new, short).into_bytes()
             }

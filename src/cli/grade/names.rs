@@ -116,7 +116,7 @@ pub fn submitters(text: &str) -> Submitters {
     Submitters(named.collect())
 }
 
-/// Name, e-mail address and student number; empty where one is missing.
+/// A student's name, e-mail address and student number. A missing one is empty.
 #[derive(Debug, Default)]
 struct Submitter([String; 3]);
 
@@ -160,7 +160,7 @@ fn unescaped(text: &str) -> Option<String> {
             'x' => 2,
             'u' => 4,
             'U' => 8,
-            // A name has no control characters, so they become blanks.
+            // Control characters of a name become spaces.
             '0' | 'a' | 'b' | 't' | '\t' | 'n' | 'v' | 'f' | 'r' | 'e' | 'N' | '_' | 'L' | 'P' => {
                 plain.push(' ');
                 continue;

@@ -20,7 +20,7 @@ pub fn names(index: usize) -> [String; 3] {
     ["", "-difference", "-exact"].map(|what| format!("pictures/{}{what}.png", index + 1))
 }
 
-/// Returns the page as HTML.
+/// Returns the page of a class as HTML. `total` is the number of points for a right picture.
 pub fn page(scene: &str, graded: &[GradedStudent], total: Option<f64>) -> String {
     let scene = escaped(scene);
     let mut html = format!(
@@ -127,7 +127,7 @@ fn headings(total: Option<f64>) -> String {
         format!("<th scope=\"col\" aria-sort=\"none\"><button type=\"button\">{name}</button></th>")
     };
     let all: Vec<String> = sorted.map(heading).collect();
-    // The heading of the pictures comes after that of the students.
+    // In the page, the column of pictures follows that of the students.
     format!(
         "{}<th scope=\"col\">picture</th>{}",
         all[0],
@@ -186,7 +186,7 @@ fn thumbnail(index: usize, name: &str, judged: &JudgedPicture) -> String {
 fn verdict(one: &GradedStudent) -> String {
     let is_explained = one.best().is_ok_and(|judged| !judged.mistakes().is_empty());
     let line = if is_explained {
-        // The mistakes are listed below, each with its help.
+        // The page lists the mistakes with their help below, so the line does not name them.
         format!("{}{}", one.word(), one.note())
     } else {
         one.line()

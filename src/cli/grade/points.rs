@@ -11,21 +11,22 @@ use crate::{
     scene::Scene,
 };
 
-/// Maximum length of the file of points, in bytes.
+/// Maximum length of the file of a point scheme, in bytes. A longer file is an error.
 const LIMIT: u64 = 1 << 20;
 
-/// Key of the deduction for every mistake that is not listed.
+/// Key of the deduction for every mistake whose id is not listed.
 const OTHERS: &str = "*";
 
-/// A scheme of points.
+/// A scheme of points: the total for a right picture, and deductions for mistakes.
 #[derive(Debug)]
 pub struct PointScheme {
     /// Points for a right picture.
     pub total: f64,
-    /// Deduction for each object with mistakes, once per object; mistakes whose ids are listed are
-    /// not included.
+    /// Deduction for an object with mistakes, once per object, however many mistakes it has.
+    /// Mistakes whose ids are in `mistakes` are deducted separately instead.
     pub object: Option<f64>,
-    /// Deduction for each mistake, by the mistake's id.
+    /// Deduction for each mistake, by the mistake's id. The key [`OTHERS`] stands for all other
+    /// ids.
     mistakes: BTreeMap<String, f64>,
 }
 

@@ -12,21 +12,22 @@ use crate::cli::{
     judge,
 };
 
-/// Maximum difference, in seconds, between times that count as equal. Zip files store only even
-/// seconds, and checking out a repository takes a while.
+/// Maximum difference, in seconds, between modification times that count as equal. Zip files store
+/// only even seconds, and checking out a repository takes a while.
 const SAME_TIME: i64 = 2;
 
-/// Maximum number of pictures of the same time that are compared.
+/// Maximum number of a student's pictures that are compared if several have the newest time. The
+/// others are listed as not compared.
 const MOST_PICTURES: usize = 12;
 
 /// A student's submission.
 #[derive(Debug)]
 pub struct Student {
-    /// The name in the submission system, or the name of the folder or file.
+    /// Name of the student in the submission system, or else the name of the folder or file.
     pub name: String,
-    /// The number of the submission in Moodle.
+    /// Number of the submission in Moodle.
     pub number: Option<String>,
-    /// Path of the folder or file, for output.
+    /// Path of the student's folder or file, for output.
     pub place: String,
     pub files: Vec<SubmittedFile>,
     /// Whether the submission is a clone of a repository, in which the files' times have no
@@ -37,9 +38,9 @@ pub struct Student {
 /// A submitted file.
 #[derive(Debug)]
 pub struct SubmittedFile {
-    /// Path within the student's submission, with `/` between folders.
+    /// Path of the file within the student's submission, with `/` between folders.
     pub path: String,
-    /// Path that starts with the argument on the command line, for output.
+    /// Path of the file, starting with the argument on the command line, for output.
     pub shown: String,
     /// Modification time in seconds since 1970, if known.
     pub time: Option<i64>,
@@ -55,17 +56,17 @@ pub struct SubmittedFile {
 /// Source of a file's bytes.
 #[derive(Debug)]
 pub enum ContentSource {
-    /// A file on disk; `-` and `/dev/stdin` can be read only once.
+    /// A file on disk, or standard input, `-` or `/dev/stdin`, which can be read only once.
     File(PathBuf),
     /// An entry of a zip file, by its index.
     Entry(Arc<Archive>, usize),
-    /// The file is not read, for this reason.
+    /// A file that is not read, with the reason.
     Refused(String),
 }
 
 impl SubmittedFile {
-    /// Reads the file, which should be a picture. If the first bytes of a file on disk show that it
-    /// is none, the rest is not read.
+    /// Reads the file, which should be a picture. If the file is on disk and its first bytes show
+    /// that it is no picture, only these are read.
     ///
     /// # Errors
     ///
@@ -83,8 +84,9 @@ impl SubmittedFile {
         }
     }
 
-    /// Returns whether the file may be a picture: it is on the command line, or its name matches
-    /// `chosen`, the pattern of `--picture`, or else has the extension of a picture.
+    /// Returns whether the file may be a picture. A file on the command line always may. Otherwise,
+    /// its name must match `chosen`, the pattern of `--picture`, or have the extension of a picture
+    /// if there is no pattern.
     pub fn is_picture(&self, chosen: Option<&Glob>) -> bool {
         let is_read = !matches!(self.content, ContentSource::Refused(_));
         self.is_named
@@ -96,16 +98,16 @@ impl SubmittedFile {
     }
 }
 
-/// The files of a student that are compared, and those that are not.
+/// The files of a student: those that are compared as pictures, and the others.
 #[derive(Debug, Default)]
 pub struct PictureChoice<'s> {
     pub pictures: Vec<&'s SubmittedFile>,
-    /// The other files, with reasons why some of them are not compared.
+    /// Names of the other files, some with the reason why the file is not compared.
     pub others: Vec<String>,
 }
 
 impl Student {
-    /// Returns the newest picture, or several pictures if the times do not tell which is the
+    /// Returns the newest picture, or several pictures if their times do not show which is the
     /// newest.
     pub fn choice(&self, chosen: Option<&Glob>) -> PictureChoice<'_> {
         let is_picture = |file: &&SubmittedFile| file.is_picture(chosen);

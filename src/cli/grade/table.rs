@@ -5,7 +5,8 @@ use std::iter;
 use super::graded::{Finding, GradedStudent, JudgedPicture, percent};
 use crate::{cli::judge::quoted, diagnostic::visible_line, numbers::short};
 
-/// Returns the cells of the RMSE and of the samples per pixel; empty if no picture was judged.
+/// Returns the RMSE and the samples per pixel as cells of a table. Both are empty if no picture was
+/// judged.
 pub fn figures(one: &GradedStudent) -> [String; 2] {
     match one.best() {
         Err(_) => [String::new(), String::new()],
@@ -18,7 +19,7 @@ pub fn figures(one: &GradedStudent) -> [String; 2] {
     }
 }
 
-/// Returns a table for people, with further details below a student's row.
+/// Returns a table for people: a row for each student, with details below the row.
 pub fn table(graded: &[GradedStudent]) -> String {
     let widest = graded
         .iter()
@@ -71,7 +72,7 @@ pub fn table(graded: &[GradedStudent]) -> String {
 
 /// Joins at most six items of a list, and adds how many more there are.
 pub fn some(list: &[String]) -> String {
-    /// Maximum number of items that are listed.
+    /// Maximum number of items that are listed. The number of the others is added.
     const MOST: usize = 6;
     let first: Vec<&str> = list.iter().take(MOST).map(String::as_str).collect();
     match list.len().saturating_sub(MOST) {

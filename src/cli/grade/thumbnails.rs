@@ -5,22 +5,22 @@ use std::io;
 
 use crate::film::{self, Film, Tolerance};
 
-/// Maximum side of a thumbnail, in pixels.
+/// Maximum side of a thumbnail, in pixels. A larger picture is reduced.
 const LONGEST: u32 = 320;
 
-/// The pictures that the page shows of a student.
+/// The pictures of a student that the HTML page shows.
 pub struct Pictures {
     /// Thumbnails of the picture and its heat map, as `data:` URIs.
     pub thumbnails: [String; 2],
     /// The picture and its heat map, as PNG files.
     pub whole: [Vec<u8>; 2],
-    /// The exact picture of the part that is shown, as a PNG file; `None` if the picture shows the
-    /// whole scene.
+    /// The exact picture of the part of the scene that the student's picture shows, as a PNG file.
+    /// `None` if that part is the whole scene.
     pub exact: Option<Vec<u8>>,
 }
 
 impl Pictures {
-    /// Makes the pictures from a film and the exact film of the same part.
+    /// Makes the pictures from a student's film and the exact film of the same part of the scene.
     pub fn new(
         film: &Film,
         exact: &Film,

@@ -21,13 +21,16 @@ use crate::cli::input::is_same_file;
 /// Name of the file that Gradescope writes beside the folders of an export.
 pub const METADATA: &str = "submission_metadata.yml";
 
-/// Maximum number of files in a folder or zip file on the command line.
+/// Maximum number of files in a folder or zip file on the command line. A folder or zip file with
+/// more is an error.
 const MOST_FILES: usize = 200_000;
 
-/// Maximum depth of nested folders.
+/// Maximum depth of nested folders that are listed. A deeper folder is listed with an error instead
+/// of its content.
 const DEEPEST: usize = 40;
 
-/// Maximum depth of the folders that are recorded: those of a class, and those of its students.
+/// Maximum depth at which folders are recorded, empty ones included. Depth 1 may be classes and
+/// depth 2 their students.
 const NAMED: usize = 2;
 
 /// A file, with the names of its folders and its own name in order.
@@ -39,9 +42,10 @@ pub struct FileTree {
     /// The argument on the command line, with a `/` at its end.
     pub place: String,
     pub found: Vec<FoundFile>,
-    /// The folders, including empty ones, each as the names from the argument down to it.
+    /// The folders, including empty ones, down to depth [`NAMED`]. Each is a list of names, from
+    /// the argument's subfolder on.
     pub folders: BTreeSet<Vec<String>>,
-    /// The folders that are repositories, in the same form.
+    /// The folders that are repositories, as lists of names like those in `folders`.
     pub clones: BTreeSet<Vec<String>>,
 }
 
@@ -57,7 +61,8 @@ impl FileTree {
         Ok(tree)
     }
 
-    /// Lists those entries of a folder whose names are in `names`, except `own`.
+    /// Lists the entries of a folder whose names are in `names`, except the teacher's own files,
+    /// `own`.
     ///
     /// # Errors
     ///
@@ -96,7 +101,7 @@ impl FileTree {
         }
     }
 
-    /// Lists a subfolder. `before` has the names of the folders from the argument down to it.
+    /// Lists a subfolder. `before` contains the names of the folders from the argument down to it.
     fn walk(&mut self, folder: &Path, before: &[String], own: &[&Path]) -> io::Result<()> {
         let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
         self.walk_entries(entries, before, own)
@@ -130,7 +135,7 @@ impl FileTree {
                     Err(io::Error::other("folders are nested too deeply"))
                 };
                 // The argument itself must be readable. A subfolder that cannot be read is listed
-                // with the error.
+                // as a file with the error.
                 if let Err(error) = inner {
                     self.push(names, ContentSource::Refused(error.to_string()), None, 0)?;
                 }
@@ -186,18 +191,19 @@ impl FileTree {
         }
     }
 
-    /// Records that a folder is a repository.
+    /// Records that a folder is a repository. A folder deeper than [`NAMED`] is recorded as the
+    /// folder around it at that depth.
     fn add_clone(&mut self, names: &[String]) {
         if !names.is_empty() {
             self.clones.insert(names[..names.len().min(NAMED)].to_vec());
         }
     }
 
-    /// Adds the entries of a zip file.
+    /// Adds the entries of a zip file that lies in the folders `before`.
     fn unpack(&mut self, path: &Path, before: &[String]) -> Result<(), String> {
         let (archive, entries) = Archive::open(path)?;
         let archive = Arc::new(archive);
-        // The zip file belongs to a student, even if it is empty.
+        // The zip file is recorded as a folder, so that its student is listed even if it is empty.
         self.add_folder(before);
         for entry in entries {
             // Names of entries are never used as paths, so `..` can be dropped.
@@ -210,7 +216,7 @@ impl FileTree {
             if let Some(at) = junk.filter(|&at| parts[at] == ".git") {
                 self.add_clone(&names[..before.len() + at]);
             }
-            // A folder that contains only skipped files is recorded, too.
+            // A folder is recorded even if it contains only skipped files.
             let folders = match (junk, entry.is_folder) {
                 (Some(at), _) => before.len() + at,
                 (None, true) => names.len(),
@@ -235,8 +241,8 @@ impl FileTree {
         Ok(())
     }
 
-    /// Returns the single folder around all entries of a zip file if its content looks like a
-    /// class, and otherwise `None`.
+    /// Returns the name of the single folder around all entries of a zip file. Returns `None` if
+    /// there is no such folder or its content does not look like a class.
     fn only_folder(&self) -> Option<String> {
         let files = self.found.iter().map(|(names, _)| &names[..]);
         let all: Vec<_> = files
@@ -252,15 +258,15 @@ impl FileTree {
         (is_alone && inner.len() > 1 && is_in_folders && !is_somebodys).then(|| root.clone())
     }
 
-    /// Removes each folder that a submission system made for a whole class, and returns the folders
-    /// with their names. Such a folder contains Gradescope's metadata or Moodle's names, or has
-    /// GitHub Classroom's suffix.
+    /// Removes each folder that contains a whole class, and returns the folders with their names.
+    /// Such a folder contains Gradescope's metadata or Moodle's names, or has the suffix of GitHub
+    /// Classroom.
     pub fn take_classes(&mut self) -> Vec<(String, Self)> {
         let files = self.found.iter().map(|(names, _)| names);
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
         for names in files.chain(&self.folders) {
             match &names[..] {
-                // The tree itself is the class.
+                // The argument itself is the class.
                 [name] if name == METADATA => return Vec::new(),
                 [root, name, ..] => inner.entry(root).or_default().push(name),
                 _ => {}

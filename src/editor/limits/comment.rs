@@ -1,23 +1,24 @@
-//! The range of a slider that a comment gives: `// [1:5]`, `// [1:0.1:5]`, `// [0deg:5deg:90deg]`.
+//! Parses the range of a slider from a comment: `// [1:5]`, `// [1:0.1:5]`, `// [0deg:5deg:90deg]`.
 
 use super::literal::inward;
 use crate::{numbers::significant, syntax::tree::Unit};
 
-/// A range by a comment, in the unit of the value before it.
+/// Range of a slider from a comment, in the unit of the commented value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommentRange {
-    /// The lesser and the greater end.
+    /// The lower and the upper end.
     pub ends: [f64; 2],
     /// The step, > 0.
     pub step: Option<f64>,
-    /// Whether a number was converted from another unit, so that it has more digits than people
-    /// want to see.
+    /// Whether a number was converted from another unit. It then has more digits than a slider
+    /// should show.
     is_converted: bool,
 }
 
 impl CommentRange {
-    /// Returns the step, or a default, and the ends. If a number was converted, the step has two
-    /// digits, and the ends have no more decimals than the step.
+    /// Returns the step, or `default_step` if the range has none, and the ends. If a number was
+    /// converted from another unit, the step is rounded to two digits, and the ends to the decimals
+    /// of the step.
     pub fn rounded(self, default_step: f64) -> (f64, [f64; 2]) {
         let step = self.step.unwrap_or(default_step);
         if !self.is_converted {
@@ -28,8 +29,9 @@ impl CommentRange {
     }
 }
 
-/// Returns the text in the brackets of a comment that is alone behind a value. Returns `None` if no
-/// part of the text begins as a number does, because the brackets are a remark then.
+/// Returns the text in the brackets of a comment that directly follows a value. `behind` is the
+/// text after the value. Returns `None` if no part between colons starts like a number, since the
+/// comment is then an ordinary one.
 pub fn range_behind(behind: &str) -> Option<&str> {
     let comment = behind.trim_start().strip_prefix("//")?.trim_start();
     let (range, _) = comment.strip_prefix('[')?.split_once(']')?;
@@ -40,11 +42,12 @@ pub fn range_behind(behind: &str) -> Option<&str> {
     (range.contains(':') && range.split(':').any(is_number)).then_some(range)
 }
 
-/// Parses a range into numbers in the unit of a value; its ends may come in either order.
+/// Parses a range. Its numbers are converted to `unit`, the unit of the value, and its ends may
+/// come in either order.
 ///
 /// # Errors
 ///
-/// Why it is no range, in a sentence.
+/// Returns a sentence that says why the text is not a range.
 pub fn parse(range: &str, unit: Option<Unit>) -> Result<CommentRange, String> {
     let numbers = range.split(':').map(|it| in_unit(it.trim(), unit));
     let numbers = numbers.collect::<Result<Vec<(f64, bool)>, _>>()?;
@@ -72,8 +75,8 @@ pub fn parse(range: &str, unit: Option<Unit>) -> Result<CommentRange, String> {
     Err(mistake.to_owned())
 }
 
-/// Parses a number of a range, and returns whether it was converted to the unit of the value. A
-/// number without a unit is in that unit.
+/// Parses a number of a range, and converts it to `unit`, the unit of the value. A number without a
+/// unit is already in that unit. Returns the number, and whether it was converted.
 fn in_unit(written: &str, unit: Option<Unit>) -> Result<(f64, bool), String> {
     let mut units = [Unit::Degrees, Unit::Radians].into_iter();
     let own = units.find(|unit| written.ends_with(unit.name()));

@@ -1,14 +1,15 @@
-//! Number literals that a slider can change.
+//! Number literals whose value a slider can change.
 
 use crate::{
     source::{Source, Span},
     syntax::tree::{Unit, Value, ValueKind},
 };
 
-/// Least exponent of a step, so that a step is never 0.
+/// Minimum decimal exponent of a slider's step, so that the step does not underflow to 0.
 const LEAST_EXPONENT: i32 = -300;
 
-/// Maximum number of significant digits of a changed number.
+/// Maximum number of significant digits of a changed number; the slider's step is not finer. An
+/// `f64` distinguishes all numbers with 15 digits.
 const DIGITS: i32 = 15;
 
 /// A number literal with the sign directly before it.
@@ -18,14 +19,15 @@ pub struct Literal {
     pub span: Span,
     /// The value in its own unit.
     pub value: f64,
-    /// The exponent of the last digit: −2 of `1.25`, 0 of `12`.
+    /// Decimal exponent of the last digit: −2 for `1.25`, 0 for `12`.
     pub last_digit: i32,
     /// The unit, if it has one.
     pub unit: Option<Unit>,
 }
 
 impl Literal {
-    /// Returns the literal that a value consists of, apart from parentheses.
+    /// Returns the literal that a value consists of, perhaps in parentheses; `None` for any other
+    /// value.
     pub fn of(value: &Value<'_>) -> Option<Self> {
         let (written, unit) = match &value.kind {
             ValueKind::Number(written) => (written, None),
@@ -48,7 +50,8 @@ impl Literal {
         })
     }
 
-    /// Returns the literal with a sign; `None` unless the sign is directly before the digits.
+    /// Returns the literal with the minus at `sign`. Returns `None` unless the minus directly
+    /// precedes the digits.
     fn negative(self, sign: Span) -> Option<Self> {
         (sign.end == self.span.start && self.value.is_sign_positive()).then_some(Self {
             span: sign.to(self.span),
@@ -57,13 +60,14 @@ impl Literal {
         })
     }
 
-    /// Whether the literal is written as a whole number.
+    /// Returns whether the literal is written as a whole number without a unit.
     pub fn is_whole(&self) -> bool {
         self.unit.is_none() && self.value.fract() == 0.0 && self.last_digit >= 0
     }
 
-    /// Returns the step of the literal's slider: a hundredth to a tenth of the number, but at least
-    /// a hundredth, so that zero can be reached; and no coarser than the number is written.
+    /// Returns the step of the literal's slider, a power of ten: a hundredth to a tenth of the
+    /// number, but at least a hundredth, so that zero can be reached. If the number has decimals,
+    /// the step is at most the unit of its last digit.
     pub fn step(&self) -> f64 {
         let size = match self.value.abs() {
             0.0 => 0,
@@ -78,7 +82,7 @@ impl Literal {
         })
     }
 
-    /// Returns the text with another number in place of the literal.
+    /// Returns the text of `source` with `value` in place of the literal.
     pub fn replaced(&self, source: &Source, value: f64) -> String {
         let text = source.text();
         let Span { start, end, .. } = self.span;
@@ -91,14 +95,15 @@ fn power_of_ten(exponent: i32) -> f64 {
     written.parse().unwrap_or(1.0)
 }
 
-/// Returns the number of decimals that a number is written with, at most a hundred.
+/// Returns the number of decimals of a number's shortest decimal form, at most 100.
 pub fn decimals(x: f64) -> usize {
     let written = x.to_string();
     let decimals = written.split_once('.').map_or(0, |(_, it)| it.len());
     decimals.min(100)
 }
 
-/// Returns the greatest range within a range whose ends have no more decimals than a step.
+/// Returns the greatest range within the given one whose ends have at most as many decimals as
+/// `step`.
 pub fn inward([least, most]: [f64; 2], step: f64) -> [f64; 2] {
     let decimals_of_step = decimals(step);
     let scale = power_of_ten(decimals_of_step as i32);
@@ -112,9 +117,9 @@ pub fn inward([least, most]: [f64; 2], step: f64) -> [f64; 2] {
     [rounded(least, f64::ceil), rounded(most, f64::floor)]
 }
 
-/// Rounds a number to as many decimals as a step has.
+/// Rounds a number to as many decimals as `step` has.
 pub fn rounded(x: f64, step: f64) -> f64 {
     let decimals = decimals(step);
-    // The sum makes 0 of −0.
+    // Adding 0 turns −0 into 0.
     format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0
 }

@@ -1,8 +1,8 @@
-//! The limits of a number in the text, for a slider.
+//! Computes the limits of a slider for a number in the text.
 //!
-//! A range in a comment behind a definition comes first; otherwise a slider reaches some steps to
-//! both sides, as far as the conditions of fields allow, and as far as the text has no more errors
-//! with the new number, which is tried.
+//! If the definition has a comment with a range, that range is used. Otherwise, the slider extends
+//! some steps to both sides of the number, within the conditions of the fields that use it. Trial
+//! analyses of the changed text find out how far the number can go without new errors.
 
 mod comment;
 mod literal;
@@ -20,44 +20,46 @@ use crate::{
     syntax::tree::{Definition, Unit, Value, ValueKind},
 };
 
-/// Minimum number of steps from a number to each end of its slider.
+/// Minimum number of steps from a number to each end of its slider, unless a limit is nearer.
 const STEPS: f64 = 50.0;
 
-/// Minimum number of steps from a count to each end of its slider. Steps of a count are large.
+/// Minimum number of steps from a count of repetitions to each end of its slider. It is smaller
+/// than [`STEPS`], because the steps of a count are large.
 const STEPS_OF_COUNT: f64 = 10.0;
 
-/// The limits of a number, in its own unit.
+/// Limits of a number and its slider, in the number's own unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// The least valid number, if it is known.
+    /// Minimum valid number, if it is known.
     pub least: Option<f64>,
-    /// The greatest valid number, if it is known.
+    /// Maximum valid number, if it is known.
     pub most: Option<f64>,
-    /// The step.
+    /// Step of the slider.
     pub step: f64,
-    /// The number of decimals that the number is written with.
+    /// Number of decimals with which the number is shown.
     pub decimals: usize,
-    /// The ends of the slider.
+    /// Lower and upper end of the slider.
     pub ends: [f64; 2],
 }
 
-/// A definition that has a slider, or seems to ask for one.
+/// A definition that has a slider, or whose comment looks like the range of one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slider<'a> {
     /// The definition's name.
     pub name: &'a str,
-    /// The span of the number without a unit, or else of the value.
+    /// Span of the number without its unit. If the value is not a number, the span of the value.
     pub span: Span,
-    /// The limits; `None` if the value is no number.
+    /// Limits of the slider; `None` if the value is not a number.
     pub limits: Option<Limits>,
-    /// Why the comment behind the definition gives no range, or another one than it seems to.
+    /// A message that the comment after the definition is not a range, or gives another range than
+    /// it seems to.
     pub note: Option<String>,
 }
 
-/// Returns the limits of the number at a place; `None` if there is no number.
+/// Returns the limits of the number at the offset `at`. Returns `None` if there is no number.
 pub fn limits(analysis: &Analysis<'_>, at: usize) -> Option<Limits> {
     let path = analysis.path(at);
-    // The number, or the negation around it.
+    // The literal is the innermost value, or the negation around it.
     let values = path.values.iter().rev().take(2);
     let literal = values.map_while(|it| Literal::of(it)).last()?;
     let mut trials = Trials::new(analysis);
@@ -71,8 +73,8 @@ pub fn limits(analysis: &Analysis<'_>, at: usize) -> Option<Limits> {
     Some(tried(&literal, bounds.unwrap_or(UNBOUNDED), &mut trials))
 }
 
-/// Returns the sliders of all definitions that are numbers or angles, and a note for any other
-/// value with a range in a comment.
+/// Returns the sliders of all definitions whose values are number or angle literals. Any other
+/// value with a range in a comment gets a note instead of a slider.
 pub fn sliders<'a>(analysis: &'a Analysis<'_>) -> Vec<Slider<'a>> {
     let mut trials = Trials::new(analysis);
     let definitions = analysis.model.definitions();
@@ -112,8 +114,8 @@ fn slider<'a>(
     })
 }
 
-/// Returns the limits of a number with a range in a comment. A count stays whole; a note says so if
-/// that changes the range.
+/// Returns the limits of a number with a range in a comment. For a count, the range is rounded to
+/// whole numbers; if that changes the range, returns a note, too.
 fn within(
     range: CommentRange,
     literal: &Literal,
@@ -131,14 +133,15 @@ fn within(
     (Limits::new(literal, ends.map(Some), step, ends), note)
 }
 
-/// Returns the limits of a number without a range. The slider reaches as far as the number itself,
-/// and at least some steps, to both sides. An end with which the text has more errors than now is
-/// moved towards the number.
+/// Returns the limits of a number without a range in a comment. The slider extends to both sides by
+/// the number's absolute value, or by a minimum number of steps if that is more. An end at which
+/// the text has more errors than now is moved towards the number.
 fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
     let is_count = trials.is_count(literal);
     if is_count {
         bounds.is_whole = true;
-        // Below zero a formula may be valid again, as that of a square is.
+        // Negative counts are excluded here, since a formula such as a square may be valid for
+        // them, too.
         if literal.value >= 0.0 && bounds.least == f64::NEG_INFINITY {
             bounds.least = 0.0;
         }
@@ -155,7 +158,7 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let reach = middle.abs().max(steps * step);
     let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
     let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    // If no near number is valid on either side, the ends are not moved.
+    // If no neighbouring number is valid on either side, the ends are not moved.
     let valid = if valid == [None, None] {
         ends
     } else {
@@ -184,18 +187,18 @@ impl Limits {
     }
 }
 
-/// The numbers that the conditions of fields allow, in a number's own unit.
+/// Range of numbers that the conditions of fields allow, in a number's own unit.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: f64,
     most: f64,
-    /// Whether the bounds themselves are excluded.
+    /// Whether the bounds themselves are not allowed.
     is_open: bool,
     /// Whether only whole numbers are allowed.
     is_whole: bool,
 }
 
-/// The bounds of a number without conditions.
+/// Bounds of a number without conditions.
 const UNBOUNDED: Bounds = Bounds {
     least: f64::NEG_INFINITY,
     most: f64::INFINITY,
@@ -204,7 +207,7 @@ const UNBOUNDED: Bounds = Bounds {
 };
 
 impl Bounds {
-    /// Returns the bounds by the conditions of a field, for a number in a unit.
+    /// Returns the bounds that a field's conditions impose on a number with the unit `unit`.
     fn of_field(field: &FieldRow, unit: Option<Unit>) -> Self {
         let two_to = |power: u32| (1_u64 << power) as f64;
         let mut bounds = UNBOUNDED;
@@ -214,7 +217,8 @@ impl Bounds {
                 Condition::AtLeast(bound) => bounds.least = bound,
                 Condition::MoreThan(bound) => (bounds.least, bounds.is_open) = (bound, true),
                 Condition::AtMostTwoTo(power) => bounds.most = two_to(power),
-                // Only whole numbers have this condition.
+                // Only fields for whole numbers have this condition, so the greatest number is
+                // 2^power − 1.
                 Condition::LessThanTwoTo(power) => bounds.most = two_to(power) - 1.0,
                 Condition::EachMoreThanZero => (bounds.least, bounds.is_open) = (0.0, true),
                 Condition::LessThanHalfTurn => {
@@ -232,7 +236,7 @@ impl Bounds {
         bounds
     }
 
-    /// Returns the bounds by all fields whose value is a name alone.
+    /// Returns the common bounds that all fields impose whose value is the name `name` alone.
     fn of_name(analysis: &Analysis<'_>, name: &str, unit: Option<Unit>) -> Self {
         let is_name = |value: &Value<'_>| matches!(value.kind, ValueKind::Name(it) if it == name);
         let fields = analysis.blocks().flat_map(|block| {
@@ -252,8 +256,8 @@ impl Bounds {
     }
 }
 
-/// Returns the unit of the numbers that a field's value is written in, if they have one; `None` if
-/// the value is an expression, whose numbers do not have to meet the field's conditions.
+/// Returns the unit of the numbers in a field's value; the inner `None` stands for no unit. Returns
+/// the outer `None` for an expression, whose numbers need not meet the field's conditions.
 fn unit(value: &Value<'_>) -> Option<Option<Unit>> {
     match &value.kind {
         ValueKind::Number(_) => Some(None),

@@ -1,4 +1,4 @@
-//! Tries other numbers in the text, to find out whether they make errors.
+//! Analyzes the text with other numbers in it, to find out whether they cause errors.
 
 use super::literal::{Literal, rounded};
 use crate::{
@@ -6,24 +6,25 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum number of bytes of text that are read for one answer.
+/// Maximum cost of all trials for one answer, in bytes of text that are read. When it is spent, no
+/// more numbers are tried.
 const BYTES: usize = 1 << 16;
 
-/// Cost of building an object, in bytes of text that take as long to read.
+/// Cost of building an object, as the number of bytes of text that take as long to read.
 const OBJECT: usize = 12;
 
-/// Trials of a text with other numbers in it, within the cost of one answer.
+/// Trials of a text with other numbers in it, up to the maximum cost [`BYTES`].
 #[derive(Debug)]
 pub struct Trials<'a, 's> {
     analysis: &'a Analysis<'s>,
-    /// The number of errors in the text itself.
+    /// Number of errors in the unchanged text.
     errors: usize,
-    /// The number of bytes that may still be read.
+    /// Remaining cost, in bytes.
     left: usize,
 }
 
 impl<'a, 's> Trials<'a, 's> {
-    /// Returns the trials of a text.
+    /// Starts trials of a text.
     pub fn new(analysis: &'a Analysis<'s>) -> Self {
         Self {
             analysis,
@@ -32,8 +33,9 @@ impl<'a, 's> Trials<'a, 's> {
         }
     }
 
-    /// Whether the text has no more errors with a number in a literal's place. Returns `None` if
-    /// the trial would take too long, given the number of objects that it makes.
+    /// Returns whether the text with `value` in place of the literal has at most as many errors as
+    /// the unchanged text. `objects` is the estimated number of objects. Returns `None` if the
+    /// trial would cost too much, or if `value` is not finite.
     fn is_right(&mut self, literal: &Literal, value: f64, objects: usize) -> Option<bool> {
         let read = self.analysis.text().len();
         let takes = read.saturating_add(OBJECT.saturating_mul(objects));
@@ -48,8 +50,8 @@ impl<'a, 's> Trials<'a, 's> {
         Some(errors(&tried) <= self.errors)
     }
 
-    /// Returns the number of objects that the text may have with another number in a count's place:
-    /// every index of a block may count to it.
+    /// Estimates the number of objects if `count` is replaced by `value`, assuming that every index
+    /// of a block may count to it.
     fn objects_with(&self, count: &Literal, value: f64) -> usize {
         let repetitions = self.analysis.blocks().flat_map(|it| &it.repetition);
         let indices = repetitions.map(|it| it.indices.len()).max().unwrap_or(0);
@@ -58,7 +60,8 @@ impl<'a, 's> Trials<'a, 's> {
         (0..indices).fold(objects, |all, _| all * growth) as usize
     }
 
-    /// Whether a number is a count: a tenth more or less is an error, and one more or less is none.
+    /// Returns whether a number is a count, judged by trials: adding or subtracting a tenth causes
+    /// an error, but adding or subtracting one does not.
     pub fn is_count(&mut self, literal: &Literal) -> bool {
         let mut is_right = |by: f64| {
             let value = rounded(literal.value + by, 0.1);
@@ -70,11 +73,12 @@ impl<'a, 's> Trials<'a, 's> {
             && (is_right(1.0) == Some(true) || is_right(-1.0) == Some(true))
     }
 
-    /// Returns the last number on the way to an end, in whole steps, that makes no error; the end
-    /// if it makes none itself, or cannot be tried. Returns `None` if the first step makes an
-    /// error.
+    /// Searches by bisection, in steps of `step`, for the farthest number from the literal towards
+    /// `end` that adds no error. Returns `end` if it adds no error, or if it cannot be tried.
+    /// Returns `None` if already the first step adds one.
     ///
-    /// If the errors have gaps, it is the last number before one of them.
+    /// If valid and invalid numbers alternate, returns one of the valid numbers before an invalid
+    /// one.
     pub fn last_right(
         &mut self,
         literal: &Literal,
@@ -118,7 +122,7 @@ fn errors(analysis: &Analysis<'_>) -> usize {
 mod tests {
     use super::*;
 
-    /// Five indices that count to 14 would make half a million objects.
+    /// With n = 14, the five indices would make half a million objects.
     #[test]
     fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
         let heads = [

@@ -1,4 +1,4 @@
-//! Adds blocks to the text: a new object in front of the camera, or a copy of an object beside it.
+//! Adds objects to the text: a new one in front of the camera, or a copy of an object beside it.
 
 use std::{borrow::Cow, sync::Arc};
 
@@ -21,11 +21,12 @@ use crate::{
     tracer::vertices,
 };
 
-/// Maximum number of rows in which a free place is searched. A scene of more objects is not made by
-/// hand.
+/// Maximum number of rows of positions, one behind the other, that are searched for a free one. If
+/// all are taken, a taken position is used. A scene with more objects is not made by hand.
 const ROWS: i32 = 100;
 
-/// Colours of new objects, far from each other and from gray and white, the colours of boards.
+/// Colours of new objects. They differ clearly from each other, and from gray and white, the
+/// colours of boards.
 const COLORS: [&str; 10] = [
     "olive",
     "teal",
@@ -39,23 +40,23 @@ const COLORS: [&str; 10] = [
     "sienna",
 ];
 
-/// Maximum distance of two colours that are taken for each other, in steps of sRGB's channels.
+/// Maximum distance of two colours that count as similar, in steps of 8-bit sRGB.
 const ALIKE: f64 = 48.0;
 
-/// A new block.
+/// A block that is added to the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Added {
     /// The edit that writes the block.
     pub edit: Edit,
-    /// The name; a copy of an object without a name has none.
+    /// Name of the new object. A copy of an object without a name has none.
     pub name: Option<String>,
-    /// The start of the block in the new text, in units of UTF-16.
+    /// Offset of the block in the new text, in UTF-16 code units.
     pub cursor: usize,
 }
 
-/// Adds an object of a kind at the end of the text. The object is in front of the camera, beside
-/// the other objects, and on a floor if there is one below the eye. Returns `None` if the kind is
-/// none of an object.
+/// Adds an object of the kind `kind` at the end of the text. The object is placed in front of the
+/// camera, beside the other objects, and on a floor if there is one below the eye. Returns `None`
+/// if `kind` is not a kind of object.
 pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option<Added> {
     let row = schema::block(kind).filter(|row| row.is_object)?;
     let scene = match scene {
@@ -80,7 +81,8 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
         BlockKind::Checkerboard => format!("y {}", short(free_height(&scene))),
         BlockKind::Image | BlockKind::Camera | BlockKind::Sampler => return None,
     };
-    // A colour of its own tells the object from others, and can be changed by a click.
+    // A different colour distinguishes the object from others. Written out, it can be changed by a
+    // click.
     let color = row.fields.iter().find(|field| field.takes == Type::Color);
     let color = color.and_then(|field| match field.preset {
         Preset::Value(own) => Some(format!("  {} {}", field.name, free_color(&scene, own))),
@@ -102,8 +104,8 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     })
 }
 
-/// Returns a kind's default colour, or else the first of [`COLORS`]; the colour is near to none of
-/// the scene. If all of them are taken, they are used in turn.
+/// Returns a colour that is not similar to any colour of the scene: the default colour `own` of a
+/// kind, or else one of [`COLORS`]. If all are taken, [`COLORS`] are used in turn.
 fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     let shapes = scene.objects.iter().flat_map(|it| it.shape.colors());
     let taken: Vec<Color> = shapes.chain([scene.image.background]).collect();
@@ -116,8 +118,8 @@ fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     found.unwrap_or(COLORS[scene.objects.len() % COLORS.len()])
 }
 
-/// Returns the scene of a text with errors. Parts with errors are replaced by those of the smallest
-/// scene, so that new objects are beside those that were added before.
+/// Returns a scene for a text with errors. Parts with errors are replaced by those of the smallest
+/// scene, so that new objects are placed beside those that were added before.
 fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     let smallest = Sources::new(Source::from_text("", SMALLEST));
     let smallest = Analysis::new(&smallest).scene()?;
@@ -135,8 +137,8 @@ fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     })
 }
 
-/// Copies an object's block to the next line. The copy is a twentieth of the picture to the right,
-/// unless the block shares its numbers with others.
+/// Copies an object's block to the next line. The copy is moved to the right by a twentieth of the
+/// picture, unless the block shares its numbers with other blocks.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;
@@ -161,7 +163,7 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     let whole = apply(&Fix::new("", edits), SourceId::File, text);
     let rest = &text[block.span.end..];
     let copy = format!("\n{}", &whole[block.span.start..whole.len() - rest.len()]);
-    // A comment behind the block is about this block.
+    // A comment after the block belongs to it, so the copy is inserted after the comment.
     let behind = rest.lines().next().unwrap_or_default();
     let is_comment = behind.trim_start().starts_with("//");
     let end = block.span.end + if is_comment { behind.len() } else { 0 };
@@ -172,7 +174,8 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     })
 }
 
-/// Returns the kind with the least number that makes a name which is not in the text.
+/// Returns a name that is not in the text: the kind followed by the smallest possible number, such
+/// as `Sphere2`.
 fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     let capital = kind[..1].to_uppercase() + &kind[1..];
     let names = (1..).map(|number| format!("{capital}{number}"));
@@ -185,8 +188,8 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     names.into_iter().find(is_free).unwrap_or(capital)
 }
 
-/// Returns a height for a board that is seen from above: 0, unless the eye is not above it or an
-/// object reaches below it; and not the height of another board.
+/// Returns the height of a new board that is visible from above: 0 if the eye is above it and no
+/// object reaches below it, and otherwise a lower one. No two boards get the same height.
 fn free_height(scene: &Scene) -> f64 {
     let below_eye = if scene.camera.eye.y > 0.0 {
         0.0
@@ -200,7 +203,8 @@ fn free_height(scene: &Scene) -> f64 {
     bottoms.fold(below_eye, f64::min)
 }
 
-/// Returns a free place in front of the camera, and half of the size that an object may have there.
+/// Returns the centre of a free position in front of the camera, and half of the size that an
+/// object may have there.
 fn free_place(scene: &Scene) -> (DVec3, f64) {
     let projection = Projection::new(&scene.camera, &scene.image);
     let distance = distance(scene);
@@ -208,7 +212,8 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let boards = scene.objects.iter();
     let boards = boards.filter_map(|object| Some(object.shape.checkerboard()?.y));
     let floors = boards.filter(|y| *y < projection.eye.y);
-    // Without a board, objects near the height 0 stand on it, because a board will be there.
+    // Without a board, objects near the height 0 stand on that height, because a board will be
+    // added there.
     let floor = floors.reduce(f64::max).or_else(|| {
         let bottom = projection.eye.y + projection.ahead.y * distance - size;
         (projection.eye.y > 0.0 && bottom.abs() <= size).then_some(0.0)
@@ -219,18 +224,17 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
         shapes.filter_map(|shape| handles(&shape, &projection, projection.right).first()?.1);
     let taken: Vec<DVec3> = middles.collect();
     let place = |floor: Option<f64>, steps: i32, row: i32| {
-        // Every other row is shifted by half a place, so that it is seen between the objects before
-        // it.
+        // Every other row is shifted by half a position, so that its objects are visible between
+        // those of the row in front of it.
         let aside = f64::from(steps) + 0.5 * f64::from(row % 2);
         let [aside, behind] = [aside, f64::from(row)].map(|steps| 2.5 * size * steps);
         let at = projection.eye + projection.right * aside + projection.ahead * (distance + behind);
         let at = DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)));
-        // An object on a floor keeps all digits of its height.
+        // The height of an object on a floor is not rounded.
         floor.map_or(at, |y| at.with_y(y + size))
     };
     let is_seen = |at: &DVec3| is_seen(*at, size, &projection);
-    // Each row has seven places, and the next row is behind it. If no floor is seen, the places are
-    // in the air.
+    // Each row has seven positions. If the floor is not visible, the positions are in the air.
     let row = |floor, row| [0, 1, -1, 2, -2, 3, -3].map(|steps| place(floor, steps, row));
     let rows = |floor| (0..ROWS).flat_map(move |it| row(floor, it));
     let mut places = rows(floor).chain(rows(None)).filter(is_seen);
@@ -249,7 +253,7 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     (found, size)
 }
 
-/// Whether a cube around a place lies within the picture; `size` is half of its side.
+/// Returns whether a cube with the centre `at` lies within the picture; `size` is half of its side.
 fn is_seen(at: DVec3, size: f64, projection: &Projection) -> bool {
     let corner = |index: u8| {
         let sides = [1, 2, 4].map(|bit| if index & bit == 0 { -size } else { size });

@@ -1,4 +1,4 @@
-//! Moves the camera by the pointer: orbit, pan, dolly, roll, look, view distance.
+//! Moves the camera as the pointer moves: orbit, pan, dolly, roll, look, view distance.
 
 use std::f64::consts::PI;
 
@@ -12,15 +12,16 @@ use crate::{
     scene::{Camera, FieldOwner, Lens, Scene, View},
 };
 
-/// Minimum angle between the view direction and the up vector, in radians: one degree.
+/// Minimum angle between the view direction and the up vector, in radians: one degree. The pointer
+/// cannot turn the camera nearer to the up vector.
 const POLE: f64 = PI / 180.0;
 
-/// Factor of the camera's distance, or of its view distance, per height of the picture that the
-/// pointer moves.
+/// Factor by which the camera's distance, or its view distance, changes if the pointer moves by the
+/// height of the picture.
 const ZOOM: f64 = 4.0;
 
-/// Returns the distance of the point that the camera is moved about: `lookat`, or else the point
-/// seen in the middle of the picture, or the nearest object.
+/// Returns the distance from the eye to the pivot, i.e. the point about which the camera moves:
+/// `lookat`, or else the point that is visible in the middle of the picture, or the nearest object.
 pub fn distance(scene: &Scene) -> f64 {
     let camera = &scene.camera;
     let from_eye = |point: DVec3| unit(point - camera.eye).1;
@@ -40,12 +41,12 @@ pub fn distance(scene: &Scene) -> f64 {
     seen.map(|hit| hit.t).or_else(nearest).unwrap_or(1.0)
 }
 
-/// Returns the camera after the pointer has moved from one point of the picture to another;
-/// `distance` is that of the point which the camera is moved about.
+/// Returns the camera after the pointer has moved from one point of the picture to another.
+/// `distance` is that from the eye to the pivot; see [`distance`].
 ///
 /// # Errors
 ///
-/// Why the camera cannot be moved so, in a sentence.
+/// Returns a sentence that says why the camera cannot be moved so.
 pub fn moved(
     camera: &Camera,
     projection: &Projection,
@@ -66,8 +67,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // The picture follows the pointer in both. So the camera turns the other way if it
-            // stays in its place.
+            // In both modes, the picture follows the pointer. For that, the camera must turn in
+            // opposite directions when it orbits and when it stays in its place.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {
@@ -91,7 +92,7 @@ pub fn moved(
             if from == DVec2::ZERO || to == DVec2::ZERO {
                 return Err("the middle of the picture has no direction to roll to".to_owned());
             }
-            // The angle is clockwise in the picture, because y points down; the camera turns the
+            // This angle is clockwise in the picture, because y points down. The camera turns the
             // other way.
             let turn = trig::atan2(from.perp_dot(to), from.dot(to));
             moved.roll = within_half_turn(camera.roll, -turn.in_degrees());
@@ -116,16 +117,17 @@ pub fn moved(
     }
 }
 
-/// Returns the factor for a movement, in heights of the picture.
+/// Returns the factor for a movement of the pointer by `heights` heights of the picture.
 fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// Turns the view direction by a movement of the pointer in heights of the picture, each of which
-/// is half a turn: to the right about the up vector, and down away from the up vector.
+/// Returns the view direction after a movement of the pointer, in heights of the picture. One
+/// height corresponds to half a turn: a movement to the right turns about the up vector, and a
+/// movement down turns away from the up vector.
 fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let (up, ahead) = (unit(camera.up).0, projection.ahead);
-    // Right and up of the world in the rolled picture.
+    // `level_top` is the direction of the picture's top without roll.
     let (sin, cos) = (trig::sin(camera.roll), trig::cos(camera.roll));
     let level_top = projection.top * cos - projection.right * sin;
     let pointer = DVec2::new(by.x * cos - by.y * sin, -by.x * sin - by.y * cos) * PI;
@@ -133,7 +135,8 @@ fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let axial = ahead.dot(up);
     let radial = ahead - up * axial;
     let polar = trig::atan2(radial.length(), axial).radians;
-    // If the camera looks straight up or down, the picture's top gives the level direction.
+    // If the camera looks straight up or down, its horizontal direction follows from the picture's
+    // top.
     let level = if radial == DVec3::ZERO {
         -level_top * axial.signum()
     } else {

@@ -1,9 +1,9 @@
-//! Changes the text as a handle is moved.
+//! Changes the text when a handle in the picture is dragged.
 //!
-//! The object or the camera is moved first, in unrounded numbers. Then the fields that differ are
-//! written with one more decimal after another, until the text means something that is seen within
-//! half a pixel of its exact place. That may fail, because the text shares numbers between fields,
-//! or because a condition of the language would be broken.
+//! First, the object or the camera is moved with unrounded numbers; this is the ideal result. Then
+//! the changed fields are written with more and more decimals, until the scene of the new text
+//! agrees with the ideal one within half a pixel. That may fail, because the text shares numbers
+//! between fields, or because a condition of the language would be violated.
 
 use std::{iter, sync::Arc};
 
@@ -26,41 +26,41 @@ use crate::{
     syntax::tree::Block,
 };
 
-/// Maximum number of significant digits of an `f64`.
+/// Number of significant digits that identify every `f64`. More decimals are not tried.
 const DIGITS: i32 = 17;
 
-/// A movement of a handle.
+/// The movement of a handle by the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drag<'a> {
-    /// The object's index in the file; `None` for the camera.
+    /// Index of the object in the scene; `None` for the camera.
     pub object: Option<usize>,
     /// The name of the handle.
     pub handle: &'a str,
-    /// The point where the pointer was; only the camera depends on it.
+    /// Previous point of the pointer, in pixels. Only camera movements depend on it.
     pub from: DVec2,
-    /// The point where the pointer is.
+    /// Current point of the pointer, in pixels.
     pub to: DVec2,
-    /// The axis or plane that the handle moves along, if it is restricted.
+    /// Axis or plane along which the handle moves, if its movement is restricted.
     pub along: Option<Along>,
-    /// The grid that the handle snaps to, in pixels: numbers are multiples of the greatest power
-    /// of ten that moves the handle no farther.
+    /// Grid that the handle snaps to, in pixels. The changed numbers are rounded to multiples of
+    /// the greatest power of ten that moves the handle by at most this distance.
     pub step: Option<f64>,
 }
 
-/// The changes of a text by a moved handle; empty if nobody would see them.
+/// Changes of a text by a dragged handle; empty if they would not be visible.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dragged {
     /// The edits.
     pub edits: Vec<Edit>,
-    /// The changed fields with their new values, as `Ball.radius = 2`.
+    /// Changed fields with their new values, such as `Ball.radius = 2`.
     pub values: Vec<String>,
-    /// Fields that change with them in other blocks, as `camera.lookat`, and in other objects of
-    /// the same block.
+    /// Fields of other blocks, such as `camera.lookat`, and of other objects of the same block,
+    /// that change because they share numbers with the changed ones.
     pub also: Vec<String>,
 }
 
-/// Returns the text of a scene with blanks in place of all blocks of objects except one. The rest
-/// keeps its place and is read quickly.
+/// Returns the text of a scene in which the blocks of all objects except `object` are replaced by
+/// blanks. All offsets stay the same, and the text is read quickly.
 pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
     let source = &sources.file;
     let mut text = String::with_capacity(source.text().len());
@@ -77,7 +77,7 @@ pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources
     Sources::new(Source::from_text(source.name(), text))
 }
 
-/// Returns the blocks of all objects except that of one object.
+/// Returns the spans of the blocks of all objects except that of `object`.
 fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Span> {
     let own = object
         .and_then(|index| scene.objects.get(index))
@@ -87,12 +87,12 @@ fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Sp
     blocks.filter(move |span| Some(*span) != own)
 }
 
-/// Returns the changes of the text of a scene if a handle is moved; `alone` is that text with only
-/// the moved object, by [`alone`].
+/// Returns the edits of the text for a dragged handle. `alone` is the text with only the dragged
+/// object, from [`alone`].
 ///
 /// # Errors
 ///
-/// Why it cannot be done, in a sentence.
+/// Returns a sentence that says why the handle cannot be dragged there.
 pub fn drag(
     sources: &Sources,
     alone: &Sources,
@@ -148,7 +148,7 @@ pub fn drag(
         objects: Arc::new(of_block.cloned().collect()),
         ..scene.clone()
     };
-    // The index among the objects of the block.
+    // Index of the dragged object among the objects of its block.
     let place = drag.object.map(|index| {
         let before = scene.objects.iter().take(index);
         before.filter(|it| it.span == block.span).count()
@@ -162,8 +162,8 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // Within a step of the grid, a change of another field that shares a number would not be
-    // noticed.
+    // When the handle snaps to a grid, the tolerance is a whole step of the grid. That would hide
+    // changes of other fields that share a number, so these are compared exactly.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
@@ -174,7 +174,7 @@ pub fn drag(
         let (changes, rounding) = together(&changes, decimals);
         let changes = &changes;
         let edits = edits(analysis, block, changes, &rounding);
-        // The handle snaps to its old place, too.
+        // The handle may also snap to its old position, which needs no edit.
         let is_back = snapped.is_some() && rounded(current, changes, &rounding) == Some(current);
         if is_back || (snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty)) {
             return Ok(Dragged::default());
@@ -187,8 +187,8 @@ pub fn drag(
             Ok((Some(found), after))
                 if view.agree(ideal, found, tolerance) && keeps_others(found) =>
             {
-                // Edits within the block change no other block, so that a long text need not be
-                // read.
+                // Edits within the block change no other block, so the rest of the text, which may
+                // be long, is not read.
                 let is_own = |edit: &Edit| {
                     block.span.start <= edit.span.start && edit.span.end <= block.span.end
                 };
@@ -217,7 +217,8 @@ pub fn drag(
                 });
             }
             Ok(_) => refusal = refused(),
-            // With more digits the error might disappear, although nobody would see the difference.
+            // If the rounded result already agrees, more digits could remove the error, but the
+            // difference would not be visible.
             Err(why) => match rounded(current, changes, &rounding) {
                 Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,
@@ -227,8 +228,8 @@ pub fn drag(
     Err(refusal)
 }
 
-/// Describes the field of view of a camera in all of the language's ways, if one of them has
-/// changed.
+/// Describes the field of view of a camera in several forms, if one of the fields that determine it
+/// has changed.
 fn lens(image: &Image, changes: &[FieldChange], found: FieldOwner) -> Option<String> {
     const LENS: [&str; 4] = [
         CAMERA.d.name,
@@ -245,8 +246,8 @@ fn lens(image: &Image, changes: &[FieldChange], found: FieldOwner) -> Option<Str
     Some(format!("d {d} = fov {fov:.1}° of a window {high} high"))
 }
 
-/// Returns the message that fields cannot take their values because they share numbers with others,
-/// and what to change in the text.
+/// Returns the message that a field cannot be changed because it shares numbers with other fields,
+/// and how the text must be changed first.
 fn shared_numbers(
     analysis: &Analysis<'_>,
     block: &Block<'_>,
@@ -265,7 +266,8 @@ fn shared_numbers(
     )
 }
 
-/// Returns an object, or the camera; `None` if there is no such object.
+/// Returns the shape of `object`, or the camera if it is `None`. Returns `None` if there is no such
+/// object.
 fn owner(scene: &Scene, object: Option<usize>) -> Option<FieldOwner> {
     Some(match object {
         None => FieldOwner::Camera(scene.camera),
@@ -273,7 +275,7 @@ fn owner(scene: &Scene, object: Option<usize>) -> Option<FieldOwner> {
     })
 }
 
-/// Returns the block of the text that changes, and its name.
+/// Returns the block of the dragged object or camera, and its name for messages.
 fn block<'a, 's>(
     analysis: &'a Analysis<'s>,
     scene: &Scene,
@@ -290,8 +292,8 @@ fn block<'a, 's>(
     Some((block, name.to_owned()))
 }
 
-/// Returns the fields of the camera and of other objects in which two scenes of the same blocks
-/// differ, each behind the name of its block.
+/// Returns the names of the fields in which two scenes from the same blocks differ, except those of
+/// the dragged object itself, such as `camera.lookat`.
 fn others_changed(
     analysis: &Analysis<'_>,
     dragged: Option<usize>,
@@ -335,7 +337,7 @@ fn others_changed(
     changed
 }
 
-/// Reads the scene of a text after edits.
+/// Reads the scene of a text after `edits`. Returns a message if the text has errors then.
 fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let fix = Fix::new("", edits.concat());
     let text = apply(&fix, SourceId::File, source.text());
@@ -348,8 +350,9 @@ fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     })
 }
 
-/// Returns points that a camera sees in the middle and in the corners of its picture, before and
-/// behind the point that it is moved about. Returns `None` if numbers have too few digits for them.
+/// Returns points in space that a camera sees in the middle and the corners of its picture, at 0.5,
+/// 1 and 2 times `distance`. Returns `None` if the coordinates have too few digits to place a point
+/// within [`TOLERANCE`].
 fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     let corners = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
     let depths = [0.5, 1.0, 2.0].into_iter();
@@ -363,19 +366,19 @@ fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     places.map(point).collect()
 }
 
-/// The view of the scene before a drag, in which results are compared.
+/// View of the scene before a drag, in which results of the drag are compared.
 struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
     drag: &'a Drag<'a>,
-    /// The points of the world by which cameras and boards are compared.
+    /// Points in space at which cameras and boards are compared.
     points: Vec<DVec3>,
 }
 
 impl DragView<'_> {
-    /// Returns the number of decimals of the greatest power of ten that moves the held handle by at
-    /// most `step` pixels, and `step` itself. Returns `None` for the camera, and if numbers
-    /// have too few digits for that.
+    /// Returns the number of decimals of the greatest power of ten that moves the dragged handle by
+    /// at most `step` pixels, and `step` itself. Returns `None` for the camera, or if the
+    /// coordinates have too few digits for `step`.
     fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
         let held = |owner: FieldOwner| {
             let mut marks = self.marks(owner).into_iter();
@@ -394,10 +397,11 @@ impl DragView<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Whether the held handle, and every other one in the picture or near to it, is seen no
-    /// farther than a tolerance from its ideal place, in pixels.
+    /// Returns whether two states of the dragged object or camera look alike: the dragged handle,
+    /// and every other handle in or near the picture, is within `tolerance` pixels of its ideal
+    /// position.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
-        // Rounded to few digits, a length may have become 0.
+        // A length that is rounded to few digits may have become 0, which the language forbids.
         if ideal.is_possible() && !found.is_possible() {
             return false;
         }
@@ -413,8 +417,8 @@ impl DragView<'_> {
         })
     }
 
-    /// Returns the points of the picture by which a camera or an object is compared, and whether
-    /// each is held by the pointer.
+    /// Returns the points of the picture at which two states of a camera or an object are compared.
+    /// The flag says whether the pointer holds the point.
     fn marks(&self, owner: FieldOwner) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
         match owner {
@@ -422,15 +426,15 @@ impl DragView<'_> {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()
             }
-            // The handle of a board stays where the view axis meets it, so the point of the board
-            // that is held is compared.
+            // The handle of a board always is where the view axis hits the board, so a fixed point
+            // of the board is compared instead.
             FieldOwner::Shape(Shape::Checkerboard(board)) => {
                 let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
                 points.map(|at| (true, seen(at))).collect()
             }
             FieldOwner::Shape(shape) => {
                 let Drag { handle, to, .. } = *self.drag;
-                // The handle of a radius is on the side that it is moved to.
+                // The handle of a sphere's radius is on the side of the pointer.
                 let towards = if handle == SPHERE.radius.name {
                     self.projection.ray(to)
                 } else {

@@ -1,8 +1,8 @@
 //! Writes changed numbers of fields into the text.
 //!
-//! A literal is replaced number by number, so that unchanged numbers stay as they are written. For
-//! a name, the literal of its `let` changes. To an expression an offset is added, or changed if the
-//! expression ends in one. A missing field is added to its block.
+//! A literal is replaced number by number, so that unchanged numbers keep their spelling. For a
+//! name, the literal in its `let` is replaced. An offset is added to an expression, or changed if
+//! the expression ends with one. A missing field is added to its block.
 
 use glam::DVec3;
 
@@ -23,12 +23,12 @@ pub struct FieldChange {
     pub name: &'static str,
     /// The old value.
     pub from: Value,
-    /// The amount that is added to it.
+    /// Amount that is added to the old value.
     pub by: Value,
 }
 
 impl FieldChange {
-    /// Returns the greatest number in the amount; for an angle, in degrees.
+    /// Returns the greatest absolute number in the amount; for an angle, in degrees.
     pub fn size(&self) -> f64 {
         match self.by {
             Value::Vector(vector) => vector.abs().max_element(),
@@ -36,8 +36,8 @@ impl FieldChange {
         }
     }
 
-    /// For each number that changes, returns the owner with only that number changed by a power of
-    /// ten.
+    /// Returns a copy of the owner for each number that changes: in the copy, only this number is
+    /// changed, by 10^−`decimals`.
     pub fn with_unit(&self, owner: FieldOwner, decimals: i32) -> Vec<FieldOwner> {
         let unit = libm::pow(10.0, f64::from(-decimals));
         let units = match self.by {
@@ -54,8 +54,8 @@ impl FieldChange {
     }
 }
 
-/// Returns the fields of a block in which its owner differs from the ideal one. For a box, they are
-/// the fields of the way that the text takes.
+/// Returns the fields in which the states `current` and `ideal` of a block's owner differ. A box is
+/// changed in those fields, corners or centre and size, with which the text is written.
 pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec<FieldChange> {
     let has_min = |field: &tree::Field<'_>| field.name.text == BOX.min.name;
     let other_way = if block.fields.iter().any(has_min) {
@@ -75,26 +75,29 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
         .collect()
 }
 
-/// Ratios between the amounts of numbers that change together: `v0` and `v1` change by the same
-/// amount, and the center of a box by half of the amount of its size, in either direction.
+/// Ratios between the amounts by which numbers change together. The vertices `v0` and `v1` change
+/// by the same amount. The `center` of a box changes by half of the amount of its `size`, with
+/// either sign.
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
-/// Maximum relative difference of two amounts that are equal apart from rounding.
+/// Maximum relative difference of two amounts that count as equal, which allows for rounding
+/// errors.
 const SAME: f64 = 1e-6;
 
-/// The rounding of changed numbers.
+/// Rounding of changed numbers to decimals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DecimalRounding {
-    /// Number of decimals, which may be negative.
+    /// Number of decimals; a negative one rounds to tens, hundreds and so on.
     decimals: i32,
-    /// Absolute values of the amounts that `together` has rounded. When one of them is added to a
-    /// number, the sum keeps all decimals of both and is not rounded to `decimals`, so that points
-    /// which are not held stay in place.
+    /// Absolute values of the amounts that [`together`] rounded. The sum of a number and such an
+    /// amount keeps all decimals of both, rather than `decimals`, so that points which the pointer
+    /// does not hold stay in place.
     exact: Vec<f64>,
 }
 
-/// Rounds changes to a number of decimals. Numbers along an axis that change together change by the
-/// same rounded amount, so that points which are not held stay in place to the last digit.
+/// Rounds changes to `decimals` decimals. Numbers on one axis that change together, in one of
+/// [`RATIOS`], change by the same rounded amount, so that points which the pointer does not hold
+/// stay in place to the last digit.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
@@ -120,7 +123,7 @@ pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, De
     (changes, DecimalRounding { decimals, exact })
 }
 
-/// Returns the amount by which a vector changes along an axis; `None` if it does not.
+/// Returns the amount by which a vector changes along an axis, or `None` if it is 0.
 fn along(change: &mut FieldChange, axis: usize) -> Option<&mut f64> {
     match &mut change.by {
         Value::Vector(by) => Some(&mut by[axis]).filter(|by| **by != 0.0),
@@ -129,12 +132,12 @@ fn along(change: &mut FieldChange, axis: usize) -> Option<&mut f64> {
 }
 
 impl DecimalRounding {
-    /// Returns the rounded sum of a number and an amount: the number itself if the amount is
-    /// rounded to 0.
+    /// Returns the rounded sum of a number and an amount. Returns the number itself if the amount
+    /// is rounded to 0.
     fn sum(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // Half of a rounded amount has one more digit.
+            // Half of a rounded amount may have one more decimal.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }
@@ -146,14 +149,14 @@ impl DecimalRounding {
     }
 }
 
-/// Returns the number of decimals that a number is written with.
+/// Returns the number of decimals of a number's shortest decimal form.
 fn decimals_of(number: f64) -> i32 {
     let text = format!("{number}");
     text.split_once('.')
         .map_or(0, |(_, digits)| digits.len() as i32)
 }
 
-/// Returns an owner with changed fields, whose values are rounded.
+/// Returns a copy of the owner with changed and rounded fields.
 pub fn rounded(
     owner: FieldOwner,
     changes: &[FieldChange],
@@ -176,8 +179,8 @@ pub fn rounded(
     })
 }
 
-/// Returns the edits that change fields of a block, in order; `None` if two of them change one
-/// number differently.
+/// Returns the edits that change fields of a block, in order. Returns `None` if two changes would
+/// write different numbers in one place.
 pub fn edits<'s>(
     analysis: &Analysis<'s>,
     block: &Block<'s>,
@@ -210,7 +213,7 @@ pub fn edits<'s>(
     edits.windows(2).all(apart).then_some(edits)
 }
 
-/// Writes changed numbers as edits.
+/// Writer of edits for changed numbers.
 struct NumberWriter<'a, 's> {
     analysis: &'a Analysis<'s>,
     rounding: &'a DecimalRounding,
@@ -218,8 +221,8 @@ struct NumberWriter<'a, 's> {
 }
 
 impl<'s> NumberWriter<'_, 's> {
-    /// Changes a value by an amount. Returns `None` if the value has no negative or cannot be
-    /// scaled.
+    /// Adds edits that change the value of an expression by an amount. Returns `None` if the value
+    /// cannot be negated or scaled, which its type may not allow.
     fn change(&mut self, tree: &tree::Value<'s>, by: Value) -> Option<()> {
         let model = &self.analysis.model;
         if let Some(unit) = literal_unit(tree) {
@@ -254,7 +257,8 @@ impl<'s> NumberWriter<'_, 's> {
         self.offset(tree.span, by)
     }
 
-    /// Changes the literal that a sum ends in. The operator becomes the sign of a number.
+    /// Changes the literal at the end of a sum. If the literal becomes negative, the operator
+    /// before it changes instead, so that `+ 1` becomes `- 1`.
     fn change_last(&mut self, step: &Step<'s>, by: Value) -> Option<()> {
         let (sign, other) = match step.operator {
             Operator::Subtract => (-1.0, '+'),
@@ -271,7 +275,7 @@ impl<'s> NumberWriter<'_, 's> {
         Some(())
     }
 
-    /// Adds an offset to an expression.
+    /// Adds an edit that appends an offset, such as `+ 0.5`, to an expression.
     fn offset(&mut self, behind: Span, by: Value) -> Option<()> {
         let zero = operate(Operator::Multiply, Value::Number(0.0), by)?;
         let text = self.sum(zero, by, None);
@@ -286,8 +290,8 @@ impl<'s> NumberWriter<'_, 's> {
         Some(())
     }
 
-    /// Writes a value that has changed by an amount, with the decimals of the rounding; the old
-    /// number if the amount is rounded to 0. An angle without a unit is written in degrees.
+    /// Formats `from` + `by` with the decimals of the rounding. If the amount is rounded to 0,
+    /// formats the old number. An angle without a unit is written in degrees.
     fn sum(&self, from: Value, by: Value, unit: Option<Unit>) -> String {
         if let (Value::Vector(from), Value::Vector(by)) = (from, by) {
             let number = |axis| {
@@ -303,7 +307,8 @@ impl<'s> NumberWriter<'_, 's> {
     }
 }
 
-/// Returns the unit of a number or angle literal, if it has one; `None` for any other value.
+/// Returns the unit of a number or angle literal; the inner `None` stands for no unit. Returns the
+/// outer `None` for any other expression.
 fn literal_unit(tree: &tree::Value<'_>) -> Option<Option<Unit>> {
     match &tree.kind {
         ValueKind::Number(_) => Some(None),
@@ -313,12 +318,12 @@ fn literal_unit(tree: &tree::Value<'_>) -> Option<Option<Unit>> {
     }
 }
 
-/// Whether a value is a literal or a list, whose numbers can take up any change.
+/// Returns whether a value is a literal or a list, whose numbers can express any change.
 fn is_literal(tree: &tree::Value<'_>) -> bool {
     literal_unit(tree).is_some() || matches!(tree.kind, ValueKind::Tuple(_))
 }
 
-/// Returns a number, or the number of units of an angle.
+/// Returns a number, or an angle in `unit` (in degrees if `unit` is `None`).
 fn amount(value: Value, unit: Option<Unit>) -> f64 {
     match (value, unit) {
         (Value::Number(number), _) => number,
@@ -328,7 +333,7 @@ fn amount(value: Value, unit: Option<Unit>) -> f64 {
     }
 }
 
-/// Writes a number with all its digits.
+/// Formats a number with all its digits, and its unit.
 fn spelled(number: f64, unit: Option<Unit>) -> String {
     let number = number + 0.0;
     let text = if number == 0.0 || (1e-4..1e9).contains(&number.abs()) {
@@ -339,7 +344,7 @@ fn spelled(number: f64, unit: Option<Unit>) -> String {
     text + unit.map_or("", Unit::name)
 }
 
-/// Rounds a number to a number of decimals, which may be negative.
+/// Rounds a number to `decimals` decimals, which may be negative.
 fn round(x: f64, decimals: i32) -> f64 {
     let text = match usize::try_from(decimals) {
         Ok(decimals) => format!("{x:.decimals$}"),

@@ -1,5 +1,5 @@
-//! What the viewport knows of each kind of object: its handles, its outline, and the object after
-//! one of the handles is moved.
+//! The handles and the outlines of each kind of object, and the object after one of its handles is
+//! moved. A handle is a point that can be dragged in the picture.
 
 use glam::{DVec2, DVec3};
 
@@ -16,20 +16,21 @@ use crate::{
     tracer::vertices,
 };
 
-/// Maximum distance of a handle from where it should be seen, in pixels.
+/// Maximum distance of a handle in the picture from the pointer that drags it, in pixels. A result
+/// that is farther away is refused.
 pub const TOLERANCE: f64 = 0.5;
 
-/// Message for a move that numbers have too few digits for, or that makes them too large.
+/// Message for a movement that makes numbers too large, or for which they have too few digits.
 pub const TOO_FAR: &str = "that is too far away";
 
-/// A handle's name and its point in the world; `None` if it cannot be seen from the eye.
+/// Name and position of a handle; `None` if the eye cannot see it.
 ///
-/// The name is that of the field that moves with the handle, followed by an axis if the handle
-/// moves only along that axis.
+/// The name is that of the field that changes with the handle. If the handle moves only along one
+/// axis, that axis follows, as in `min_x`.
 pub type Handle = (&'static str, Option<DVec3>);
 
-/// The axis or plane that a point moves along, instead of the plane through it that is parallel to
-/// the view plane.
+/// Axis or plane along which a point moves. Without it, a point moves in the plane parallel to the
+/// view plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// The axis x, y or z (0, 1 or 2).
@@ -39,7 +40,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// Returns an axis, or the floor, by its name.
+    /// Returns the axis or the floor with the name `name`, or `None` if there is none.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "floor" => Some(Self::Floor),
@@ -48,21 +49,23 @@ impl Along {
     }
 }
 
-/// The fields of a triangle's vertices.
+/// Names of the fields of a triangle's vertices.
 const CORNERS: [&str; 3] = [TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name];
 
-/// The handle of an object's middle, for all kinds that have one.
+/// Name of the handle at an object's centre, for all kinds that have one.
 const CENTER: &str = BOX.center.name;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The handles of a box's faces: for each axis the face of least coordinates, and the opposite one.
+/// Names of the handles of a box's faces. For each axis, the face at the lower coordinate comes
+/// before the opposite one.
 const FACES: [&str; 6] = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
 
-/// Number of sides of a sphere's outline.
+/// Number of sides of the polygon that is drawn as a sphere's silhouette.
 const SIDES: u32 = 64;
 
-/// Returns the handles of an object. That of a sphere's radius is on the side of a direction.
+/// Returns the handles of an object. The handle of a sphere's radius is on the side of the
+/// silhouette in the direction `towards`.
 pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Handle> {
     match shape {
         Shape::Sphere(sphere) => vec![
@@ -94,7 +97,8 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
             }
             TriangleOutline::Vertices(corners) => {
                 let corners = CORNERS.into_iter().zip(corners.map(Some));
-                // Vertices have no field for their centroid, which moves all of them.
+                // A triangle given by vertices has no centroid field. This handle moves all
+                // vertices.
                 let center = [(CENTER, Some(triangle.outline.centroid()))];
                 corners.chain(center).collect()
             }
@@ -106,7 +110,8 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
     }
 }
 
-/// Returns the four edges of a box along an axis; other shapes have none.
+/// Returns the four edges of a box that are parallel to an axis. Returns an empty list for any
+/// other shape.
 pub fn edges_along(shape: &Shape, axis: usize) -> Vec<[DVec3; 2]> {
     let (min, max) = match *shape {
         Shape::Box(Cuboid { min, max, .. }) => (min, max),
@@ -124,7 +129,8 @@ pub fn edges_along(shape: &Shape, axis: usize) -> Vec<[DVec3; 2]> {
     edges.into()
 }
 
-/// Returns the outline of a shape.
+/// Returns the outline of a shape in the picture. For a board, this is the square that the view
+/// axis hits.
 pub fn outline(projection: &Projection, shape: &Shape) -> Vec<Polyline> {
     match shape {
         Shape::Sphere(sphere) => {
@@ -143,8 +149,8 @@ pub fn outline(projection: &Projection, shape: &Shape) -> Vec<Polyline> {
     }
 }
 
-/// Returns the points where rays from the eye touch a sphere, all around; `None`s if the eye is
-/// inside.
+/// Returns points of the sphere's silhouette, as seen from the eye, all around. They are `None` if
+/// the eye is inside the sphere.
 fn circle(projection: &Projection, sphere: &Sphere) -> impl Iterator<Item = Option<DVec3>> {
     let axis = (sphere.center - projection.eye).normalize_or(projection.ahead);
     let (first, second) = axis.any_orthonormal_pair();
@@ -155,7 +161,7 @@ fn circle(projection: &Projection, sphere: &Sphere) -> impl Iterator<Item = Opti
     })
 }
 
-/// Returns the square of a checkerboard that the view axis meets.
+/// Returns the outline of the checkerboard's square that the view axis hits.
 fn square(projection: &Projection, board: &Checkerboard) -> Vec<Polyline> {
     let met = projection.on_plane(projection.size / 2.0, DVec3::Y * board.y, DVec3::Y);
     met.map_or_else(Vec::new, |met| {
@@ -166,11 +172,13 @@ fn square(projection: &Projection, board: &Checkerboard) -> Vec<Polyline> {
     })
 }
 
-/// Returns the point where a ray from the eye touches a sphere, on the side of a direction; `None`
-/// if the eye is inside the sphere.
+/// Returns the silhouette point of a sphere in the direction `towards`, i.e. a point where a ray
+/// from the eye is tangent to the sphere. Returns `None` if the eye is inside the sphere.
 ///
-/// With c from the eye to the centre, k = r/|c| and t the direction across c, of length 1, the
-/// point is (1 − k²) c + r √(1 − k²) t.
+/// With c from the eye to the centre, k = r/|c|, and t the unit vector in the direction `towards`
+/// perpendicular to c, the point relative to the eye is
+///
+///   (1 − k²)·c + r·√(1 − k²)·t.
 fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec3> {
     let (axis, distance) = unit(sphere.center - eye);
     let across = towards - axis * towards.dot(axis);
@@ -181,19 +189,19 @@ fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec3> {
     (k < 1.0 && at.is_finite()).then_some(at)
 }
 
-/// Returns the vector of length 1 in a direction, and the length, without overflow.
+/// Returns the unit vector in the direction of `v`, and the length of `v`. Does not overflow.
 pub fn unit(v: DVec3) -> (DVec3, f64) {
     let greatest = v.abs().max_element();
     let scaled = v / greatest;
     (scaled.normalize(), scaled.length() * greatest)
 }
 
-/// Moves a handle of an object to where it is seen at a point of the picture, or as near to that as
-/// it can be.
+/// Returns the object after moving one of its handles to the point `to` of the picture, or as near
+/// to it as possible.
 ///
 /// # Errors
 ///
-/// Why the handle cannot be moved there, in a sentence.
+/// Returns a sentence that says why the handle cannot be moved there.
 pub fn moved(
     shape: Shape,
     handle: &str,
@@ -236,8 +244,8 @@ pub fn moved(
     let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
     let along = Along::named(axis).or(along);
     let by = moved_point(at, to, along, projection)? - at;
-    // A centre moves by its corners: as a field, the centre of a box is rounded, and vertices have
-    // none.
+    // The centre is moved by moving the corners, because the `center` of a box is rounded, and a
+    // triangle given by vertices has no such field.
     let fields = match shape {
         Shape::Box(_) if field == CENTER => &[BOX.min.name, BOX.max.name][..],
         Shape::Triangle(_) if field == CENTER => &CORNERS,
@@ -253,8 +261,8 @@ pub fn moved(
     moved.ok_or_else(no_handle)
 }
 
-/// Moves a point to where it is seen at a point of the picture, or as near to that as what it moves
-/// along allows.
+/// Returns the position of a point that is moved so that it appears at the point `to` of the
+/// picture, or as near to it as the restriction `along` allows.
 fn moved_point(
     point: DVec3,
     to: DVec2,
@@ -266,8 +274,9 @@ fn moved_point(
         None => projection.on_plane(to, point, projection.ahead),
         Some(Along::Floor) => projection.on_plane(to, point, DVec3::Y),
         Some(Along::Axis(axis)) => {
-            // The picture of the axis is a line. The points seen across it from `to` form a plane
-            // with the eye, which the axis meets at the nearest point.
+            // In the picture, the axis is a line. All points that appear on the perpendicular
+            // through `to` form a plane that contains the eye. The axis intersects this plane at
+            // the nearest point.
             let (axis, from_eye) = (DVec3::AXES[axis], point - projection.eye);
             let normal = unit(from_eye.cross(axis)).0;
             across = unit(normal.reject_from(projection.ahead)).0;
@@ -296,12 +305,13 @@ fn moved_point(
     }
 }
 
-/// Returns the radius with which a sphere's outline passes through a point of the picture.
+/// Returns the radius with which the sphere's silhouette passes through the point `to` of the
+/// picture.
 fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, String> {
     let (axis, distance) = unit(sphere.center - projection.eye);
     let (ray, _) = unit(projection.ray(to));
     let radius = ray.cross(axis).length() * distance;
-    // From the surface or from inside, no outline is seen.
+    // The silhouette must be in front of the eye, and the eye outside of the sphere.
     if ray.dot(axis) > 0.0 && radius < distance {
         Ok(radius)
     } else {
@@ -309,13 +319,14 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     }
 }
 
-/// Returns the normal whose tip is seen at a point of the picture, on the same side of the centroid
-/// as now; or else the normal whose tip comes nearest.
+/// Returns the normal whose tip appears at the point `to` of the picture, on the same side of the
+/// centroid as now. If there is none, returns the normal whose tip appears nearest.
 fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
     let reach = triangle.sides.z;
     let (ray, _) = unit(projection.ray(to));
     let center = triangle.centroid - projection.eye;
-    // The point of the ray nearest to the centroid, and from there to the sphere of all tips.
+    // `foot` is the point of the ray nearest to the centroid. The tip lies on the ray, on the
+    // sphere around the centroid that contains all tips.
     let foot = ray * center.dot(ray) - center;
     let (normal, length) = unit(triangle.normal);
     let rest = (reach - foot.length()) * (reach + foot.length());
@@ -323,8 +334,8 @@ fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection
     unit(tip).0 * length
 }
 
-/// Returns the spin with which the apex is seen from the centroid in the direction of a point of
-/// the picture.
+/// Returns the spin with which the apex lies in the direction from the centroid to the point `to`
+/// of the picture.
 fn spun(
     triangle: &CenteredTriangle,
     apex: DVec3,
@@ -342,7 +353,7 @@ fn spun(
     Ok(within_half_turn(triangle.spin, turn))
 }
 
-/// Adds degrees to an angle. If the sum is more than half a turn, whole turns are taken away.
+/// Adds degrees to an angle. If the absolute sum is more than half a turn, removes whole turns.
 pub fn within_half_turn(angle: Angle, degrees: f64) -> Angle {
     let whole = angle.in_degrees() + degrees;
     let turns = if whole.abs() > 180.0 {

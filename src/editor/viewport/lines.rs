@@ -1,24 +1,25 @@
-//! Projects lines of the world into the picture.
+//! Projects lines in space into the picture.
 
 use glam::{DVec2, DVec3};
 
 use crate::projection::Projection;
 
-/// Depth at which lines are cut off, relative to their size. A point in the plane of the eye would
-/// be infinitely far away in the picture.
+/// Minimum depth of the visible part of a line, relative to the greatest coordinate of its points
+/// as seen from the eye. The part nearer to the plane of the eye is cut off, since its image may be
+/// infinitely far away.
 const NEAREST: f64 = 1e-6;
 
-/// Distance outside of the picture at which lines are cut off, in picture sizes. Browsers draw in
-/// single precision, which keeps a tenth of a pixel up to 2^20 pixels, and a page shows a picture
-/// with up to 8192 pixels in a row.
+/// Maximum distance of a line from the picture, in picture sizes; the part beyond it is cut off. A
+/// page shows a picture with up to 8192 pixels in a row, so the distance is at most 2^20 pixels. Up
+/// to there, browsers, which draw in single precision, are exact to a tenth of a pixel.
 const REACH: f64 = 128.0;
 
-/// A line through points of the picture.
+/// A polygonal line through points of the picture, in pixels.
 pub type Polyline = Vec<DVec2>;
 
 impl Projection {
-    /// Returns the visible parts of a line through points of the world: several lines if parts of
-    /// it are behind the eye, or too far outside of the picture.
+    /// Returns the visible parts of a polygonal line through points in space. There are several if
+    /// parts of the line are behind the eye or too far outside of the picture.
     pub fn line(&self, points: &[DVec3]) -> Vec<Polyline> {
         let far = points
             .iter()
@@ -38,8 +39,8 @@ impl Projection {
         self.joined(segments)
     }
 
-    /// Joins segments of the picture to lines, without parts too far outside. A segment that begins
-    /// at the end of the one before it continues that line.
+    /// Joins segments in the picture to polygonal lines, and cuts off parts too far outside. A
+    /// segment that starts at the end of the previous one continues its line.
     pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Polyline> {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = segments.into_iter();
@@ -53,20 +54,22 @@ impl Projection {
     }
 
     /// Clips a segment to the picture, enlarged on each side by `grown` times its width or height.
-    /// Returns `None` if nothing of the segment is left.
+    /// Returns `None` if no part of the segment is left.
     pub(super) fn clip(&self, segment: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
         clip(segment, [-grown * self.size, (1.0 + grown) * self.size])
     }
 
-    /// Returns the image of all directions whose y is `height` at a depth of 1: a line from one
-    /// edge to another of the picture grown by its own size on each side. Returns `None` if
-    /// there is no such line, or if it does not cross the grown picture.
+    /// Returns the line in the picture of all directions that rise by `height` metres per metre of
+    /// depth. It is clipped to the picture, enlarged by its own size on each side. Returns `None`
+    /// if no such line crosses the enlarged picture.
     pub fn level(&self, height: f64) -> Option<[DVec2; 2]> {
-        // The ray through (x, y) has the height ahead.y + (right.y (x − w/2) − top.y (y − h/2))
-        // pitch.
+        // The ray through the pixel (x, y) of a picture of w × h pixels has, at depth 1, the height
+        //
+        //   ahead.y + pitch · (right.y · (x − w/2) − top.y · (y − h/2)).
         let normal = DVec2::new(self.right.y, -self.top.y) * self.pitch;
         let middle = self.size / 2.0;
-        // The line's point nearest to the middle, and its direction.
+        // `foot` is the line's point nearest to the middle of the picture, `along` the line's
+        // direction.
         let foot = middle + normal * ((height - self.ahead.y) / normal.length_squared());
         let along = normal.perp().normalize_or_zero();
         let far = along * (foot.distance(middle) + 3.0 * self.size.length());
@@ -75,8 +78,8 @@ impl Projection {
     }
 }
 
-/// Clips a segment to a rectangle, given by its least and its greatest coordinates (algorithm of
-/// Liang and Barsky). Returns `None` if nothing of it is left.
+/// Clips a segment to a rectangle, which is given by its corners of least and greatest coordinates
+/// (algorithm of Liang and Barsky). Returns `None` if no part of the segment is left.
 pub fn clip([from, to]: [DVec2; 2], rectangle: [DVec2; 2]) -> Option<[DVec2; 2]> {
     let along = to - from;
     let (mut first, mut last): (f64, f64) = (0.0, 1.0);

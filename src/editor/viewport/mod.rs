@@ -1,13 +1,13 @@
-//! Answers for an interactive view of the picture: what is seen at a point, what to draw over it,
-//! and how moving a handle changes the text.
+//! Answers the requests of an interactive view of the picture: the object at a point, the lines to
+//! draw over the picture, and the change of the text when a handle is dragged.
 //!
 //! In: a text and its scene, and points of the picture in pixels from its top left corner. Out:
-//! points, and edits of the text. Points are computed from the scene's numbers, for which `f64` is
-//! exact enough; the tracer decides what is seen.
+//! points, and edits of the text. Points are computed in `f64`, which is accurate enough for a
+//! screen; the tracer decides which object is visible.
 //!
-//! `lines` projects lines of the world. `handles` places the handles of an object and moves the
-//! object, `camera` moves the camera, and `edits` writes the changed fields into the text. `drag`
-//! puts these together. `add` writes new blocks.
+//! `lines` projects lines into the picture. `handles` computes the handles of an object and moves
+//! the object, `camera` moves the camera, and `edits` writes the changed fields into the text.
+//! `drag` combines these. `add` writes new blocks.
 
 mod add;
 mod camera;
@@ -33,11 +33,12 @@ pub use overlays::{
 };
 pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
-/// Returns for each object the span that is selected for it: its name, or the keyword of its block.
+/// Returns for each object the span that an editor selects when the object is chosen: its name, or
+/// the keyword of its block.
 pub fn selections(analysis: &Analysis<'_>, scene: &Scene) -> Vec<Span> {
     let mut blocks = analysis.blocks().peekable();
     let selection = |object: &Object| {
-        // A repeated block has several objects.
+        // The objects of a repeated block share its span.
         while blocks
             .next_if(|block| block.span.start < object.span.start)
             .is_some()

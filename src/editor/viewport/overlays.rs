@@ -1,5 +1,5 @@
-//! Drawings over a picture: horizon, vanishing points with the lines that lead there, and the
-//! objects' outlines and handles.
+//! Computes drawings over a picture: the horizon, vanishing points with the lines that lead there,
+//! and the outlines and handles of objects.
 
 use glam::{DVec2, DVec3};
 
@@ -15,17 +15,19 @@ use crate::{
     tracer::World,
 };
 
-/// Distance between points of a board's outline that are tested for objects in front of them, in
-/// pixels.
+/// Distance, in pixels, between points of a board's outline at which the tracer tests whether an
+/// object hides the outline.
 const TEST_DISTANCE: f64 = 2.0;
 
-/// Maximum number of tested points per segment of a board's outline.
+/// Maximum number of tested points per segment of a board's outline. On longer segments, the
+/// distance between the points grows.
 const MOST_TESTS: f64 = 1000.0;
 
-/// Maximum number of tested points in all. The outlines of further boards are drawn whole.
+/// Maximum total number of tested points, which bounds the time. When it is reached, the outlines
+/// of the remaining boards are drawn as if nothing hid them.
 const MOST_TESTS_IN_ALL: f64 = 8000.0;
 
-/// Maximum number of objects with outlines. Nobody can tell more apart.
+/// Maximum number of objects whose outlines are drawn. Nobody can tell more apart.
 pub const MOST_OBJECTS: usize = 1000;
 
 /// Drawings over a picture.
@@ -33,51 +35,52 @@ pub const MOST_OBJECTS: usize = 1000;
 pub struct Overlays {
     /// The picture's width and height, in pixels.
     pub size: [u32; 2],
-    /// The point where the view axis meets the picture.
+    /// Point where the view axis intersects the picture.
     pub axis: DVec2,
-    /// The image of all level directions.
+    /// The horizon, i.e. the image of all level directions; `None` if it is not visible.
     pub horizon: Option<[DVec2; 2]>,
-    /// The vanishing points of the axes x, y and z.
+    /// Vanishing points of the x, y and z axes.
     pub vanishing: [Vanishing; 3],
-    /// The lines in which the near plane cuts the checkerboards.
+    /// Lines in which the near plane intersects the checkerboards.
     pub near: Vec<[DVec2; 2]>,
-    /// The lines in which the far plane cuts the checkerboards.
+    /// Lines in which the far plane intersects the checkerboards.
     pub far: Vec<[DVec2; 2]>,
-    /// The outlines and handles of the objects that are shown.
+    /// Outlines and handles of the shown objects.
     pub objects: Vec<ObjectOverlay>,
 }
 
-/// The vanishing point of an axis of the world.
+/// Vanishing point of a coordinate axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vanishing {
-    /// The point; `None` if the axis is parallel to the view plane.
+    /// The point; `None` if the axis is parallel to the view plane, and so has none.
     pub point: Option<DVec2>,
-    /// Edges of boxes along the axis, each extended to the point.
+    /// Edges of boxes parallel to the axis, each extended to the vanishing point.
     pub lines: Vec<Polyline>,
 }
 
-/// The outline and the handles of an object.
+/// Outline and handles of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectOverlay {
-    /// The object's index in the file.
+    /// Index of the object in the scene.
     pub object: usize,
     /// The outline.
     pub lines: Vec<Polyline>,
-    /// The handles by name, and the point where each is seen.
+    /// Names of the handles, and their points in the picture; `None` for a handle that is not
+    /// visible.
     pub handles: Vec<(&'static str, Option<DVec2>)>,
 }
 
-/// The objects whose outlines are drawn.
+/// Selection of the objects whose outlines are drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ShownObjects {
-    /// The objects of these indices.
+    /// The objects with these indices.
     Only(Vec<usize>),
-    /// The first [`MOST_OBJECTS`] objects, and the one of this index.
+    /// The first [`MOST_OBJECTS`] objects, and the object with this index, if one is given.
     First(Option<usize>),
 }
 
 impl ShownObjects {
-    /// Whether the object of this index is shown.
+    /// Returns whether the outline of the object with this index is drawn.
     pub fn has(&self, index: usize) -> bool {
         match self {
             Self::Only(indices) => indices.contains(&index),
@@ -106,7 +109,7 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     });
     let cut = |depth: f64| {
         let boards = objects().filter_map(|(_, object)| object.shape.checkerboard());
-        // A plane at depth 0 cuts nothing that is seen.
+        // A plane at depth 0 has no visible intersection.
         let lines = boards
             .filter_map(|&Checkerboard { y, .. }| projection.level((y - camera.eye.y) / depth));
         lines.take(MOST_OBJECTS).collect()
@@ -131,8 +134,8 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     }
 }
 
-/// Removes the parts of the boards' outlines that are behind other objects: a square that is far
-/// larger than the objects would be drawn across all of them.
+/// Removes the parts of the boards' outlines that other objects hide. Without that, a square that
+/// is far larger than the objects would be drawn across all of them.
 pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
     let is_seen = |index: usize, at: DVec2| {
         let hit = pick(scene, world, at).and_then(|(hit, _)| hit);
@@ -148,7 +151,7 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = outline.lines.iter().flat_map(|line| line.windows(2));
         for (from, to) in segments.map(|ends| (ends[0], ends[1])) {
-            // Outside of the picture nothing is in front of a line.
+            // Outside of the picture, no object hides a line, so only the part inside is tested.
             let [first, last] = projection.clip([from, to], 0.0).unwrap_or([to, to]);
             let parts = (first.distance(last) / TEST_DISTANCE)
                 .ceil()
@@ -166,7 +169,7 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
                 let joined = lines.last_mut().filter(|line| line.last() == Some(&begin));
                 match joined {
                     Some(line) => {
-                        // Only the ends of a straight line are kept.
+                        // Of points on a straight line, only the first and the last one are kept.
                         if part > 0 {
                             line.pop();
                         }
@@ -180,7 +183,7 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
     }
 }
 
-/// Returns an edge of a box, extended to its vanishing point.
+/// Returns an edge of a box, extended to its vanishing point `point`.
 fn leading(projection: &Projection, [a, b]: [DVec3; 2], point: DVec2) -> Vec<Polyline> {
     let edge = if projection.depth(a) < projection.depth(b) {
         [a, b]

@@ -12,14 +12,15 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// Maximum number of samples of a pixel that are shown.
+/// Maximum number of samples of a pixel that are shown; further ones are left out.
 pub const MOST_SAMPLES: u64 = 1 << 16;
 
-/// Maximum number of samples of a pixel for which the pixel is rendered. More would take too long.
+/// Maximum number of samples per pixel with which a pixel is rendered for its samples. With more,
+/// an error is returned, since it would take too long.
 const MOST_TRACED: u64 = 1 << 20;
 
-/// Returns the visible hit at a point of the picture, or `None` for the background, and the colour.
-/// Returns `None` outside of the picture.
+/// Returns the nearest hit at a point of the picture, or `None` for the background, together with
+/// the colour there. Returns `None` if the point is outside of the picture.
 pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, Color)> {
     let picture = world.picture();
     let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
@@ -31,21 +32,21 @@ pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, 
     Some((seen, seen.map_or(scene.image.background, |hit| hit.color)))
 }
 
-/// The samples of a pixel.
+/// Samples of a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelSamples {
-    /// The samples' places in the pixel, from its top left corner, and their colours.
+    /// Positions of the samples in pixels from the pixel's top left corner, and their colours.
     pub samples: Vec<(DVec2, Color)>,
     /// The colour of the pixel.
     pub color: Color,
 }
 
-/// Returns the samples of the pixel in a column and a row of the picture, at most the first
-/// [`MOST_SAMPLES`]. Exact pictures have no samples.
+/// Returns the first [`MOST_SAMPLES`] samples of the pixel in column `x` and row `y`. An exact
+/// picture has no samples.
 ///
 /// # Errors
 ///
-/// Why the pixel cannot be rendered, in a sentence.
+/// Returns a sentence that says why the pixel cannot be rendered.
 pub fn samples(scene: &Scene, world: &World, [x, y]: [u32; 2]) -> Result<PixelSamples, String> {
     let (picture, pixel) = (world.picture(), Area::pixel(x, y));
     let sampling = Sampling::new(&scene.sampler, picture.width, picture.height);

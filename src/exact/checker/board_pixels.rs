@@ -1,12 +1,12 @@
 //! Batches of eight pixels that show only a checkerboard and are crossed by few of its lines. Most
 //! pixels of more than one colour are of this kind.
 //!
-//! In: such pixels one by one, in any order, with the board's squares at their corners. Out: the
-//! integral of the board's sign over each pixel. Pixels are sorted by the numbers of lines of both
-//! families that cross them. Eight pixels with the same two numbers are computed at once by
-//! `strips_simd`, which bounds the errors. The arithmetic for a pixel does not depend on the other
-//! pixels of its batch. The result therefore depends neither on the order of the pixels nor on the
-//! part of the picture that is rendered.
+//! In: such pixels one by one, in any order, with the numbers of the board's squares at their
+//! corners. Out: the integral of the board's sign over each pixel. A pixel joins the batch of
+//! pixels that are crossed by the same numbers of lines of the two families. When a batch has eight
+//! pixels, `strips_simd` computes them at once and bounds the errors. The result for a pixel
+//! depends neither on the other pixels of its batch nor on the part of the picture that is
+//! rendered.
 
 use super::{
     homography::BoundedSum,
@@ -14,10 +14,10 @@ use super::{
 };
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
-/// Maximum number of lines of the family that has more lines in the pixel; a pixel with more is
-/// returned without an integral. There is a batch for each pair of numbers of lines, and pixels
-/// with more lines are few. Measured: with 8 or 128, the running time changes by at most about a
-/// tenth.
+/// Maximum number of the board's lines between columns, or between rows, that cross a pixel; a
+/// pixel with more is returned without an integral. There is a batch for each pair of the two
+/// numbers, and few pixels have more lines. Not critical: with 8 or 128, the measured running time
+/// changes by at most about 10 %.
 const MAX_LINES: usize = 32;
 
 /// A pixel that shows only a checkerboard.
@@ -31,14 +31,15 @@ pub(in crate::exact) struct BoardPixel {
     pub candidate: VisibilityCandidate,
 }
 
-/// Queues of pixels, one for each pair of numbers of lines that cross them.
+/// Queues of checkerboard pixels. In one queue, all pixels are crossed by the same numbers of lines
+/// of the board's two families, those between columns and those between rows of squares.
 #[derive(Debug)]
 pub(in crate::exact) struct BoardBatches {
     batches: Vec<Batch>,
     buffer: StripBuffer,
 }
 
-/// A queue of pixels that are crossed by the same numbers of lines.
+/// A queue of pixels that are crossed by the same numbers of lines of the board's two families.
 #[derive(Debug, Default)]
 struct Batch {
     /// The pixels, fewer than [`PIXELS`] between calls.
@@ -56,9 +57,9 @@ impl BoardBatches {
         }
     }
 
-    /// Queues a pixel. If this fills its batch, computes the batch and calls `emit` for each of its
-    /// pixels with the integral, which is positive for the first colour. If too many lines cross
-    /// the pixel, calls `emit` at once without an integral.
+    /// Adds a pixel to the queue of its batch. If the batch is then full, computes it and calls
+    /// `emit` with each of its pixels and the pixel's integral, which is positive for the first
+    /// colour. If too many lines cross the pixel, calls `emit` at once, without an integral.
     pub fn push(
         &mut self,
         pixel: BoardPixel,
@@ -83,7 +84,7 @@ impl BoardBatches {
         }
     }
 
-    /// Computes all pixels that are still queued, and calls `emit` for each.
+    /// Computes all pixels that are still queued, and calls `emit` with each and its integral.
     pub fn finish(mut self, emit: &mut impl FnMut(BoardPixel, Option<BoundedSum>)) {
         for (i, batch) in self.batches.iter_mut().enumerate() {
             let crossing = [i / (MAX_LINES + 1), i % (MAX_LINES + 1)];
@@ -93,7 +94,8 @@ impl BoardBatches {
 }
 
 impl Batch {
-    /// Computes the queued pixels, calls `emit` for each with its integral, and empties the queue.
+    /// Computes the queued pixels, calls `emit` with each and its integral, and empties the queue.
+    /// `crossing` has the numbers of lines of both families, the smaller number first.
     fn compute(
         &mut self,
         crossing: [usize; 2],
@@ -133,8 +135,8 @@ mod tests {
         World::new(&scene)
     }
 
-    /// Returns the integrals of all pixels that show only the board, with known squares at their
-    /// corners.
+    /// Returns the integrals of all pixels that show only the board and whose corners' squares are
+    /// known.
     fn sums(world: &World) -> Vec<(BoardPixel, Option<BoundedSum>)> {
         let [width, height] = SIZE;
         let mut batches = BoardBatches::new();

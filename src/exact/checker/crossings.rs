@@ -1,8 +1,10 @@
-//! The lines that one edge of a polygon crosses, and the direct sum over them.
+//! The lines that one edge of a polygon crosses, and the direct sum over these crossings.
 //!
-//! In: the series X of [`green`](super::green) along an edge, and the point where the edge crosses
-//! its first line. Out: Σ (−1)^j·X over the crossings j, computed in lanes that the compiler
-//! vectorises, with a bound on truncation and rounding errors.
+//! In: the series X along an edge ([`green`](super::green) derives it), and the point where the
+//! edge crosses its first line. Out: the alternating sum Σ (−1)^j·X over the crossings j, computed
+//! in lanes that the compiler vectorises, with a bound on truncation and rounding errors. The sum
+//! is divided into blocks of consecutive crossings, each of which uses as few terms of X as its
+//! depth allows.
 
 use super::homography::{BoundedSum, UNIT};
 use super::special::{reduce_double, waves};
@@ -11,29 +13,33 @@ use std::f64::consts::PI;
 
 use multiversion::multiversion;
 
-/// Maximum number of terms of the series X.
+/// Maximum number of terms of the series X ([`EdgeSeries`]). The omitted terms count as an error.
 pub(super) const MAX_TERMS: usize = 20;
-/// Upper limit on the number of blocks of a sum, which share the tolerance. Over each block, m
-/// grows by half. After 15 blocks, a block has `MAX_BLOCK` crossings, and 300,000 crossings are 74
-/// such blocks.
+/// Upper limit on the number of blocks of a sum. The truncation error of a block is limited to the
+/// tolerance divided by this number. The depth m grows by half over a block, so that after 15
+/// blocks, a block has `MAX_BLOCK` crossings. The longest sum, 300,000 crossings, has 74 such
+/// blocks.
 const MAX_BLOCKS: f64 = 128.0;
 
-/// Minimum number of crossings of a block. With this many, choosing the block's number of terms is
-/// a small part of the work. Measured: with 4 or 64, the running time changes by at most about a
-/// tenth.
+/// Minimum number of crossings in a block of a sum. With this many, choosing the block's number of
+/// terms is a small part of the work. Not critical: with 4 or 64, the measured running time changes
+/// by at most about 10 %.
 const MIN_BLOCK: f64 = 16.0;
-/// Maximum number of crossings of a block, which limits the rounding error of the block's sum.
-/// Measured: with 1024 or 16,384, the running time changes by at most about a tenth.
+/// Maximum number of crossings in a block of a sum, which limits the rounding error of the block.
+/// Not critical: with 1024 or 16,384, the measured running time changes by at most about 10 %.
 const MAX_BLOCK: f64 = 4096.0;
 
-/// Number of running sums. It is even, so that all terms in a running sum have the same sign.
+/// Number of running sums, over which consecutive crossings are distributed. It is even, so that
+/// all terms of a running sum have the same sign of the alternating sum.
 const LANES: usize = 8;
-/// Number of crossings after which t is computed anew in double-double.
+/// Number of crossings after which the coordinate t along the edge is computed anew in
+/// double-double, so that the errors of its steps do not add up.
 const CHUNK: usize = 64;
 
-/// The series X of an edge, with the depth m and the periodic Euler polynomials A_k ([`waves`]):
+/// The series X along an edge, where t is the coordinate along the edge, m the depth, and A_k are
+/// the periodic Euler polynomials ([`waves`]):
 ///
-/// X = Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … `terms`.
+/// X = Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … `terms`
 pub(super) struct EdgeSeries {
     pub terms: usize,
     pub factors: [f64; MAX_TERMS + 1],
@@ -59,7 +65,9 @@ impl EdgeSeries {
         sum * u * u
     }
 
-    /// Bounds the absolute value of the `k`-th term of X at a depth, by |A_k+1| ≤ ½π^(−k).
+    /// Returns an upper bound of the absolute value of the `k`-th term of X at the depth `depth`,
+    /// by
+    /// |A_k+1| ≤ ½π^(−k).
     pub(super) fn size(&self, k: usize, depth: f64) -> f64 {
         let u = 1.0 / depth;
         let mut size = 0.5 * self.factors[k].abs() * u * u;
@@ -69,8 +77,8 @@ impl EdgeSeries {
         size
     }
 
-    /// Returns the number of terms that a sum over `lines` crossings needs if its nearest has depth
-    /// `depth`, and the truncation error. The error is at most `limit`.
+    /// Returns the number of terms of X needed in a sum over `lines` crossings, of which the
+    /// nearest has the depth `depth`, and the truncation error, which is at most `limit`.
     fn terms_for(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
         let (mut terms, mut left) = (self.terms, 0.0);
         while terms > 1 {
@@ -85,24 +93,26 @@ impl EdgeSeries {
     }
 }
 
-/// The lines of one family that an edge crosses.
+/// The crossings of one edge of a polygon with the board's lines of one family, that is with the
+/// lines between columns or those between rows of squares.
 pub(super) struct LineCrossings {
-    /// Value of t at the first line, and its step from line to line, in double-double and reduced
-    /// by whole turns. One square is half a turn.
+    /// Coordinate t at the first line, and the step of t from line to line, in double-double. The
+    /// unit is a square of the board, half a turn of the square wave; whole turns are subtracted.
     pub reduced: [Double; 2],
     /// Depth m at the first line.
     pub depth: f64,
     /// Step of the depth m from line to line.
     pub rise: f64,
-    /// Number of lines, an integer; infinite if the edge ends at the horizon.
+    /// Number of lines, an integer; infinite if the edge ends on the horizon.
     pub count: Double,
 }
 
 impl LineCrossings {
-    /// Computes Σ (−1)^j·X over the first `lines` crossings, crossing by crossing.
+    /// Computes Σ (−1)^j·X over the first `lines` crossings, crossing by crossing, in blocks.
     ///
-    /// The sum consists of blocks. Over each block m grows by half, within the limits on the number
-    /// of crossings. Each block uses as few terms of the series as `tolerance` allows.
+    /// Over each block, the depth m grows by half, unless that takes fewer than [`MIN_BLOCK`] or
+    /// more than [`MAX_BLOCK`] crossings. Each block uses as few terms of X as `tolerance`, the
+    /// limit of the truncation error, allows.
     pub(super) fn one_by_one(&self, series: &EdgeSeries, lines: f64, tolerance: f64) -> BoundedSum {
         let limit = tolerance / MAX_BLOCKS;
         let mut sum = BoundedSum::default();
@@ -116,11 +126,11 @@ impl LineCrossings {
             let (terms, left) = series.terms_for(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // t is off by two roundings, and by three roundings of the distance from the start of
-            // its chunk, which is half a chunk on average. The slope of X is at most π times the
-            // bound on X, so that π turns errors of t into errors of X. Four times all this is
-            // certainly enough. A term has 14 roundings of its own, counted as in `green`. The sum
-            // in a lane has as many roundings as numbers are added to it.
+            // t has an error of two roundings, and of three roundings of its distance from the
+            // start of the chunk, which is half a chunk on average. The slope of X is at most π
+            // times the bound of X, so that π turns errors of t into errors of X. A factor of 4
+            // makes this a safe bound. A term has 14 roundings of its own, counted as in `green`.
+            // The running sum of a lane has one rounding for each number added.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
@@ -142,8 +152,8 @@ impl LineCrossings {
         let mut j = done;
         while left > 0 {
             let now = left.min(CHUNK);
-            // The compiler vectorises this loop up to a whole number of vectors. The values beyond
-            // `now` are superfluous and set to 0 below.
+            // The compiler vectorises this loop if it runs over whole vectors. The values beyond
+            // `now` are therefore computed, too, and then set to 0.
             let mut values = [0.0; CHUNK];
             let filled = now.next_multiple_of(LANES);
             let t = self.reduced_at(&Double::from_f64(j)).hi;
@@ -168,13 +178,13 @@ impl LineCrossings {
         reduce_double(&t.plus(&stride.times(j)))
     }
 
-    /// Returns the step of t from line to line plus half a turn, reduced by whole turns. The half
-    /// turn accounts for the change of sign from crossing to crossing.
+    /// Returns the step of t from line to line plus 1, reduced by whole turns. In half turns, this
+    /// 1 stands for the alternating sign of the sum.
     pub(super) fn alternating_step(&self) -> Double {
         reduce_double(&self.reduced[1].plus(&Double::from_f64(1.0)))
     }
 
-    /// Computes X at crossing `j` + `i`. `t` is the value at crossing `j`.
+    /// Computes X at crossing `j` + `i`, where `t` is the coordinate at crossing `j`.
     #[inline(always)]
     fn at<const TERMS: usize, const ROWS: usize>(
         &self,
@@ -194,8 +204,8 @@ impl LineCrossings {
     }
 }
 
-/// Computes Σ (−1)^j·X over the `count` crossings after the first `done` ones, with at least
-/// `terms` terms of the series. The first of these crossings has j = 0.
+/// Computes Σ (−1)^j·X over `count` crossings, where j = 0 is the one after the first `done`
+/// crossings of the edge. Uses at least `terms` terms of X.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

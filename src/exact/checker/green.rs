@@ -3,8 +3,8 @@
 //!
 //! In: a convex polygon in which the depth m changes little from square to square, and which may
 //! reach the horizon. Out: the integral of the board's sign, with an error bound. The bound covers
-//! the truncation of the series and of sums over crossings, roundings, and the displacement of
-//! squares by rounding errors of the forms.
+//! the truncation of the series and of sums over crossings, rounding errors, and the displacement
+//! of squares by rounding errors of the forms.
 //!
 //! With the periodic Euler polynomials A_k of [`waves`] and J = K/m³, the sum
 //!
@@ -47,26 +47,27 @@ use crate::math::{Double, Real};
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Truncation error that the series of a polygon may have, as a fraction of the tolerance.
+/// Maximum truncation error of the series over a polygon, as a fraction of the tolerance; the
+/// number of terms is chosen accordingly.
 const TRUNCATION: f64 = 1e-3;
 
-/// Truncation error that the sum over an edge may have, as a fraction of the tolerance, if the edge
-/// ends before the horizon but the polygon reaches it. At most two such edges matter, and at most
-/// two run into the horizon. Only half of the total error counts, because the mean colour is half
-/// of the integral of signs.
+/// Maximum truncation error of the sum over an edge that ends before the horizon, as a fraction of
+/// the tolerance, if another edge of the polygon ends on the horizon. At most two edges of each
+/// kind contribute noticeably. Their errors add up to twice the tolerance, of which half counts,
+/// because a colour's share is half of the integral of signs.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
-/// Truncation error that the sum over an edge that runs into the horizon may have, as a fraction of
-/// the tolerance.
+/// Maximum truncation error of the sum over an edge that ends on the horizon, as a fraction of the
+/// tolerance. Together with [`FINITE_TAIL`], it adds up to 1.
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
-/// Truncation error that the sum over an edge may have, as a fraction of the tolerance, if no edge
-/// of the polygon reaches the horizon. Two edges then recede, and the other two hardly contribute
-/// (`tail::level`).
+/// Maximum truncation error of the sum over an edge, as a fraction of the tolerance, if no edge of
+/// the polygon reaches the horizon. Only two edges then recede and have long sums; the others
+/// hardly contribute (`tail::level`).
 const ONLY_FINITE_TAIL: f64 = 1.0;
-/// Minimum share of a polygon in the tolerance. A larger polygon's share is its area as a fraction
-/// of the pixel.
+/// Minimum fraction of the tolerance that a polygon may use up. A larger polygon may use its area
+/// as a fraction of the pixel.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
-/// Table of (k + 1)!/2, by k.
+/// Table of (k + 1)!/2, with the index k.
 pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
     let mut k = 1;
@@ -77,8 +78,8 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     all
 };
 
-/// Integrates the board's sign over a convex polygon in which every square is far away. The polygon
-/// lies in `visible` and may reach the horizon.
+/// Integrates the board's sign over a convex polygon in which the depth changes little from square
+/// to square. The polygon must lie in `visible` and may reach the horizon.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -88,9 +89,9 @@ pub(super) fn sum(
     let (area, _) = measure(polygon);
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
-    // All polygons of a pixel together may neglect as much as a single one; therefore their shares
-    // are their areas, except below `MIN_SHARE`. Likewise, more than four edges may neglect as much
-    // as four.
+    // The polygons of a pixel share the tolerance by their areas, except for those below
+    // `MIN_SHARE`, so that they neglect no more than a single polygon would. Likewise, more than
+    // four edges neglect no more than four would.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
@@ -123,8 +124,8 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // The k-th term has at most 3k + 4 roundings and is less than 2^−k of the first one; Σ
-            // (3k + 4)/2^k = 14. The product with K has two more.
+            // The k-th term has at most 3k + 4 roundings and is less than 2^−k of the first term.
+            // Their sum is Σ (3k + 4)/2^k = 14. The product with K has two more roundings.
             sum.bound += (16.0 * UNIT + 2.0 * board.density_error) * size;
         }
     }
@@ -132,20 +133,22 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns the number of terms that the series needs for a truncation error of at most `limit`, and
-/// a bound on the error. If no number of terms is enough, returns the one with the smallest bound.
+/// Returns the number of terms n that the series needs for a truncation error of at most `limit`,
+/// and a bound on the error. If no number of terms is enough, returns the one with the smallest
+/// bound.
 ///
-/// The truncation error of P follows from |A_k| ≤ ½π^(1−k). Its integral is at most the area in the
-/// picture times
+/// The module's documentation defines P, Ψ, X and γ. The truncation error of P follows from |A_k| ≤
+/// ½π^(1−k). Let p be the larger of the slopes |∂m/∂a| and |∂m/∂b|, and m the smallest depth. The
+/// integral of the error is at most the polygon's area in the picture times
 ///
-/// ½π^(1−n)·(n+2)!/2·(|p|/m)^n.
+/// ½π^(1−n)·(n+2)!/2·(p/m)^n.
 ///
 /// The truncation errors of Ψ and X on an edge have an integral of at most
 ///
 /// n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|.
 ///
-/// Here g is the larger of two slopes of m, the one along the edge and the one along its parameter
-/// t, and ∫ J |dt| ≤ J·min(|Δt|, m/2γ) with J at the near end.
+/// Here g is the larger of two slopes of m, the one along the edge and the one along its coordinate
+/// t. The integral ∫ J |dt| is at most J·min(|Δt|, m/2γ), with J at the near end.
 fn terms(
     board: &Homography,
     nearest: f64,
@@ -179,8 +182,9 @@ fn terms(
     best
 }
 
-/// Returns Ψ at a corner with `terms` orders, and J = K/m³ there, to which the rounding error of Ψ
-/// is proportional.
+/// Returns two values at a corner: Ψ, the potential whose differences along the edges contribute to
+/// the integral, up to the order `terms`; and J = K/m³, to which the rounding error of Ψ is
+/// proportional.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),
@@ -218,20 +222,21 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
-/// An edge from its near end to its far end. Of the floor's two coordinates, c is the one whose
-/// lines the edge crosses less often, and t is the other one.
+/// An edge of a polygon, directed from its near end to its far end. Of the two coordinates (a, b)
+/// on the board's plane, t is the one that changes more along the edge, and c is the other. The sum
+/// over the edge's crossings runs over the lines of constant c.
 struct Edge {
-    /// Sign of the integral ρ·∫ s(c) dX in the sum: +1 if the boundary runs from the near to the
-    /// far end and t is b; each exception changes the sign.
+    /// Sign of the integral ρ·∫ s(c) dX in the polygon's sum: +1 if the boundary runs from the near
+    /// to the far end and t is b, or if neither holds; otherwise −1.
     sign: f64,
-    /// Weight of Ψ at the end of the edge, in the boundary's direction: 1 if t is b, otherwise 0.
+    /// Weight of the difference of Ψ between the edge's ends: 1 if t is b, 0 if t is a.
     potential: f64,
     c: f64,
     t: f64,
     depth: f64,
     /// Values of c, t and m at the far end; `None` if the far end is on the horizon.
     end: Option<(f64, f64, f64)>,
-    /// Number of lines of constant c that the edge crosses; infinite if the edge ends at the
+    /// Number of lines of constant c that the edge crosses; infinite if the edge ends on the
     /// horizon.
     count: Double,
     /// Change of t from the near to the far end; infinite if the far end is on the horizon.
@@ -246,14 +251,13 @@ struct Edge {
     stride: Double,
     /// Change of the depth m from one crossed line to the next.
     rise: f64,
-    /// Direction of c in which lines are crossed, +1 or −1.
+    /// Direction in which c changes along the edge, +1 or −1.
     sense: f64,
 }
 
 impl Edge {
-    /// Returns the edge of the boundary between two corners. As the coordinate t it takes the one
-    /// that changes more along the edge. Returns `None` if the edge contributes nothing: it lies on
-    /// the horizon or has no length.
+    /// Returns the edge of the boundary from the corner `from` to the corner `to`. Returns `None`
+    /// if the edge contributes nothing, because it lies on the horizon or has no length.
     fn new(board: &Homography, from: &Corner, to: &Corner) -> Option<Self> {
         let is_forward = from.depth <= to.depth;
         let (near, far) = if is_forward { (from, to) } else { (to, from) };
@@ -307,8 +311,9 @@ impl Edge {
         })
     }
 
-    /// Computes ρ·∫ s(c) dX from the near to the far end. `tolerance` limits the truncation error
-    /// of the sum over crossings.
+    /// Computes the edge's contribution ρ·∫ s(c) dX to the polygon's integral, with the square wave
+    /// s and the series X, from the near to the far end. `tolerance` limits the truncation error of
+    /// the sum over crossings.
     fn integral(
         &self,
         board: &Homography,
@@ -341,15 +346,16 @@ impl Edge {
                 rise: self.rise,
                 count: self.count,
             };
-            // At the first line that is crossed, s(c) changes by −2·s(c). From there, the changes
-            // alternate in sign.
+            // At the first crossed line, s(c) changes by −2·s(c). The changes at the following
+            // lines alternate in sign.
             let tolerance = 0.5 * tolerance / self.rho.abs();
             let jumps = tail::sum(&crossings, &series, tolerance, budget);
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // X at either end has 14 roundings of the size of its first term, counted as for Ψ. Every
-        // term is proportional to K, which is rounded, too.
+        // X at each end has 14 roundings of the size of its first term: the k-th term has 3k + 4
+        // roundings and is less than 2^−k of the first. Every term is proportional to the rounded
+        // K.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

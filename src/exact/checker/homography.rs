@@ -1,10 +1,10 @@
 //! The homography from a pixel to a checkerboard, and the effect of the rounding of its forms.
 //!
-//! In: a board's three linear forms from the tracer, for a sub-pixel. Out: points of the floor and
-//! their depths; the slopes of the depth; the density of the floor in the picture; and a bound on
-//! how far rounding errors displace what a polygon shows. That bound is a first-order perturbation:
-//! each form is off by four roundings, and the inverse of the forms' matrix maps these errors to
-//! the picture.
+//! In: a board's three linear forms from the tracer, for a sub-pixel. Out: points of the floor (the
+//! infinite plane of the board) and their depths; the slopes of the depth; the density of the floor
+//! in the picture; and a bound on how far rounding errors displace what a polygon shows. This bound
+//! is a first-order perturbation: each form has an error of four roundings, and the inverse of the
+//! forms' matrix maps these errors to the picture.
 
 use glam::DVec2;
 
@@ -14,14 +14,15 @@ use crate::math::{Double, Real, two_product};
 /// Unit roundoff of `f64`, 2^−53.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// Absolute value of the determinant up to which the matrix of the forms counts as singular; each
-/// form is scaled so that its largest factor is 1 to 2. A singular matrix gets this determinant, so
-/// that the inverse and its products are finite; the error bound then covers the whole polygon.
+/// Minimum absolute value of the determinant of the forms' matrix, where each form is scaled so
+/// that its largest factor is 1 to 2. Below it, the matrix counts as singular and gets this
+/// determinant, so that the inverse and its products are finite; the error bound then covers the
+/// whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Maximum displacement by rounding, in pixels, for which corners are set on the horizon if only
-/// rounding keeps them off it. Above it, no corner is set on the horizon. The change is counted in
-/// the bound, and is a hundredth of the usual tolerance.
+/// Maximum displacement by rounding, in pixels, at which [`Homography::corner`] moves a corner to
+/// the horizon if only rounding keeps it off. Above it, no corner is moved. The error bound counts
+/// the move, which is a hundredth of the default tolerance.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of the board's sign and a bound on its absolute error, both in square pixels.
@@ -61,23 +62,23 @@ pub(in crate::exact) struct Homography {
     pub density_error: f64,
     /// Sign of det M, which depends on whether the floor is seen mirrored.
     pub orientation: f64,
-    /// Maximum displacement by rounding, |dx| + |dy| in pixels, of a corner of a region or of a
+    /// Maximum displacement by rounding, |dx| + |dy| in pixels, of a corner of a polygon or of a
     /// line of the board.
     displacement: f64,
     /// Unit vector along the horizon.
     horizon: DVec2,
-    /// Maximum displacement by rounding perpendicular to the horizon, in pixels. The first number
-    /// is the displacement at the horizon, the second one its increase per unit of L.
+    /// Maximum displacement by rounding perpendicular to the horizon, in pixels: its value on the
+    /// horizon, and its increase per unit of L.
     across_horizon: [f64; 2],
-    /// Value of L up to which a point is set on the horizon, because only rounding keeps it off.
+    /// Maximum L of a point that counts as on the horizon, because only rounding keeps it off.
     horizon_tolerance: f64,
 }
 
-/// A corner of a region: the point (a, b) of the floor that it shows, in squares, and the depth m
+/// A corner of a polygon: the point (a, b) of the floor that it shows, in squares, and the depth m
 /// there.
 ///
 /// On the horizon, `depth` is infinite, and `floor` is the direction (da, db)/dm in which edges
-/// approach it.
+/// approach the horizon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub floor: [f64; 2],
@@ -104,8 +105,8 @@ impl BoundedSum {
         Self::zero_within(measure(polygon).0.abs())
     }
 
-    /// Returns this sum, or 0 with the bound `area` if the value is not finite or the bound is not
-    /// less than `area`.
+    /// Returns this sum. If its value is not finite or its bound is at least `area`, returns 0 with
+    /// the bound `area` instead.
     pub fn or_unknown(self, area: f64) -> Self {
         if self.value.is_finite() && self.bound < area {
             return self;
@@ -113,8 +114,8 @@ impl BoundedSum {
         Self::zero_within(area)
     }
 
-    /// Returns this sum, or 0 with the polygon's area as the bound if the value is not finite or
-    /// the bound is no smaller.
+    /// Returns this sum. If its value is not finite or its bound is at least the polygon's area,
+    /// returns 0 with this area as the bound instead.
     pub fn within(self, polygon: &[DVec2]) -> Self {
         self.or_unknown(measure(polygon).0.abs())
     }
@@ -130,14 +131,14 @@ pub(in crate::exact) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
 }
 
-/// Bounds the sum of the absolute values of a form's terms in a pixel, where |x| and |y| are at
-/// most ½.
+/// Returns an upper bound of |c0·x| + |c1·y| + |c2| for the points (x, y) of a pixel, where |x| and
+/// |y| are at most ½. The parameter has the factors c0, c1 and c2 of a linear form.
 pub(in crate::exact) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }
 
 /// Divides a form by a power of two so that its largest factor is between 1 and 2. Returns the form
-/// and the exponent of that power.
+/// and the exponent of the power.
 fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
     let largest = form.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.abs()));
     let exponent = libm::ilogb(largest);
@@ -145,17 +146,16 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Derives the homography from the forms N_a and N_b (`across`) and L (`below`), which may
-    /// share any positive factor. The closer the origin of (a, b) is to the floor that the pixel
-    /// shows, the smaller the bounds.
+    /// Derives the homography from the forms N_a and N_b (`across`) and L (`below`). A common
+    /// positive factor of the three does not matter. The error bounds are smallest if the origin of
+    /// (a, b) is near the part of the floor that the pixel shows.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
         // Squares may be of any size. N_a and N_b are therefore scaled like L, each by its own
         // power of two, before the matrix is inverted.
         let [(a, of_a), (b, of_b)] = across.map(normalized);
-        // These are the columns of det M·M⁻¹. Each component is accurate to two roundings of its
-        // own value.
+        // The columns of det M·M⁻¹. Each component is accurate to two roundings of its own value.
         let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
         let det = determinant(&a, &b, &below);
         let is_singular = det.abs() <= MIN_DETERMINANT;
@@ -168,7 +168,7 @@ impl Homography {
             .sum();
         // Returns the maximum relative error of 1/det M. Each of the three factors of a product has
         // a relative error of one `unit`; the products and their sums, in double-double, have
-        // errors of two `unit`s each. The division adds roundings of its own.
+        // errors of two `unit`s each. The division adds roundings in `f64`.
         let det_off = |unit: f64| {
             if is_singular {
                 f64::INFINITY
@@ -176,12 +176,12 @@ impl Homography {
                 8.0 * unit * products / det.abs() + 4.0 * UNIT
             }
         };
-        // Three roundings of a form's largest terms bound the error of its value; a fourth is that
-        // of the quotient.
+        // A form's value has three roundings of its largest terms, and the quotient N/L has one
+        // more.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
-        // Errors e of the forms displace a point by v = M⁻¹·e, so that L(v) = e_L. The first
-        // summand is the rounding of the point's own coordinates.
+        // Errors e of the forms displace a point by v = M⁻¹·e, so that L(v) = e_L. The initial
+        // value is the rounding of the point's own coordinates.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -220,8 +220,8 @@ impl Homography {
     }
 
     /// Returns the floor and the depth at a point of the visible part. The point counts as on the
-    /// horizon if it is an end of the part's segment there, if L is within the rounding tolerance
-    /// of 0, or if the floor's coordinates overflow.
+    /// horizon if it is an end of the part's segment on the horizon, if L is within the rounding
+    /// tolerance of 0, or if the floor's coordinates overflow.
     pub(super) fn corner(&self, at: DVec2, visible: &VisiblePart) -> Corner {
         let is_on_horizon = |horizon: [DVec2; 2]| horizon.contains(&at);
         let level = if visible.horizon.is_some_and(is_on_horizon) {
@@ -235,7 +235,7 @@ impl Homography {
         } else {
             1.0 / level
         };
-        // If the quotient overflows, the point counts as on the horizon.
+        // If a quotient overflows, the point counts as on the horizon.
         let places = floor.map(|n| n * depth);
         if depth.is_infinite() || !places.iter().all(|place| place.is_finite()) {
             let depth = f64::INFINITY;
@@ -245,29 +245,29 @@ impl Homography {
         Corner { floor, depth }
     }
 
-    /// Returns whether [`Self::corner`] sets a point on the horizon although L is positive there,
-    /// because only rounding keeps the point off it.
+    /// Returns whether [`Self::corner`] treats the point `at` as on the horizon although L is
+    /// positive there, because only rounding keeps the point off the horizon.
     pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
         let level = form(&self.below, at);
         level > 0.0 && level <= self.horizon_tolerance
     }
 
-    /// Returns one coordinate of the floor that a point shows, in squares, and its maximum rounding
-    /// error. `axis` is 0 for a and 1 for b; `level` is the value of L at the point and must be
-    /// greater than 0.
+    /// Returns one coordinate of the floor that the point `at` shows, in squares, and its maximum
+    /// rounding error. `axis` is 0 for a and 1 for b; `level` is the value of L at the point and
+    /// must be greater than 0.
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
-        // There are three roundings in the factors of either form, four in its value, and one in
-        // the quotient. Their sum is doubled because L may be off by half of itself.
+        // The factors of a form have three roundings, its value has four, and the quotient one. The
+        // sum of 8 is doubled because the error of L may be half of L.
         (place, 16.0 * UNIT / level * terms)
     }
 
-    /// Bounds the change of a polygon's integral by rounding of the forms, in square pixels: the
-    /// area that the polygon's boundary sweeps if it is displaced.
+    /// Returns an upper bound of the change of a polygon's integral by rounding errors of the
+    /// forms, in square pixels: the area that the polygon's boundary sweeps when it is displaced.
     ///
-    /// Errors e of the forms displace a point by v = M⁻¹·e, and L(v) = e_L. Near the horizon,
-    /// points therefore move hardly at all perpendicular to it, even if they move far along it.
+    /// Errors e of the forms displace a point by v = M⁻¹·e, with L(v) = e_L. Points near the
+    /// horizon therefore hardly move perpendicular to the horizon, even if they move far along it.
     pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
         let levels = polygon.iter().map(|&p| form(&self.below, p));
@@ -290,8 +290,7 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     minors(a, b).map(|[plus, minus]| (plus.hi - minus.hi) + (plus.lo - minus.lo))
 }
 
-/// Returns the determinant of the matrix with the rows `a`, `b` and `l`. Products are added in
-/// double-double.
+/// Returns the determinant of the matrix with the rows `a`, `b` and `l`, computed in double-double.
 fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
     let products = minors(a, b)
         .map(|[plus, minus]| plus.minus(&minus))
@@ -305,8 +304,8 @@ fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
         .to_f64()
 }
 
-/// Returns the exact products of the cross product `a` × `b`. For each component, the second is to
-/// be subtracted from the first.
+/// Returns the exact products of the cross product `a` × `b`. Each component is the first product
+/// of a pair minus the second.
 fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
 }

@@ -5,13 +5,14 @@
 //!
 //! - Near squares are cut out of the picture one by one ([`near`]).
 //! - Over all farther squares, Green's theorem turns the integral into a sum over the lines that
-//!   the polygon's sides cross ([`green`]). If the lines are very many or infinitely many, [`tail`]
-//!   evaluates the sum. This happens towards the horizon, and along a side that hardly recedes.
+//!   the polygon's edges cross ([`green`]). [`tail`] evaluates the sum if the lines are very many
+//!   or infinitely many, towards the horizon or along an edge that hardly recedes.
 //! - Pixels that show only a board, with few of its lines, are computed eight at a time
 //!   ([`board_pixels`], [`strips_simd`]).
 //!
 //! Every bound includes the effect of rounding errors of the forms, which displace the squares. If
-//! a bound exceeds the polygon's area, the result is 0, the mean of both colours.
+//! a bound exceeds the polygon's area, the result is 0, the mean of both colours, with the area as
+//! the bound.
 
 pub(super) mod board_pixels;
 mod crossings;
@@ -36,16 +37,18 @@ pub(super) use self::{
     special::square_wave,
 };
 
-/// Distance, in squares, beyond which the board is summed along its boundary. From there on the
-/// n-th term of the series is at most n/(18π) of the one before. 20 terms therefore reach
-/// 20!/(18π)²⁰, about 2e-17.
+/// Distance, in squares, beyond which the board is integrated along its boundary by Green's
+/// theorem; nearer squares are cut out one by one. Beyond this distance, the n-th term of the
+/// series is at most n/(18π) of the previous term. The 20 terms therefore reach 20!/(18π)²⁰, about
+/// 2e-17.
 const NEAR_SQUARES: f64 = 18.0;
-/// Maximum number of squares of a polygon for which all are cut out one by one, however far away
-/// they are. Measured: with 6 or 96, the running time changes by at most about a tenth.
+/// Maximum number of squares in a polygon whose squares are all cut out one by one, however far
+/// away they are. Not critical: with 6 or 96, the measured running time changes by at most about 10
+/// %.
 const MAX_CUT_SQUARES: f64 = 24.0;
-/// Depth m = 1/L beyond which no square is cut out. At this depth, the distance to the horizon is
-/// only a thousand rounding errors, since the largest factor of L is about 1. If the squares are so
-/// large that they are still near there, the colours beyond are unknown.
+/// Maximum depth m = 1/L at which squares are cut out. The distance to the horizon in the picture
+/// is then only a thousand rounding errors, because the largest factor of L is about 1. If squares
+/// are so large that even farther ones count as near, the colours beyond are treated as unknown.
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {
@@ -59,7 +62,7 @@ impl Homography {
         if self.squares(&visible.polygon) <= MAX_CUT_SQUARES {
             return near::sum(self, &visible.polygon, budget).within(polygon);
         }
-        // Squares count as near up to this depth; beyond it, m changes little from square to
+        // Squares up to this depth count as near. Beyond it, m changes little from square to
         // square.
         let [p, q] = self.slope;
         let depth = NEAR_SQUARES * (p.abs() + q.abs());
@@ -78,16 +81,16 @@ impl Homography {
             });
         }
         if polygon.iter().any(|&at| self.is_set_on_horizon(at)) {
-            // `corner` sets these corners on the horizon. This displaces the squares at most as
-            // much as rounding does, so that the bound is added once more.
+            // `corner` moves these corners to the horizon. The move displaces squares at most as
+            // far as rounding does, so that the same bound is added a second time.
             sum.bound += self.displacement_error(&visible.polygon);
         }
         sum.within(polygon)
     }
 
     /// Estimates the number of squares that a polygon shows: its area on the floor, in squares,
-    /// plus the numbers of rows and columns of its bounding box there. The bounding box itself
-    /// would be a poor estimate, because a slanted strip has far fewer squares.
+    /// plus the numbers of rows and columns of its bounding box on the floor. The area of the
+    /// bounding box would be a poor estimate, because a slanted strip has far fewer squares.
     fn squares(&self, polygon: &[DVec2]) -> f64 {
         let floor: Vec<DVec2> = polygon
             .iter()

@@ -1,9 +1,10 @@
 //! The board's integral over near squares: each square is cut out of the picture.
 //!
 //! In: a convex polygon of the picture on which L > 0. Out: the sum of the signed areas of the
-//! squares in it, in square pixels, with an error bound. The lines of one family cut the polygon
-//! into rows, and the lines of the other family cut each row into squares (`clip`). The bound is
-//! the sum of each cut's error times the cut's length, plus the roundings of the areas.
+//! squares in it, in square pixels, with an error bound. The lines of one of the board's two
+//! families cut the polygon into rows, and the lines of the other family cut each row into squares
+//! (`clip`). The bound is the sum of each cut's position error times its length, plus the rounding
+//! errors of the areas.
 
 use glam::DVec2;
 
@@ -17,19 +18,20 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// Maximum number of corners that cuts may add to the rest of a polygon; above it, the rest's area
-/// is added to the bound instead of being cut. Exact cuts of a family add two corners in all, and
-/// each cut one. If there are many more, the lines are closer to each other than rounding errors.
+/// Maximum number of corners that cutting may add to the rest of a polygon, the part that is not
+/// yet cut off. Above it, the area of the rest is added to the error bound, and cutting ends. Exact
+/// cuts add at most two corners, both on the last line. Many more show that the lines are closer to
+/// each other than rounding errors.
 const MAX_EXTRA_CORNERS: usize = 32;
 
-/// Coordinate, in squares, from which a polygon is not cut. Below it, the numbers of a square and
-/// of its neighbours are exact in `f64`.
+/// Maximum coordinate, in squares, of a polygon that is cut; beyond it, the integral is unknown. Up
+/// to it, the numbers of a square and of its neighbours are exact in `f64`.
 const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
 /// pixels. Returns 0 with the polygon's area as the bound if the budget does not afford the rows or
-/// is cancelled. A row whose squares the budget does not afford contributes 0, and its area to the
-/// bound.
+/// the picture is cancelled. A row whose squares the budget does not afford contributes 0 to the
+/// value and its area to the bound.
 pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
     let mut tally = CompensatedSum::default();
     let [mut rows, mut squares] = [0, 1].map(|family| Cutter::new(board, family));
@@ -55,8 +57,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
                 return BoundedSum::unknown(polygon);
             }
             let (area, perimeter) = measure(&squares.piece);
-            // At each corner there are three roundings of products of two distances, and one of the
-            // sum. Each distance is at most half the perimeter.
+            // Each corner has three roundings of products of two distances, and one of the sum. A
+            // distance is at most half the perimeter.
             let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;
             tally.add(
                 square_wave(row) * square_wave(square) * area.abs(),
@@ -67,8 +69,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
     tally.sum()
 }
 
-/// Cuts a convex polygon into the strips between neighbouring lines of one family, one after
-/// another.
+/// Cuts a convex polygon into the strips between neighbouring lines of one family, one strip after
+/// another. `rest` is the part that is not yet cut off.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],
@@ -78,7 +80,7 @@ struct Cutter {
     /// Numbers of the next strip and of the last one; `None` if the polygon is empty or a
     /// coordinate is not below [`MAX_SQUARE`].
     strips: Option<(i64, i64)>,
-    /// Number of corners above which the rest is no longer cut.
+    /// Maximum number of corners of the rest; above it, the rest is not cut any further.
     too_many: usize,
 }
 
@@ -95,7 +97,7 @@ impl Cutter {
         }
     }
 
-    /// Starts cutting `polygon`: makes it the rest, and finds its first and last strip.
+    /// Starts cutting `polygon`: copies it to `rest`, and finds its first and last strip.
     fn start(&mut self, polygon: &[DVec2]) {
         self.rest.clear();
         self.rest.extend(polygon);
@@ -111,15 +113,15 @@ impl Cutter {
             });
     }
 
-    /// Returns the number of strips that are left, or infinity if the strips are unknown.
+    /// Returns the number of strips that are left, or infinity if they are unknown.
     fn count(&self) -> f64 {
         self.strips
             .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
     }
 
-    /// Cuts the next strip, between the lines i and i + 1, off the rest into `piece`, and returns
-    /// i. Adds the cut's error to `tally`. Returns `None` if nothing is left or the strips are
-    /// unknown.
+    /// Cuts the next strip, between the lines i and i + 1, off the rest. Moves the strip to
+    /// `piece`, adds the cut's error to `tally`, and returns i. Returns `None` if nothing is left
+    /// or the strips are unknown.
     fn next(&mut self, tally: &mut CompensatedSum) -> Option<f64> {
         let (i, last) = self.strips?;
         if self.rest.len() < 3 {
@@ -135,8 +137,9 @@ impl Cutter {
         Some(i as f64)
     }
 
-    /// Cuts the part before line `n` off the rest into `piece`, and adds the cut's error to
-    /// `tally`. If the rest then has too many corners, adds its area to the bound and drops it.
+    /// Cuts the part before line `n` off the rest, moves it to `piece`, and adds the cut's error to
+    /// `tally`. If the rest then has too many corners, adds the rest's area to the error and drops
+    /// the rest.
     fn cut(&mut self, n: f64, tally: &mut CompensatedSum) {
         let line: [f64; 3] = std::array::from_fn(|k| self.across[k] - n * self.below[k]);
         self.piece.clear();
@@ -156,8 +159,8 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The form's factors are off by three roundings of these sizes, and its value by four. Four
-        // roundings of the point itself are added below.
+        // The form's factors have three roundings of these sizes, and its value has four. The point
+        // itself has four roundings, which are added below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);

@@ -16,26 +16,27 @@ use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
-/// Relative size below which the terms of a series are dropped: about a tenth of the unit roundoff.
+/// Size, relative to the sum, below which the terms of a series are dropped. It is about a tenth of
+/// the unit roundoff.
 const VANISHING: f64 = 1e-17;
 
 /// A complex number: real and imaginary part.
 pub(super) type Complex = [f64; 2];
 
-/// Reduces a number of half turns by whole turns. The result is between −1 and 1.
+/// Returns `x` half turns reduced by whole turns, to between −1 and 1.
 pub(super) fn reduce(x: f64) -> f64 {
     x - 2.0 * (0.5 * x).round_ties_even()
 }
 
-/// Reduces a double-double number of half turns by whole turns. The result may exceed 1 in absolute
-/// value by a rounding, because the parts are reduced one by one.
+/// Returns a double-double number of half turns reduced by whole turns. The absolute value may
+/// exceed 1 by a rounding, because the two parts are reduced separately.
 pub(super) fn reduce_double(x: &Double) -> Double {
     Double::from_f64(reduce(x.hi)).plus(&Double::from_f64(reduce(x.lo)))
 }
 
-/// Returns `n`·`angle` in half turns, reduced by whole turns. `angle` is reduced, and `n` is below
-/// 2^51. The relative error is one rounding even if the result is small, except for the error of
-/// the double-double product.
+/// Returns `n`·`angle` in half turns, reduced by whole turns. `angle` must be reduced, and `n` must
+/// be below 2^51. Even a small result has a relative error of only one rounding, except for the
+/// error of the double-double product.
 pub(super) fn reduced_multiple(n: f64, angle: &Double) -> f64 {
     let Double { hi, lo } = two_product(n, angle.hi);
     let turns = (0.5 * hi + ROUND) - ROUND;
@@ -54,21 +55,21 @@ pub(super) fn cis(x: f64) -> Complex {
     [libm::cos(x), libm::sin(x)]
 }
 
-/// Bounds the absolute value of a complex number by the sum of the absolute values of its parts.
+/// Returns an upper bound of |z|: the sum of the absolute values of the real and imaginary parts.
 fn size(z: Complex) -> f64 {
     z[0].abs() + z[1].abs()
 }
 
-/// Number of orders k of the periodic Euler polynomials A_k: 0 to 21.
+/// Number of orders k of the periodic Euler polynomials A_k ([`waves`]): 0 to 21.
 const ORDERS: usize = 22;
 
-/// Maximum number of coefficients of a polynomial A_k, which has either only even or only odd
-/// powers.
+/// Maximum number of coefficients of a periodic Euler polynomial A_k on one square. The polynomial
+/// has either only even or only odd powers.
 const POWERS: usize = ORDERS / 2;
 
 /// Coefficients of the Taylor series of 1/cosh(x/2) in even powers of x. They follow from the
-/// coefficients 1/(4^i·(2i)!) of cosh(x/2), because the product of both series is 1. Rounding
-/// errors do not grow: all terms of a coefficient are about as large as the coefficient.
+/// coefficients 1/(4^i·(2i)!) of cosh(x/2), because the product of the two series is 1. Rounding
+/// errors do not grow, because all terms of a coefficient are about as large as the coefficient.
 const SECH: [f64; POWERS] = {
     let mut all = [0.0; POWERS];
     all[0] = 1.0;
@@ -85,9 +86,9 @@ const SECH: [f64; POWERS] = {
     all
 };
 
-/// Coefficients of the polynomials A_k in powers of η, the signed distance from the middle of a
-/// square (−½ to ½). In row k, column j has the coefficient of η^2j if k is even, and of η^(2j+1)
-/// if k is odd.
+/// Coefficients of the periodic Euler polynomials A_k on a square, in powers of η, the signed
+/// distance from the square's middle (−½ to ½). In row k, column j has the coefficient of η^2j if k
+/// is even, and of η^(2j+1) if k is odd.
 const FACTORS: [[f64; POWERS]; ORDERS] = {
     let mut factorials = [1.0; ORDERS];
     let mut k = 1;
@@ -117,8 +118,9 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
 }
 
 /// Returns η, the signed distance of `t` from the middle of its square, and the square wave there.
-/// On the border between two squares, either may be used, because A_k is continuous from k = 1 on.
-/// `t` is below 2^51 in absolute value, the limit of [`ROUND`].
+/// On the border of two squares, either square may be used, because A_k is continuous from k = 1
+/// on.
+/// |`t`| must be below 2^51, the limit of [`ROUND`].
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;
@@ -181,19 +183,22 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
     all
 }
 
-/// Order s of the first exponential integral that is computed, F_3.
+/// Order s of the first exponential integral F_s ([`integrals`]) that is computed, F_3.
 const ORDER: u32 = 3;
 
-/// Value of |y| below which the power series is used.
+/// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the
+/// power series.
 const SMALL: f64 = 3.0;
-/// Value of |y| from which on the asymptotic series is used.
+/// Value of |y| from which on the exponential integral F_3(y) ([`integrals`]) is computed by the
+/// asymptotic series.
 const LARGE: f64 = 64.0;
 
-/// Distance in y between the expansion points of the Taylor series, which are used from `SMALL` to
-/// `LARGE`.
+/// Distance in y between the expansion points of the Taylor series of the exponential integral F_3
+/// ([`integrals`]), which are used for |y| from `SMALL` to `LARGE`.
 const STEP: f64 = 0.5;
-/// Number of terms of a Taylor series. Steps are at most a quarter and y is at least 3, so that the
-/// first omitted term is at most (¼/3)^16 = 5e-18.
+/// Number of terms of a Taylor series of the exponential integral F_3 ([`integrals`]). The distance
+/// from the expansion point is at most ¼, and y is at least 3, so that the first omitted term is at
+/// most (¼/3)^16 = 5e-18.
 const EXPANSION_TERMS: usize = 16;
 type Expansion = [Complex; EXPANSION_TERMS];
 static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
@@ -205,7 +210,7 @@ pub(super) fn integrals(y: f64) -> [Complex; 3] {
     [third, fourth, next(y, fourth, 4.0)]
 }
 
-/// Returns F_3(y), by the series that suits |y|.
+/// Returns the exponential integral F_3(y) ([`integrals`]), by the series for the range of |y|.
 fn third(y: f64) -> Complex {
     let size = y.abs();
     let integral = if size >= LARGE {
@@ -258,7 +263,8 @@ fn expanded(expansions: &[Expansion], y: f64) -> Complex {
     at_step(&expansions[(middle - SMALL / STEP) as usize], step)
 }
 
-/// Evaluates a Taylor series at the distance `step` from its expansion point.
+/// Evaluates a Taylor series with the coefficients `terms` at the distance `step` from its
+/// expansion point.
 fn at_step(terms: &Expansion, step: f64) -> Complex {
     terms.iter().rev().fold([0.0; 2], |sum, term| {
         [sum[0] * step + term[0], sum[1] * step + term[1]]
@@ -273,12 +279,12 @@ fn at_step(terms: &Expansion, step: f64) -> Complex {
 /// (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) give the differential
 /// equation
 ///
-/// y·F_s′ = (s − 1 − iy)·F_s − 1.
+/// y·F_s′ = (s − 1 − iy)·F_s − 1
 ///
-/// The coefficients c_k about y therefore satisfy the recurrence below, from which 1 is subtracted
-/// if k = 0:
+/// The coefficients c_k about y therefore satisfy a recurrence, from whose right side 1 is
+/// subtracted if k = 0:
 ///
-/// (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1.
+/// (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1
 fn expansions() -> Vec<Expansion> {
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
     let mut value = asymptotic(LARGE);
@@ -316,10 +322,10 @@ fn power_series(y: f64) -> Complex {
 
 /// Computes F_1(y) for |y| < `SMALL` (DLMF 6.6.2) from
 ///
-/// E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!).
+/// E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!)
 ///
-/// At 0, F_1 has a logarithmic pole. There the function returns 0, because the caller needs only
-/// y·F_1, whose limit is 0.
+/// At y = 0, F_1 has a logarithmic pole. The function returns 0 there, because the caller needs
+/// only y·F_1, whose limit is 0.
 fn first(y: f64) -> Complex {
     const EULER: f64 = 0.577_215_664_901_532_9;
     if y == 0.0 {
@@ -379,8 +385,8 @@ mod tests {
 
     #[test]
     fn they_are_the_integrals() {
-        // The integral is summed by the midpoint rule in x, where v = x/(1 − x) and the integrand
-        // is (1 − x)·e^(iyv).
+        // The integral is summed by the midpoint rule in x, where v = x/(1 − x), so that the
+        // integrand is (1 − x)·e^(iyv).
         const STEPS: u32 = 400_000;
         for y in [0.0, 0.01, 0.7, 3.5, 12.0] {
             let mut sum = [0.0; 2];
@@ -389,8 +395,8 @@ mod tests {
                 let wave = cis(y * x / (1.0 - x));
                 sum = [sum[0] + (1.0 - x) * wave[0], sum[1] + (1.0 - x) * wave[1]];
             }
-            // Near x = 1 the integrand oscillates too fast for the rule, and the error is of order
-            // (1 − x)².
+            // Near x = 1, the integrand oscillates too fast for the rule. The error is of order (1
+            // − x)².
             close(third(y), sum.map(|x| x / f64::from(STEPS)), 1e-4);
         }
     }

@@ -1,9 +1,9 @@
 //! The integral of the board's sign over eight pixels at once, in lanes that the compiler
 //! vectorises.
 //!
-//! In: eight pixels that show only a checkerboard and are crossed by the same numbers of lines of
-//! both families. Out: the integral over each pixel, with a bound on the roundings of areas and on
-//! the displacement of lines by rounding.
+//! In: eight pixels that show only a checkerboard. The board has two families of lines, and the
+//! same number of each family cross every pixel. Out: the integral over each pixel, with a bound on
+//! the rounding errors of areas and on the displacement of lines by rounding.
 //!
 //! The lines of the family with fewer lines cut the pixel into strips; σ_i is the sign of the
 //! squares in strip i. Let H_k be the side of line k of the other family on which squares have
@@ -36,34 +36,38 @@ use super::{
 };
 use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
-/// Maximum number of lines that cut a pixel into strips. The sides of the strips, 34 of 320 bytes
-/// each, then stay in the first-level cache.
+/// Maximum number of lines that cut a pixel into strips; pixels with more lines in both families
+/// are not computed here. The buffer of 34 sides of 320 bytes each then stays in the first-level
+/// cache.
 pub(super) const MAX_STRIP_LINES: usize = 6;
 
-/// Number of pixels that are computed at once, as many as the widest vectors have lanes.
+/// Number of pixels that are computed at once; the widest vectors have as many lanes.
 pub(super) const PIXELS: usize = 8;
 
 /// One number per pixel.
 type Lanes = [f64; PIXELS];
 
-/// Number of sides of strips: parts of the pixel's four sides, and a chord for each line.
+/// Maximum number of sides of strips: four parts of the pixel's sides for each strip, and one chord
+/// for each line between strips.
 const SIDES: usize = 4 * (MAX_STRIP_LINES + 1) + MAX_STRIP_LINES;
 
-/// The linear forms of eight pixels' boards, with the family that has fewer lines first.
+/// The linear forms of eight pixels' boards. Of the board's two families of lines, the one with
+/// fewer lines in the pixel comes first.
 #[derive(Debug, Default)]
 pub(super) struct BoardLanes {
     few: FormRows,
     many: FormRows,
     below: FormRows,
-    /// Sign for each pixel: 1 if the first square of the pixel, the one with the smallest number in
-    /// both families of lines, has the first colour, −1 if it has the second.
+    /// Sign for each pixel: 1 if the pixel's first square has the first colour, −1 if it has the
+    /// second. The first square has the smallest number in each family of lines.
     sign: Lanes,
-    /// Number of the square at each corner of the pixel in the family with fewer lines, relative
-    /// to the smallest one.
+    /// Number of the square at each corner of the pixel, counted in the family with fewer lines
+    /// from the pixel's smallest number.
     squares: [Lanes; 4],
 }
 
-/// A linear form per pixel: the factors of x, y and 1, and the maximum error of the form's values.
+/// One linear form per pixel: the factors of x, y and 1, and the maximum error of the form's
+/// values.
 #[derive(Debug, Default)]
 struct FormRows {
     factors: [Lanes; 3],
@@ -79,8 +83,8 @@ impl FormRows {
     }
 }
 
-/// One directed side of a strip per pixel: its start and its vector in pixels, and the sign of the
-/// strip.
+/// One directed side of a strip for each of eight pixels: the side's start and its vector, in
+/// pixels, and the strip's sign.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sides {
     start: [Lanes; 2],
@@ -98,8 +102,8 @@ impl Default for StripBuffer {
     }
 }
 
-/// The integral over each of eight pixels, positive for the first colour, and its error bound, in
-/// square pixels.
+/// The integral of the board's sign over each of eight pixels, positive for the first colour, and
+/// its error bound, in square pixels.
 pub(super) struct LaneSums {
     values: Lanes,
     bounds: Lanes,
@@ -117,9 +121,9 @@ impl LaneSums {
 }
 
 impl BoardLanes {
-    /// Sets the board of the pixel with the index `place`. `families` are the indices of the two
-    /// families, the one with fewer lines first. `first` is the smallest number of a square in the
-    /// pixel, for each family in the order of the forms.
+    /// Sets the board of the pixel with the index `place`. `families` has the indices of the two
+    /// families, the one with fewer lines first. `first` has the smallest number of a square in the
+    /// pixel for each family, in the order of the board's forms.
     pub fn set(
         &mut self,
         place: usize,
@@ -141,8 +145,8 @@ impl BoardLanes {
         self.sign[place] = if *odd { -wave } else { wave };
     }
 
-    /// Computes the integral of the board's sign over each pixel. `lines` is the number of lines of
-    /// each family that cross every pixel, the smaller number first.
+    /// Computes the integral of the board's sign over each pixel. `lines` has the numbers of lines
+    /// of the two families that cross every pixel, the smaller number first.
     pub fn sums(&self, lines: [usize; 2], buffer: &mut StripBuffer) -> LaneSums {
         sums_simd(self, lines, buffer)
     }
@@ -173,11 +177,13 @@ impl BoardLanes {
                 sums[i] += sign * beyond[i];
             }
         }
-        // For every line, the part of a side has eight operations, on its length and a distance of
-        // at most √2. Each of the 5 sums per strip is rounded, and the sum over lines twice. Each
-        // line that cuts, and its two neighbours, may also be off by 4 roundings of a point. A
-        // displaced line sweeps at most the pixel's diagonal, √2, times its displacement, and the
-        // sign changes there: the factor 2√2 is less than 3.
+        // Rounding errors: for every line, the part of a side beyond the line takes eight
+        // operations on the side's length and on a distance of at most √2. Each of the five sums
+        // per strip has one rounding, and the sum over lines has two. Each cutting line, and the
+        // lines on either side, may also have an error of four roundings of a point.
+        //
+        // A displaced line sweeps at most √2, the pixel's diagonal, times its displacement. The
+        // sign changes there, which doubles the error, and 2√2 < 3.
         let [strips, lines] = [few + 1, many + 1].map(|count| count as f64);
         let points = 4.0 * UNIT * (strips + 1.0);
         LaneSums {
@@ -190,9 +196,9 @@ impl BoardLanes {
         }
     }
 
-    /// Adds to `out` the maximum distance, in pixels, between line `n` of a family and the computed
-    /// line. Errors come from the forms, from three roundings of their factors, and from four of
-    /// their values.
+    /// Adds to `out` the maximum distance, in pixels, between the true line `n` of a family and the
+    /// computed line. The error consists of the forms' own errors, three roundings of their
+    /// factors, and four roundings of their values.
     #[inline(always)]
     fn add_off(&self, across: &FormRows, n: f64, out: &mut Lanes) {
         let below = &self.below;
@@ -205,14 +211,15 @@ impl BoardLanes {
         }
     }
 
-    /// Cuts each pixel into `few` + 1 strips and writes their sides to `sides`. The first strip has
-    /// the sign 1. Returns 0 for each pixel that could be cut, and infinity for the others.
+    /// Cuts each pixel into `few` + 1 strips and writes the strips' sides to `sides`. The signs of
+    /// the strips alternate and start with 1. Returns 0 for each pixel that could be cut, and
+    /// infinity for each other pixel.
     #[inline(always)]
     fn strips(&self, few: usize, sides: &mut [Sides]) -> Lanes {
         let mut failed = [0.0; PIXELS];
         let (parts, chords) = sides.split_at_mut(4 * (few + 1));
-        // For each side, the fraction that the strips so far have reached, from the end with the
-        // smaller square number.
+        // For each side of the pixel, the fraction of its length that the strips so far have
+        // covered, measured from the end with the smaller square number.
         let mut reached = [[0.0; PIXELS]; 4];
         for (corner, reached) in reached.iter_mut().enumerate() {
             let [here, next] = [corner, (corner + 1) % 4].map(|corner| &self.squares[corner]);
@@ -292,9 +299,10 @@ impl BoardLanes {
                 break;
             };
             // The chord is stored from the point where the pixel's boundary enters the strips
-            // before the line to the point where it leaves them. The strip before the line has this
-            // chord backwards, and the next strip, whose sign is the opposite, has it forwards:
-            // together −2 times the sign.
+            // before the line to the point where it leaves these strips. It is a side of the strip
+            // before the line, backwards, and of the strip after the line, forwards. These strips
+            // have opposite signs, so that the chord's total weight is −2 times the sign of the
+            // strip before the line.
             let [up, down] = ends;
             for i in 0..PIXELS {
                 let is_one = (crossings[0][i] == 1.0) & (crossings[1][i] == 1.0);
@@ -309,8 +317,8 @@ impl BoardLanes {
         failed
     }
 
-    /// Returns twice the signed area of the strips beyond a line of the family with more lines.
-    /// `line` counts from the first square of that family.
+    /// Returns twice the signed area of the strips that lies beyond the line `line` of the family
+    /// with more lines. `line` is counted from the first square of the pixel.
     #[inline(always)]
     fn beyond(&self, line: f64, sides: &[Sides]) -> Lanes {
         let mut area = [0.0; PIXELS];
@@ -331,8 +339,8 @@ impl BoardLanes {
                 let value = |x: f64, y: f64| (form[0][i] * x + form[1][i] * y) + form[2][i];
                 let (here, there) = (value(x, y), value(x + across, y + down));
                 let beyond = here.max(0.0) + there.max(0.0);
-                // If a side lies entirely on the line, both values are 0, and the side contributes
-                // 0.
+                // If a side lies on the line, both values are 0, and the side contributes 0 without
+                // a division by 0.
                 let all = here.abs() + there.abs() + f64::MIN_POSITIVE;
                 let twice = (x - origin[0][i]) * down - (y - origin[1][i]) * across;
                 area[i] += sign[i] * twice * (beyond / all);

@@ -1,5 +1,5 @@
-//! Compares the board's integral with an independent sum over squares and with the sum over parts
-//! of the polygon, also at the horizon.
+//! Compares the board's integral over a polygon with an independent sum over squares, and with the
+//! sum of the integrals over parts of the polygon, also at the horizon.
 
 use std::sync::atomic::AtomicBool;
 
@@ -26,8 +26,8 @@ impl Homography {
 }
 
 /// A pixel's view by a level camera: the camera's height in squares, its focal length in pixels,
-/// its direction in degrees, the pixel's place relative to the centre of the horizon (in pixels,
-/// rightwards and downwards), and the point of the board below the eye, in squares.
+/// its direction in degrees, the pixel's place in pixels to the right of and below the centre of
+/// the horizon, and the point of the board below the eye, in squares.
 #[derive(Clone, Copy, Debug)]
 struct PixelView {
     height: f64,
@@ -98,8 +98,8 @@ fn area(polygon: &[DVec2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Returns the integral of the board's sign over a polygon, square by square: projects each
-/// square's corners to the picture and clips the square to the polygon.
+/// Returns the integral of the board's sign over a polygon, square by square. Projects the corners
+/// of each square to the picture and clips the square to the polygon.
 fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
     let m = DMat3::from_cols_array_2d(&forms).transpose();
     let inverse = m.inverse();
@@ -129,7 +129,8 @@ fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
         let mut j = first;
         while j <= last {
             let seen = |q: DVec2| inverse * q.extend(1.0);
-            // A square may reach behind the eye, where m is negative; it is clipped well before.
+            // A square may reach behind the eye, where m is negative. It is clipped well before the
+            // eye.
             let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
                 .map(|(x, y)| DVec2::new(i + x, j + y));
             let before = clip(&corners, |q| seen(q).z - 0.5 * nearest);
@@ -167,8 +168,8 @@ fn agree(found: BoundedSum, expected: f64, most: f64, what: impl std::fmt::Debug
     agree_in_size(found, expected, 1.0, most, what);
 }
 
-/// Asserts that the error of `found` is within its bound and at most `most`. The expected value may
-/// be off by the roundings of products of coordinates up to half of `size`.
+/// Asserts that the error of `found` is within its bound and at most `most`. The expected value has
+/// rounding errors of products of coordinates that are at most half of `size`.
 fn agree_in_size(
     found: BoundedSum,
     expected: f64,
@@ -200,8 +201,8 @@ fn pixels_of_many_squares() {
     }
 }
 
-/// In a very wide view, a pixel sees near squares far to the side: rows of hundreds of squares,
-/// which the pixel's sides cut at all slopes.
+/// In a very wide view, a pixel sees near squares far to the side. They are in rows of hundreds of
+/// squares, which the pixel's sides cut at all slopes.
 #[test]
 fn wide_views() {
     for degrees in [0.0, 0.3, 2.0, 30.0, 45.0, 89.9, 90.0, 135.0, 200.0] {
@@ -222,8 +223,8 @@ fn wide_views() {
     }
 }
 
-/// An edge crosses a million lines if squares are very small. Seen from above and tilted, the
-/// integral is compared with the sum over parts whose edges cross fewer lines.
+/// If squares are very small, an edge crosses a million lines. For boards seen from above, also
+/// tilted, the integral is compared with the sum over parts whose edges cross fewer lines.
 #[test]
 fn a_million_lines() {
     for (turn, tilt) in [
@@ -276,7 +277,7 @@ fn the_horizon() {
             let found = board.alone(&PIXEL);
             // The integral is twice the mean, and so is its bound.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
-            // Vertical slices of the pixel have other crossings, which are counted from other
+            // Vertical slices of the pixel have other crossings with lines, counted from other
             // points.
             let mut slices = BoundedSum::default();
             for i in 0..5 {
@@ -295,8 +296,8 @@ fn the_horizon() {
     }
 }
 
-/// The integral over the part of a horizon pixel below a line: computed directly, and as the
-/// difference between the pixel and the part above the line.
+/// Compares two ways to integrate over the part of a horizon pixel below a line: directly, and as
+/// the difference between the pixel and the part above the line.
 #[test]
 fn the_end_is_the_limit() {
     for degrees in [0.0, 45.0, 30.0, 71.565_051_177, 44.999] {
@@ -317,10 +318,10 @@ fn the_end_is_the_limit() {
     }
 }
 
-/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, and returns
-/// the area that is left beyond q = `most`. A pixel far to the side then sees one straight line on
-/// the floor, with a and b both linear in q = height·x/y. The polygon is cut at each q at which a
-/// or b is an integer.
+/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees. Returns the
+/// integral up to q = `most`, and the remaining area beyond. In the limit, a pixel far to the side
+/// sees one straight line on the floor, on which a and b are linear in q = height·x/y. The polygon
+/// is cut at each q at which a or b is an integer.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
     let angle = view.degrees.to_radians();
     let factors = [-libm::sin(angle), libm::cos(angle)];
@@ -365,8 +366,8 @@ fn widest(focal: f64, degrees: f64) -> PixelView {
     }
 }
 
-/// In the widest views, a and b are nearly proportional: squares are very many, and a pixel sees
-/// such a narrow strip of them that rounding displaces them visibly. The polygon is below the
+/// In the widest views, a and b are nearly proportional. Squares are very many, and a pixel sees
+/// such a narrow strip of them that rounding errors displace them visibly. The polygon is below the
 /// horizon, or reaches it.
 #[test]
 fn the_widest_views() {
@@ -426,8 +427,8 @@ proptest! {
         prop_assume!(matrix.determinant().abs() > 1e-3);
         let found = Homography::new([a, b], below).alone(&PIXEL);
         let expected = brute([a, b, below], &PIXEL);
-        // The expected value maps the corners of squares to the picture by the inverse matrix. The
-        // condition of the matrix limits its accuracy.
+        // The expected value maps the corners of squares to the picture by the inverse matrix. Its
+        // accuracy depends on the condition number of the matrix.
         let size = |matrix: DMat3| matrix.to_cols_array().map(f64::abs).iter().sum::<f64>();
         let roundings = 4.0 * f64::EPSILON * size(matrix) * size(matrix.inverse());
         prop_assert!((found.value - expected).abs() <= found.bound + roundings, "{found:?} {expected}");
@@ -436,7 +437,7 @@ proptest! {
 
 #[test]
 fn from_straight_above() {
-    // The side of a square is about 1/1000 pixel: each side of the pixel holds 1000 squares and a
+    // The side of a square is about 1/1000 pixel: each side of the pixel has 1000 squares and a
     // remainder.
     let board = Homography::new(
         [[1000.5, 0.0, 500.25], [0.0, 1000.5, 500.25]],
@@ -450,7 +451,7 @@ fn from_straight_above() {
     );
 }
 
-/// An integral that exceeds the budget, or is cancelled, is returned as unknown.
+/// An integral is returned as unknown if it exceeds the budget or is cancelled.
 #[test]
 fn nothing_is_computed_beyond_the_budget() {
     let below = [0.0, 0.0, 1.0];
@@ -465,7 +466,7 @@ fn nothing_is_computed_beyond_the_budget() {
     assert_eq!(board.alone(&PIXEL).value, 0.0);
 }
 
-/// The horizon above a single square is known, whatever the square's size.
+/// The integral is known if a single square reaches up to the horizon, whatever the square's size.
 #[test]
 fn a_square_that_goes_to_the_horizon_is_known() {
     // Beyond this exponent, the forms cannot be distinguished from singular ones.
@@ -480,8 +481,8 @@ fn a_square_that_goes_to_the_horizon_is_known() {
         let board = view.board();
         let BoundedSum { value, bound } = board.alone(&PIXEL);
         assert!(bound < 1e-9, "{bound} of {view:?}");
-        // A little more than half of the pixel, 0.51, shows the floor, nearly all of it a single
-        // square: the other squares are at least 0.3 squares away.
+        // A little more than half of the pixel, 0.51, shows the floor. Nearly all of this is a
+        // single square, because the other squares are at least 0.3 squares away.
         let others = view.focal * view.height / 0.3;
         let is_one = (value - 0.51).abs() <= bound + 2.0 * others;
         assert!(is_one, "{value} of {view:?}");

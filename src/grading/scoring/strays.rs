@@ -20,8 +20,8 @@ pub struct Strays {
     pub pixels: Vec<usize>,
     /// Sum of their squared differences.
     square: f64,
-    /// For each pixel of several colours its index, its squared difference, and the variance of one
-    /// sample.
+    /// For each pixel of several colours its index, its squared difference, and the variance of
+    /// one sample.
     edges: Vec<(usize, f64, f64)>,
 }
 

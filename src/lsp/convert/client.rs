@@ -1,16 +1,16 @@
-//! Capabilities of the client and of the server.
+//! Reads the capabilities of the client, and declares those of the server.
 
 use line_index::WideEncoding;
 use serde_json::{Value, json};
 
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
 
-/// Kind of the code actions that fix one mistake.
+/// Protocol name for code actions that fix one mistake.
 pub const QUICK_FIX: &str = "quickfix";
-/// Kind of the code action that fixes all mistakes.
+/// Protocol name for the code action that fixes all mistakes.
 pub const FIX_ALL: &str = "source.fixAll";
 
-/// Capabilities of the client.
+/// Capabilities of the client, i.e. of the editor.
 #[derive(Clone, Copy, Debug)]
 pub struct Client {
     /// Unit in which columns are counted.
@@ -43,8 +43,8 @@ impl Client {
     }
 }
 
-/// Returns the first encoding in `offered`, the client's list in its order of preference, that the
-/// server supports; UTF-16 if there is none.
+/// Returns the first supported encoding in `offered`, the client's list in its order of preference.
+/// Returns UTF-16 if none is supported.
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),
@@ -63,7 +63,7 @@ pub fn capabilities(client: &Client) -> Value {
             Encoding::Wide(WideEncoding::Utf32) => "utf-32",
             Encoding::Wide(_) => "utf-16",
         },
-        // 2 is `Incremental`: changes are sent as edits of the text.
+        // The protocol calls 2 `Incremental`: changes are sent as edits of the text.
         "textDocumentSync": { "openClose": true, "change": 2 },
         "completionProvider": { "triggerCharacters": ["("] },
         "hoverProvider": true,
@@ -85,7 +85,7 @@ pub fn capabilities(client: &Client) -> Value {
             },
             "full": true,
         },
-        // Version of Pinhole's own requests, see docs/protocol.md.
+        // Version of Pinhole's own requests; see docs/protocol.md.
         "experimental": { "pinhole": 1 },
     })
 }

@@ -1,4 +1,4 @@
-//! Converts completions and the text that they insert.
+//! Converts completions and their inserted texts to the types of the protocol.
 
 use serde_json::{Value, json};
 
@@ -12,17 +12,17 @@ impl Converter<'_> {
     pub fn completion(&self, index: usize, completion: Completion) -> Value {
         let kind = match completion.kind {
             CompletionKind::Function => 3,
-            // 6 is `Variable`.
+            // The protocol calls 6 `Variable`.
             CompletionKind::Definition => 6,
-            // 10 is `Property`.
+            // The protocol calls 10 `Property`.
             CompletionKind::Field => 10,
             CompletionKind::Value => 12,
             CompletionKind::Keyword => 14,
             CompletionKind::Color(_) => 16,
-            // 20 is `EnumMember`.
+            // The protocol calls 20 `EnumMember`.
             CompletionKind::Method => 20,
             CompletionKind::Constant => 21,
-            // 22 is `Struct`.
+            // The protocol calls 22 `Struct`.
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
@@ -39,22 +39,22 @@ impl Converter<'_> {
         };
         without_nulls(json!({
             "label": completion.label,
-            // If an item has an edit but not this field, Neovim assumes that the items are filtered
-            // already, and replaces the typed text by the first one.
+            // If an item has an edit but lacks `filterText`, Neovim assumes that the items are
+            // filtered already, and replaces the typed text by the first item.
             "filterText": completion.label,
             "kind": kind,
             "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
             "documentation": documentation,
             // Editors sort by this text, so it keeps the order of the list.
             "sortText": format!("{index:04}"),
-            // 1 is `PlainText`, 2 is `Snippet`.
+            // The protocol calls 1 `PlainText` and 2 `Snippet`.
             "insertTextFormat": 1 + u8::from(is_snippet),
             "textEdit": { "range": self.range(completion.replaces), "newText": text },
         }))
     }
 }
 
-/// Returns the inserted text with the placeholders' values as plain text.
+/// Returns the inserted text without placeholders: their example values are plain text.
 fn plain(pieces: &[SnippetPart]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
         SnippetPart::Text(text) | SnippetPart::Placeholder(text) => text.as_str(),
@@ -62,7 +62,8 @@ fn plain(pieces: &[SnippetPart]) -> String {
     texts.collect()
 }
 
-/// Returns the inserted text as a snippet with numbered placeholders, which the user types over.
+/// Returns the inserted text as a snippet with numbered placeholders. Typing replaces a
+/// placeholder's example value.
 fn snippet(pieces: &[SnippetPart]) -> String {
     let mut text = String::new();
     let mut holes = 0;

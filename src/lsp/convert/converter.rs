@@ -1,5 +1,5 @@
-//! Converts answers about a document to types of the protocol, and positions and changes in the
-//! protocol to ours.
+//! Converts answers about a document to the types of the protocol, and positions and changes in the
+//! protocol to byte offsets and spans.
 
 use line_index::WideEncoding;
 use serde_json::{Value, json};
@@ -40,7 +40,7 @@ impl Converter<'_> {
         self.document.offset(line_column(position))
     }
 
-    /// Converts a range to a span; start and end may be exchanged.
+    /// Converts a range to a span. A range whose end precedes its start is accepted.
     pub fn span(&self, range: Range) -> Span {
         let (start, end) = (self.offset(range.start), self.offset(range.end));
         Span::new(SourceId::File, start.min(end), end.max(start))
@@ -89,7 +89,7 @@ impl Converter<'_> {
             "code": diagnostic.code.trim_start_matches("pinhole::"),
             "source": "pinhole",
             "message": message,
-            // 1 is `Unnecessary`: editors show the text in grey.
+            // The protocol calls 1 `Unnecessary`: editors show the text in grey.
             "tags": diagnostic.is_needless.then_some([1]),
             "relatedInformation": Some(related).filter(|related| !related.is_empty()),
         }))
@@ -123,7 +123,7 @@ impl Converter<'_> {
     }
 
     pub fn highlight(&self, occurrence: Occurrence) -> Value {
-        // 3 is `Write`, 2 is `Read`.
+        // The protocol calls 3 `Write` and 2 `Read`.
         let kind = if occurrence.is_definition { 3 } else { 2 };
         json!({ "range": self.range(occurrence.span), "kind": kind })
     }
@@ -141,7 +141,7 @@ impl Converter<'_> {
         if !self.client.versioned_edits {
             return json!({ "changes": { self.uri.0.as_str(): edits } });
         }
-        // With the version, an editor with a newer text rejects the edits.
+        // An editor whose text has a newer version rejects the edits.
         let document = json!({ "uri": self.uri, "version": self.document.version });
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
@@ -152,8 +152,8 @@ impl Converter<'_> {
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
         let is_made_up = fix.applicability == Applicability::Placeholder;
         let edit = match (is_made_up, fix.edits.as_slice()) {
-            // Fixes of several lines are not made snippets, since editors would indent their
-            // further lines once more.
+            // A fix of several lines is not converted to a snippet, since an editor would indent
+            // its further lines once more.
             (true, [only]) if self.client.snippet_edits && !only.text.trim().contains('\n') => {
                 self.snippet(only)
             }
@@ -172,10 +172,11 @@ impl Converter<'_> {
             "title": title,
             "kind": if of.is_some() { QUICK_FIX } else { FIX_ALL },
             "diagnostics": of.map(|diagnostic| [self.diagnostic(diagnostic)]),
-            // The only fix of a diagnostic can be applied without asking if it is safe.
+            // A safe fix is preferred if the diagnostic has no other one: editors may apply it
+            // without asking.
             "isPreferred": of.map(|diagnostic| diagnostic.fixes.len() == 1 && fix.is_safe()),
             "edit": edit,
-            // See docs/protocol.md.
+            // This is Pinhole's extension of code actions; see docs/protocol.md.
             "data": of.map(|_| json!({
                 "applicability": fix.applicability.word(),
                 "values": values,
@@ -183,7 +184,7 @@ impl Converter<'_> {
         }))
     }
 
-    /// Converts an edit to a snippet whose example values the user types over.
+    /// Converts an edit to a snippet in which the example values are placeholders.
     fn snippet(&self, edit: &Edit) -> Value {
         let mut template = String::new();
         let mut at = 0;
@@ -209,11 +210,11 @@ impl Converter<'_> {
             "name": symbol.name,
             "detail": Some(symbol.detail).filter(|detail| !detail.is_empty()),
             "kind": match symbol.kind {
-                // 2 is `Module`.
+                // The protocol calls 2 `Module`.
                 SymbolKind::Setting => 2,
-                // 7 is `Property`.
+                // The protocol calls 7 `Property`.
                 SymbolKind::Field => 7,
-                // 13 is `Variable`.
+                // The protocol calls 13 `Variable`.
                 SymbolKind::Definition => 13,
                 SymbolKind::Object => 19,
             },
@@ -236,7 +237,7 @@ impl Converter<'_> {
     }
 
     pub fn hint(&self, hint: Hint) -> Value {
-        // 1 is `Type`.
+        // The protocol calls 1 `Type`.
         let kind = 1;
         json!({
             "position": self.position(hint.at), "label": hint.text, "kind": kind, "paddingLeft": true
@@ -260,8 +261,8 @@ impl Converter<'_> {
     }
 }
 
-/// Reads the changes of a text: each of a range, or of the whole text if there is no field `range`.
-/// A range of null is an error, since taking it for the whole text would replace the text by a part
+/// Reads the changes of a text. A change without the field `range` replaces the whole text. A
+/// `range` of null is an error, since treating it as missing would replace the whole text by a part
 /// of it.
 pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;
@@ -279,7 +280,7 @@ pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     changes.iter().map(change).collect()
 }
 
-/// Escapes a text for use in a snippet.
+/// Escapes the characters of a text that have a meaning in a snippet.
 pub(super) fn escaped(text: &str) -> String {
     text.replace('\\', "\\\\")
         .replace('$', "\\$")
@@ -293,7 +294,7 @@ fn line_column(position: Position) -> LineColumn {
 /// Converts a colour that the client has picked, rounded to 8 bits per channel.
 pub fn color(color: protocol::Color) -> Color {
     let bytes = [color.red, color.green, color.blue];
-    // Conversions of floats to integers saturate.
+    // The conversion saturates, so channels outside of 0 to 1 are clamped.
     Color::from_bytes(bytes.map(|channel| (channel * 255.0).round() as u8))
 }
 

@@ -4,7 +4,8 @@
 //! The oracle shares nothing with the tracer. It uses world coordinates instead of the view plane,
 //! the quadratic formula, signed areas, and slabs with divisions. A value counts as zero if it is
 //! smaller than its terms by 5/14 of the bits: 2^−500 with 1400 bits, 2^−182 with 512. This is far
-//! below the 2^−90 where the language's ties begin, and far above the last bits.
+//! below 2^−90, the difference up to which the language lets depths count as equal, and far above
+//! the rounding errors.
 
 mod number;
 
@@ -20,7 +21,7 @@ use crate::{
     scene::{Lens, Scene, Shape, TriangleOutline, View},
 };
 
-/// Number of bits for scenes whose numbers may be of any size that an `f64` can have.
+/// Number of bits for scenes whose numbers may be of any size within the range of `f64`.
 pub const ALL_SIZES: usize = 1400;
 
 /// Number of bits for extremely wide or narrow views, in which the side of a pixel and the distance
@@ -38,7 +39,7 @@ pub struct Oracle {
     scene: Scene,
     surfaces: Vec<PreparedShape>,
     eye: V,
-    /// The camera's axes: the directions of the picture's right and top, and the direction
+    /// The camera's axes: the directions to the picture's right and to its top, and the direction
     /// opposite to the view.
     pub axes: [V; 3],
     /// Distance between the eye and the view plane.
@@ -47,13 +48,13 @@ pub struct Oracle {
     pixel: N,
 }
 
-/// Values that a shape's formulas need for every ray.
+/// Values that the formulas for a shape need for every ray.
 #[derive(Debug)]
 enum PreparedShape {
     /// A sphere: f = eye − centre, f·f, and c = f·f − radius².
     Sphere { f: V, square: N, c: N },
     /// A triangle: the vertices; the normal n; n·(centroid − eye), which is zero if the eye lies in
-    /// the plane; and the size of the terms of signed areas.
+    /// the plane; and a scale for signed areas, below which an area may be negligible.
     Triangle {
         vertices: Box<[V; 3]>,
         normal: V,
@@ -152,7 +153,7 @@ impl Oracle {
             let crossings = self.crossings(object, r);
             Some((object, crossings.into_iter().find(is_visible)?))
         });
-        // If two objects are at the same distance, the first of the file is seen.
+        // If two objects are at the same distance, the first in the file is seen.
         let (object, t) = seen.reduce(|best, next| match self.order(&next.1, &best.1) {
             Ordering::Less => next,
             _ => best,
@@ -174,8 +175,8 @@ impl Oracle {
 
     /// Returns whether the coordinate `x` lies in a row of squares with an odd number.
     fn is_odd(&self, x: &N, square: &N) -> bool {
-        // A quotient that is so little below an integer counts as that integer: 1/3 + 2/3 is not
-        // 0.999….
+        // A quotient that is only negligibly below an integer counts as this integer: 1/3 + 2/3
+        // must not become 0.999….
         let close = self.number.exact(1.0) >> (self.number.bits as isize * 3 / 14);
         let cell = (x / square + close).floor();
         (cell.to_int().value() & IBig::ONE) == IBig::ONE
@@ -204,8 +205,8 @@ impl Oracle {
         }
     }
 
-    /// Intersects the ray with a sphere: returns the positive roots of a·t² + 2b·t + c. A ray that
-    /// only touches the sphere misses it.
+    /// Intersects the ray with a sphere. Returns the positive roots of a·t² + 2b·t + c in ascending
+    /// order. A ray that only touches the sphere misses it.
     fn sphere(&self, f: &V, square: &N, c: &N, r: &V) -> Vec<N> {
         let (a, b) = (dot(r, r), dot(f, r));
         let bb = &b * &b;
@@ -215,7 +216,7 @@ impl Oracle {
         }
         let root = discriminant.sqrt();
         let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
-        // If the eye is on the surface, one root is zero except for its rounding.
+        // If the eye is on the surface, the root that should be zero has a rounding error.
         if self.sign(c, square) == Ordering::Equal {
             let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
             return roots.into_iter().skip(1).filter(|_| is_ahead).collect();
@@ -223,8 +224,9 @@ impl Oracle {
         roots.into_iter().filter(|t| *t > N::ZERO).collect()
     }
 
-    /// Intersects the ray with the plane n·(p − eye) = `height`. Returns `None` if the eye lies in
-    /// the plane, if the ray is parallel to it, or if the plane is behind the eye.
+    /// Intersects the ray with the plane n·(p − eye) = `height`, and returns t. Returns `None` if
+    /// the eye lies in the plane, if the ray is parallel to the plane, or if the plane is behind
+    /// the eye.
     fn plane(&self, n: &V, height: &N, r: &V) -> Option<N> {
         let slope = dot(n, r);
         if *height == N::ZERO || self.sign(&slope, &(size(n) * size(r))) == Ordering::Equal {
@@ -244,9 +246,9 @@ impl Oracle {
         })
     }
 
-    /// Intersects the ray with a box: the ray is inside from the greatest t at which it enters a
-    /// slab to the least t at which it leaves one. Returns those of the two that are positive; none
-    /// if the ray misses the box.
+    /// Intersects the ray with a box. The ray is inside from the greatest t at which it enters a
+    /// slab to the least t at which it leaves one. Returns those of these two t that are positive.
+    /// Returns an empty list if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);

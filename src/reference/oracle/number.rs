@@ -33,8 +33,8 @@ impl Number {
         v.to_array().map(|x| self.exact(x))
     }
 
-    /// Returns the sign of the result `x` of operands whose terms have the size `size`. The sign is
-    /// zero if `x` is smaller than `size` by 5/14 of the bits.
+    /// Returns the sign of the number `x`, which was computed from terms of the size `size`. The
+    /// sign is zero if |`x`| is at most `size` times 2^(−5/14 · `bits`).
     pub fn sign(self, x: &N, size: &N) -> Ordering {
         if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
             Ordering::Equal
@@ -53,7 +53,7 @@ impl Number {
         (&s * &d + &c * &t, c * d - s * t)
     }
 
-    /// Returns the vertices of a triangle: left end of the base, right end of the base, and apex.
+    /// Returns the vertices of a triangle: the left end of the base, the right end, and the apex.
     pub fn vertices(self, triangle: &CenteredTriangle) -> [V; 3] {
         let CenteredTriangle {
             centroid, normal, ..
@@ -119,8 +119,8 @@ pub fn length(a: &V) -> N {
     dot(a, a).sqrt()
 }
 
-/// Bounds the length of a vector by the sum of its absolute components, as a scale for what is
-/// negligible.
+/// Returns the sum of the absolute values of a vector's components, an upper bound of its length.
+/// It is a scale for what is negligible.
 pub fn size(a: &V) -> N {
     abs(&a[0]) + abs(&a[1]) + abs(&a[2])
 }

@@ -92,8 +92,8 @@ fn displaced(random: &mut CaseRng) -> CaseScene {
     input(along(eye, down), &[board(0.0, 1.0)])
 }
 
-/// Returns a view from a height of 64 squares, where one pixel corresponds to a slope of 1/64: the
-/// upper left corner of each pixel shows the corner of a square.
+/// Returns a view from a height of 64 squares, where the slope of a ray changes by 1/64 from pixel
+/// to pixel. Therefore, the upper left corner of each pixel shows the corner of a square.
 fn corners(random: &mut CaseRng) -> CaseScene {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
     let eye = random.wholes([-reach, 64, -reach], [reach, 64, reach]) * size;

@@ -38,8 +38,8 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
     // The up vector is as close to the view direction as `f64` allows. If the sum rounds to a
-    // parallel vector, a camera that looks along −y is used instead, because the coordinate axes
-    // leave more room.
+    // vector parallel to `view`, the camera looks nearly along −y instead. The view's x and z
+    // are then the difference from the up vector's line, and no sum rounds them.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -73,9 +73,10 @@ fn lengths(random: &mut CaseRng) -> Camera {
 /// to nothing.
 ///
 /// Through the widest lenses, the rays of whole rows of the picture differ from the board's
-/// direction only by about d. By the language, a ray is parallel to the board (a tie) if that
-/// difference is below about 2^−90. Pinhole treats it as parallel only below 2^−310, and the oracle
-/// only below 2^−1071, 5/14 of its bits. Lenses between these limits are not tested.
+/// direction only by about d. The language calls a ray parallel to the board (a tie) if this
+/// difference is below about 2^−90. Pinhole treats the ray as parallel only below 2^−310, and the
+/// oracle only below 2^−1071, 5/14 of its bits. Lenses whose d lies between the limits are not
+/// tested.
 fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);
@@ -127,7 +128,7 @@ fn wide(random: &mut CaseRng) -> CaseScene {
     input
 }
 
-/// View directions whose length is an integer, so that depths can be integers.
+/// View directions with an integer length, through which the depth of a wall can be an integer.
 const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(0.0, 0.0, -1.0), 1.0),
     (dvec3(3.0, 0.0, -4.0), 5.0),
@@ -135,8 +136,8 @@ const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(6.0, 3.0, -2.0), 7.0),
 ];
 
-/// Returns a scene with a wall perpendicular to the view, at the depth of one of the two clip
-/// planes or at a neighbouring `f64`.
+/// Returns a scene with a wall perpendicular to the view. Its depth is that of a clip plane or the
+/// next `f64` before or behind it.
 fn exactly_there(random: &mut CaseRng) -> CaseScene {
     let (direction, length) = random.pick(&WHOLE);
     let steps = random.whole(1, 1 << 20) / 1024.0;

@@ -1,4 +1,4 @@
-//! A hard case: how its inputs are generated, and at which points of the picture they are tested.
+//! A hard case: a generator of inputs, and the points of the picture that are tested.
 
 use super::{
     inputs::{CaseRng, SamplePoint},
@@ -9,15 +9,15 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A case of the catalogue.
+/// A case of the catalogue in [`cases`](super::cases).
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
     /// Name of the case.
     pub id: &'static str,
-    /// Description of what makes the case hard.
+    /// Description of what is difficult in the case.
     pub title: &'static str,
-    /// Maximum error that Pinhole claims, in the case's [`unit`](Self::unit). No decision may be
-    /// wrong.
+    /// Maximum error that Pinhole guarantees, in the case's [`unit`](Self::unit). In addition, no
+    /// decision may be wrong.
     pub bound: f64,
     pub(super) subject: Question,
 }
@@ -34,7 +34,7 @@ pub(super) enum Question {
 }
 
 impl Case {
-    /// Returns whether the case tests decisions about what is seen, not only numbers.
+    /// Returns whether the case tests decisions about what is seen, besides numbers.
     pub fn decides(&self) -> bool {
         matches!(self.subject, Question::Seen(_))
     }
@@ -64,14 +64,14 @@ pub(super) struct CaseScene {
     pub scene: Scene,
     /// Number of bits of the oracle's arithmetic.
     bits: usize,
-    /// Generates points of the picture; by default they lie anywhere.
+    /// Generator of points of the picture. By default, they are uniform over the picture.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Number of halves of the inputs that are tested at these points: 0, 1 or 2. The other inputs
-    /// lie close to boundaries.
+    /// Number of halves of the inputs, 0, 1 or 2, that are tested at points from `points`. The
+    /// other inputs lie close to boundaries between colours.
     halves: u64,
 }
 
-/// Returns a scene of which points close to the boundaries of what is seen are tested.
+/// Returns a scene that is tested close to the boundaries between its colours.
 pub(super) fn input(camera: Camera, shapes: &[Shape]) -> CaseScene {
     CaseScene {
         scene: scene(camera, shapes),
@@ -87,12 +87,12 @@ impl CaseScene {
         Self { bits, ..self }
     }
 
-    /// Makes the case test points anywhere.
+    /// Makes all inputs of the case lie at points that are uniform over the picture.
     pub fn anywhere(self) -> Self {
         Self { halves: 2, ..self }
     }
 
-    /// Makes the case test points that `point` generates.
+    /// Makes all inputs of the case lie at points that `point` generates.
     pub fn at(self, point: impl Fn(&mut CaseRng) -> SamplePoint + 'static) -> Self {
         Self {
             points: Box::new(point),
@@ -100,8 +100,8 @@ impl CaseScene {
         }
     }
 
-    /// Makes the case test half of the inputs at points anywhere (or at those of `at`) and half
-    /// close to boundaries.
+    /// Makes half of the case's inputs lie at points anywhere in the picture, or at those of
+    /// [`at`](Self::at), and half close to boundaries.
     pub fn mixed(self) -> Self {
         Self { halves: 1, ..self }
     }

@@ -15,11 +15,11 @@ use crate::{
 /// centre, in pixels.
 pub type SamplePoint = [(u32, f64); 2];
 
-/// Coordinates at the middle of a picture of the usual size: just before the middle, and exactly on
-/// it.
+/// Coordinates at the middle of a picture of the usual size, [`SIZE`]: just before the middle, and
+/// exactly on it.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
-/// Pseudorandom numbers that depend only on a case and a block of its inputs.
+/// Pseudorandom numbers that depend only on a case and on the index of a block of its inputs.
 #[derive(Clone, Debug)]
 pub struct CaseRng(CounterRng);
 
@@ -41,7 +41,7 @@ impl CaseRng {
         (low + self.below((high - low + 1) as u64) as i64) as f64
     }
 
-    /// Returns a random column or row of a picture of the usual size.
+    /// Returns a random column or row of a picture of the usual size, [`SIZE`].
     pub fn pixel(&mut self) -> u32 {
         self.below(SIZE.into()) as u32
     }
@@ -56,7 +56,7 @@ impl CaseRng {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// Returns 10 to a uniform power between `low` and `high`.
+    /// Returns 10^p for a uniform p between `low` and `high`.
     pub fn power(&mut self, low: f64, high: f64) -> f64 {
         libm::pow(10.0, self.within(low, high))
     }
@@ -99,7 +99,7 @@ impl CaseRng {
         }
     }
 
-    /// Returns a random point of a picture of the usual size.
+    /// Returns a random point of a picture of the usual size, [`SIZE`].
     pub fn point(&mut self) -> SamplePoint {
         self.point_of([SIZE; 2])
     }

@@ -50,12 +50,13 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
     families.into_iter().flatten()
 }
 
-/// Number of inputs of a case that share a scene.
+/// Number of inputs of a case that share a scene. They are generated and tested one after the other
+/// by one thread.
 const BLOCK: u64 = 100;
 
 /// Tests `inputs_per_case` inputs of every case, and reports progress in inputs. If the run is
-/// cancelled, the result covers what was tested so far: about equally many inputs of every case,
-/// and no case without inputs. Fails if the threads cannot be started.
+/// cancelled, the result contains the inputs tested until then: about equally many of every case,
+/// and at least one. Fails if the threads cannot be started.
 pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, ThreadPoolBuildError> {
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);

@@ -31,9 +31,9 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
     input(camera, &[shape])
 }
 
-/// Returns a view of a sphere that touches the plane x = 0 at (0, y, z). The eye is at the origin
-/// and looks along −z. The rays in that plane pass through the middle of the picture, and none of
-/// them hits the sphere. On one side of the plane, a ray next to it does.
+/// Returns a view along −z from the origin of a sphere that touches the plane x = 0 at (0, y, z).
+/// The rays in that plane pass through the middle of the picture, and none of them hits the sphere.
+/// A ray next to the plane hits it on the sphere's side.
 fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();
@@ -78,8 +78,8 @@ fn inside(random: &mut CaseRng) -> CaseScene {
 }
 
 fn at_the_surface(random: &mut CaseRng) -> CaseScene {
-    // These points are exactly 5 from the origin, so that the eye is exactly on the surface before
-    // `above` is applied.
+    // The points are exactly 5 from the origin. Therefore, the eye is exactly on the surface,
+    // unless `above` moves it.
     let on = random.pick(&[
         dvec3(3.0, 4.0, 0.0),
         dvec3(0.0, 4.0, -3.0),

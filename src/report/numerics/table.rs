@@ -7,12 +7,12 @@ use serde_json::{Value, json};
 use super::{case::Case, trial::CaseTally};
 use crate::numbers::grouped;
 
-/// Result of a case.
+/// Result of testing a case.
 #[derive(Clone, Copy, Debug)]
 pub struct CaseResult {
     /// The case.
     pub case: &'static Case,
-    /// Counts and measurements.
+    /// Counts of inputs and wrong decisions, and the greatest errors.
     pub tally: CaseTally,
 }
 
@@ -41,8 +41,8 @@ impl NumericsTable {
         self.inputs() == self.planned
     }
 
-    /// Converts the table to JSON. An infinite error, such as that of a distance that is not found
-    /// at all, is null. So are numbers that were not measured or do not apply to a case.
+    /// Converts the table to JSON. Null stands for an infinite error, such as that of a distance
+    /// that is not found at all, and for numbers that were not measured or do not apply to a case.
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|CaseResult { case, tally }| {
             let side = |i: usize| {
@@ -123,7 +123,7 @@ fn share(count: u64, inputs: u64) -> String {
 }
 
 /// Formats an error with two decimals, or with one digit and an exponent if it is very small or
-/// large. Returns a dash if none was measured.
+/// large. Returns a dash if no error was measured.
 fn size(error: Option<f64>) -> String {
     let Some(error) = error else {
         return "-".to_owned();

@@ -17,7 +17,7 @@ use crate::{
     tracer::{Basis, World, ray},
 };
 
-/// Counts and measurements. In each pair, the textbook comes first and Pinhole second.
+/// Counts and measurements of a case. In each pair, the textbook comes first and Pinhole second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CaseTally {
     /// Number of inputs tested.
@@ -49,8 +49,8 @@ fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
 
-/// Measures the greatest error of a camera's axes, in units of 2^−53, and adds it to `tally` as one
-/// input.
+/// Measures the greatest error of a camera's axes, in units of 2^−53, for the textbook's formulas
+/// and for Pinhole. Records both errors in `tally` as one input.
 pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     let scene = scene(*camera, &[]);
     let oracle = Oracle::new(&scene, ALL_SIZES);
@@ -72,7 +72,7 @@ pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     tally.errors(errors.map(Some));
 }
 
-/// A scene prepared for the oracle, the textbook and Pinhole.
+/// A scene prepared for the oracle, for the textbook's formulas, and for Pinhole.
 #[derive(Debug)]
 pub(super) struct Trial {
     scene: Scene,
@@ -81,15 +81,17 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of inputs per measurement of a distance and a point, which takes longer than a decision.
+/// Number of inputs per measured input. Only one input of this many is measured (the errors of the
+/// distance and of the point that are seen), since a measurement takes longer than a decision.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Number of searches for a boundary per search that the oracle does; Pinhole does the others. A
-/// search by the oracle takes about six times as long as testing beside the boundary.
+/// Mean number of searches for a boundary per search by the oracle. The other searches use
+/// Pinhole's decisions, since a search by the oracle takes about six times as long as testing
+/// beside the boundary.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
-    /// Prepares a scene. The oracle computes with `bits` bits.
+    /// Prepares a scene. The oracle computes with numbers of `bits` bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
         Self {
             world: World::new(&scene),
@@ -99,8 +101,8 @@ impl Trial {
         }
     }
 
-    /// Compares what all three see at a sample point, and counts wrong decisions in `tally`. One of
-    /// every [`INPUTS_PER_MEASUREMENT`] inputs is also measured.
+    /// Compares what the oracle, the textbook and Pinhole see at a sample point, and counts wrong
+    /// decisions in `tally`. One of every [`INPUTS_PER_MEASUREMENT`] inputs is also measured.
     pub fn decide(&self, point: SamplePoint, tally: &mut CaseTally) {
         let truth = self.truth(point);
         let pixels = point.map(|(pixel, offset)| f64::from(pixel) + 0.5 + offset);
@@ -135,8 +137,8 @@ impl Trial {
     }
 
     /// Measures the errors of the distance and of the point that are seen at `pixels`, and records
-    /// the greater one in `tally`. The unit is that in the last place of the distance, or of the
-    /// point's greatest coordinate.
+    /// the greater of the two in `tally`. The error of the distance is in units in its last place,
+    /// that of the point in units in the last place of its greatest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -156,7 +158,8 @@ impl Trial {
         tally.errors([theirs, Some(ours)]);
     }
 
-    /// Returns the greater of the errors of a distance and of a point, in units in the last place.
+    /// Returns the greater of two errors, in units in the last place: that of the distance `t` and
+    /// that of `point`.
     fn distance(&self, t: f64, point: DVec3, true_t: &N, true_point: &V) -> f64 {
         let coordinates = true_point.iter().map(|x| x.to_f64().value().abs());
         let greatest = coordinates.fold(0.0, f64::max);
@@ -165,7 +168,8 @@ impl Trial {
         of_point.into_iter().fold(of_t, f64::max)
     }
 
-    /// Returns the error of `x` in units in the last place of `of`.
+    /// Returns the error of `x` in units in the last place of `of`. If `x` is not finite, the error
+    /// is infinite.
     fn ulps(&self, x: f64, truth: &N, of: f64) -> f64 {
         if !x.is_finite() {
             return f64::INFINITY;
@@ -175,13 +179,14 @@ impl Trial {
         error.to_f64().value()
     }
 
-    /// Tests `count` inputs close to boundaries of what is seen along random rows and columns. They
-    /// lie at the neighbouring `f64`s on both sides of each boundary, and at distances from it that
-    /// are uniform on a logarithmic scale. Pinhole's own decisions find most boundaries; the
-    /// oracle's find some, in case Pinhole does not see a boundary at all.
+    /// Tests `count` inputs close to boundaries between colours, along random rows and columns. The
+    /// inputs lie at the neighbouring `f64`s on both sides of each boundary, and at distances from
+    /// it that are uniform on a logarithmic scale. Most boundaries are found by Pinhole's own
+    /// decisions. Some are found by the oracle's, in case Pinhole does not see a boundary at all.
     pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
-        // If too few boundaries are found, the remaining inputs lie anywhere.
+        // If too few boundaries are found in `4 · count` searches, the remaining inputs lie
+        // anywhere.
         let mut patience = 4 * count;
         while tally.inputs < end && patience > 0 {
             patience -= 1;
@@ -200,8 +205,8 @@ impl Trial {
     }
 
     /// Searches a random row (`axis` 0) or column (`axis` 1) for a point where the colour `seen`
-    /// changes. Returns the pixel and the last offset before the change, or `None` if the two ends
-    /// of the search have the same colour.
+    /// changes. Returns the pixel and the last offset before the change. Returns `None` if both
+    /// ends of the search have the same colour.
     fn boundary(
         &self,
         random: &mut CaseRng,
@@ -227,10 +232,10 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // Here the change is at the pixel's edge.
+            // The colour changes at the pixel's edge.
             low = high;
         }
-        // This bisects down to neighbouring numbers. Near 0, 130 steps end at a distance smaller
+        // Bisect down to neighbouring `f64`s. Near 0, 130 steps end at a distance that is smaller
         // than anything that matters.
         for _ in 0..130 {
             let middle = low + (high - low) / 2.0;
@@ -247,7 +252,7 @@ impl Trial {
         Some(point)
     }
 
-    /// Tests at most 12 inputs, and no more than `count`, on and beside a boundary.
+    /// Tests inputs on and beside `boundary`, at most 12 and at most `count`.
     fn beside(
         &self,
         random: &mut CaseRng,

@@ -23,7 +23,7 @@ pub const CASES: &[Case] = &[
     Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
-/// Sides of the triangle in the assignment.
+/// Lengths of the sides of the triangle in the assignment.
 const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
 
 fn tiny(random: &mut CaseRng) -> CaseScene {
@@ -48,13 +48,13 @@ fn slivers(random: &mut CaseRng) -> CaseScene {
     input(camera, &[shape])
 }
 
-/// Sides of a triangle that is also used rotated by 180° about the middle of one of its edges, so
-/// that both share this edge. The vertices lie at (∓9, −4) and (0, 8) from the centroid. The shared
-/// edges therefore coincide exactly if the plane is perpendicular to a coordinate axis.
+/// Lengths of the sides of a triangle with integer vertices: (∓9, −4) and (0, 8), from the
+/// centroid. The triangle rotated by 180° about the middle of an edge shares this edge. In a plane
+/// that is perpendicular to a coordinate axis, the two edges coincide exactly.
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
-/// For each edge, the centroid of the rotated triangle and some points of the edge, all relative to
-/// the first centroid.
+/// For each edge of a [`LATTICE`] triangle, the centroid of the rotated triangle that shares the
+/// edge, and some points of the edge. All are relative to the first triangle's centroid.
 #[rustfmt::skip]
 const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ([0.0, -8.0], &[[-9.0, -4.0], [-4.0, -4.0], [0.0, -4.0], [7.0, -4.0], [9.0, -4.0]]),

@@ -1,8 +1,8 @@
 //! Charts of error against time and against samples, as SVG.
 //!
-//! Both axes are logarithmic. Each line is labelled at its end, so that no legend is needed, and
-//! its marker and dash identify the line even in black and white. Black is written as the current
-//! colour, so that the page may be dark.
+//! Both axes are logarithmic. Each line is labelled at its end, so that no legend is needed. Its
+//! marker and its dash identify it even in black and white. Black is written as CSS's
+//! `currentColor`, so that the page may be dark.
 
 use std::ops::Range;
 
@@ -27,27 +27,29 @@ use super::{
 };
 use crate::{diagnostic::escaped, numbers};
 
-/// Width and height of a chart, in pixels. A chart is small, so that its letters are still legible
-/// on a phone, whose screen is 400 of these pixels wide.
+/// Width and height of a chart, in pixels. The chart is small so that its letters are still legible
+/// on a phone, whose screen is 400 CSS pixels wide.
 const SIZE: (u32, u32) = (560, 440);
 
 /// Width of the labels to the right of the chart, in pixels; the longest label is `multi_jittered`.
 const LABELS: i32 = 162;
 
-/// Minimum vertical distance between labels, in pixels.
+/// Minimum vertical distance between labels, in pixels. Labels that would be closer are moved
+/// apart.
 const LABEL_HEIGHT: i32 = 21;
 
-/// A quantity for the horizontal axis, with its names and its format.
+/// The quantity on the horizontal axis: its names, and how it is computed and formatted.
 struct HorizontalAxis {
     title: &'static str,
     name: &'static str,
     of: fn(&SeriesPoint) -> f64,
     written: fn(f64) -> String,
-    /// Value of the exact method, which is a vertical line because its error is off the scale.
+    /// CPU time or other quantity of the exact method. It is drawn as a vertical line, because the
+    /// method's error is too small for the chart.
     exact: Option<f64>,
 }
 
-/// Draws the chart of error against CPU time as SVG. The exact method is a vertical line.
+/// Draws the chart of error against CPU time as SVG. The exact method is drawn as a vertical line.
 pub fn against_time(measured: &Measurement) -> String {
     let time = HorizontalAxis {
         title: "Error against CPU time",
@@ -71,7 +73,7 @@ pub fn against_samples(measured: &Measurement) -> String {
     svg(measured, &samples)
 }
 
-/// Returns the requested errors that are within a factor of 30 of a measured one.
+/// Returns the requested errors that differ from a measured error by less than a factor of 30.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
     let found: Vec<_> = points.map(|point| point.typical().error).collect();
@@ -84,7 +86,7 @@ pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
 
 fn svg(measured: &Measurement, against: &HorizontalAxis) -> String {
     let mut svg = String::new();
-    // Writing to a string can fail only in the layout of text, which is not used.
+    // Writing to a string can fail only in plotters' layout of text, which is not used.
     let canvas = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
     let done = draw(canvas, measured, against);
     debug_assert!(done.is_ok(), "{done:?}");
@@ -102,7 +104,7 @@ fn svg(measured: &Measurement, against: &HorizontalAxis) -> String {
 
 fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Drawn {
     let wanted = shown_errors(measured);
-    // A number that is not finite and positive has no logarithm, and is not drawn.
+    // A value that is not finite and positive has no logarithm, so no line is drawn.
     let exact = against.exact.filter(|x| x.is_finite() && *x > 0.0);
     let lines = measured.series.iter().map(|series| {
         let place = |point: &SeriesPoint| ((against.of)(point), point.typical().error);
@@ -172,9 +174,9 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Dra
     canvas.present()
 }
 
-/// Draws the vertical line of the exact method, with an arrow down to where its error lies. The
-/// lines of the other methods run from the top left to the bottom right; the label stands off their
-/// diagonal.
+/// Draws the vertical line of the exact method, with an arrow downwards, since its error lies below
+/// the chart. The lines of the other methods run from the top left to the bottom right, so the
+/// label is placed off this diagonal.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];
@@ -198,14 +200,15 @@ fn letters(size: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
 }
 
-/// Returns the range of an axis that contains all `values`, with a margin of a factor of 1.5.
+/// Returns the range of an axis: from the least of `values`, divided by 1.5, to the greatest, times
+/// 1.5.
 fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let wider = |(low, high): (f64, f64), value| (low.min(value), high.max(value));
     let (low, high) = values.fold((f64::INFINITY, 0.0), wider);
     if low <= high {
         low / 1.5..high * 1.5
     } else {
-        // There is nothing to show, and any axis will do.
+        // There are no values, so any axis will do.
         0.1..1.0
     }
 }
@@ -241,7 +244,7 @@ fn spread_out(ends: &[CanvasPoint], rows: &Range<i32>) -> Vec<i32> {
         heights[at] = ends[at].1.max(free);
         free = heights[at] + LABEL_HEIGHT;
     }
-    // Labels that then exceed the chart are moved up, from the bottom upwards.
+    // Labels below the chart's end are then moved up, from the bottom upwards.
     let mut free = rows.end;
     for &at in order.iter().rev() {
         heights[at] = heights[at].min(free);

@@ -18,19 +18,19 @@ pub struct Estimate {
     pub cpu_runs: [f64; 2],
     /// Elapsed time in seconds.
     pub wall: f64,
-    /// Whether the estimate lies beyond the measured range.
+    /// Whether the error lies beyond the measured range, so that the estimate is extrapolated.
     pub is_extrapolated: bool,
 }
 
 impl Estimate {
-    /// Returns whether the runs leave open which of the two methods is faster: the time of one is
-    /// within the spread of the other's runs.
+    /// Returns whether the runs leave open which of two methods is faster: the time of one method
+    /// is within the range of the other's runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
 }
 
-/// The methods that reach an error, by CPU time.
+/// The methods that reach an error, sorted by CPU time.
 pub struct Ranking {
     /// The method with the least CPU time, and the methods that are about as fast.
     pub fastest: Vec<(Method, Estimate)>,
@@ -40,14 +40,16 @@ pub struct Ranking {
 
 impl Measurement {
     /// Estimates the samples and the time that a sampled method needs for an error. Returns `None`
-    /// if more samples do not help. Returns `None` also if the error is not above that of the exact
-    /// picture, the root mean square of its bounds (errors are root mean squares, too).
+    /// if more samples do not reduce the error. Returns `None` also if `error` is not above the
+    /// root mean square of the exact picture's error bounds, since smaller errors cannot be
+    /// measured.
     pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
 
-    /// Estimates the time that the exact method needs for an error. Returns `None` if it was not
-    /// measured, or if the error is not above that of the exact picture.
+    /// Estimates the time that the exact method needs for an error. Returns `None` if the method
+    /// was not measured. Returns `None` also if `error` is not above the root mean square of the
+    /// exact picture's error bounds.
     pub fn exact_estimate(&self, error: f64) -> Option<Estimate> {
         let runs = self.exact.as_ref().filter(|_| self.tells(error))?;
         let Run { cpu, wall, .. } = Run::typical(runs);
@@ -64,8 +66,8 @@ impl Measurement {
         error > self.reference.root_mean_square_bound()
     }
 
-    /// Ranks the methods that reach an error by CPU time. Extrapolated estimates come after all
-    /// others, even if they are less.
+    /// Ranks the methods that reach an error by CPU time. Extrapolated estimates come after
+    /// all others, even if their times are less.
     pub fn ranking(&self, error: f64) -> Ranking {
         let estimate = |it: &MethodSeries| Some((it.method, self.estimate(it, error)?));
         let sampled = self.series.iter().filter_map(estimate);
@@ -87,19 +89,19 @@ impl Measurement {
     }
 }
 
-/// A number of samples per pixel and its result, from one run or from all runs.
+/// A number of samples per pixel and its result: of one run, or typical of all its runs.
 type Measured = (f64, Run);
 
 impl MethodSeries {
     /// Estimates the samples and the time that the method needs for an error. If the smallest
-    /// measured number of samples suffices, it is the estimate. Returns `None` if more samples do
-    /// not help.
+    /// measured number of samples suffices, returns it. Returns `None` if more samples do not
+    /// reduce the error.
     ///
     /// Errors are assumed to fall as a power of the number of samples. Between two measured
-    /// numbers, the power is that of the line through both in logarithms. Beyond the last, it is
-    /// the slope of the line through the last three. (With few samples, errors may fall at another
-    /// rate, because `scatter` then leaves pixels empty.) Times are assumed to grow linearly with
-    /// the samples.
+    /// numbers, the power is the slope of the line through both points, in logarithms. Beyond the
+    /// last, it is the slope of the line through the last three points. (With few samples, errors
+    /// may fall at another rate, because `scatter` then leaves pixels empty.) Times are assumed to
+    /// grow linearly with the number of samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));
@@ -117,11 +119,11 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // From the index `enough` on, no measured error is greater than `error`.
+        // From the index `enough` on, no measured error is greater than the requested one.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
-            // Even fewer samples might suffice, but none were measured.
+            // Fewer samples might suffice, but none were measured.
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
@@ -141,8 +143,8 @@ impl MethodSeries {
         })
     }
 
-    /// Returns the samples per pixel that an error needs, between `few`, which have a greater
-    /// error, and `many`, which have not.
+    /// Interpolates the samples per pixel at which the error is `error`. With `few` samples the
+    /// measured error is greater, with `many` it is not.
     fn between(&self, (few, of_few): &Measured, (many, of_many): &Measured, error: f64) -> f64 {
         let share = if of_many.error == 0.0 {
             // If `many` samples have no error at all, they suffice for every request.
@@ -158,9 +160,10 @@ impl MethodSeries {
     }
 }
 
-/// Returns the next number of samples that is a square or the product of two neighbouring integers.
-/// Multi-jittered sampling makes a grid with as many cells as samples; for a prime number, the grid
-/// is a single row. The interpolation between squares therefore holds only for such numbers.
+/// Returns the least square or product of two neighbouring integers that is at least `per_pixel`.
+/// Multi-jittered sampling divides the pixel into a grid with as many cells as samples. Only for
+/// these numbers, the grid is nearly square; for a prime number, it is a single row. The
+/// interpolation between squares therefore holds only for them.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
     let next = root + 1.0;
@@ -170,8 +173,8 @@ fn oblong(per_pixel: f64) -> f64 {
 }
 
 /// Returns the time that `per_pixel` samples take, by linear interpolation between the neighbouring
-/// steps. Beyond the last step, the line through the first and the last step is used. `per_pixel`
-/// must be at least that of the first step.
+/// measured numbers of samples. Above the greatest, the line through the first and the last of
+/// `steps` is used. `per_pixel` must be at least the number of the first step.
 fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
     let times: Vec<_> = times.collect();
@@ -182,7 +185,7 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // The slope is not negative, because more samples do not take less time.
+        // The slope is clamped to 0, because more samples do not take less time.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }

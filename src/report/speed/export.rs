@@ -13,8 +13,8 @@ use super::{
 };
 
 /// A row of the CSV file. Times are medians in seconds: CPU time in `time`, elapsed time in `wall`.
-/// Errors are in linear light. The row of the exact method has no samples, and a bound in place of
-/// an error.
+/// Errors are in linear light. The row of the exact method has no number of samples, and its error
+/// is a bound.
 #[derive(Default, Serialize)]
 struct CsvRow {
     method: &'static str,

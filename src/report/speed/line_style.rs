@@ -16,7 +16,7 @@ use crate::scene::Method;
 /// The canvas of a chart.
 pub type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Result of drawing.
+/// Result of drawing on the canvas.
 pub type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
 
 /// A point of the canvas, in pixels.

@@ -24,8 +24,8 @@ impl Machine {
     }
 }
 
-/// Returns Linux's name of the processor's model, or `None` if there is none; other systems provide
-/// a name only through their libraries.
+/// Returns the name of the processor's model from `/proc/cpuinfo`. Returns `None` if there is none,
+/// as on systems other than Linux, which provide the name only through their libraries.
 fn model() -> Option<String> {
     let table = read_system_text("/proc/cpuinfo")?;
     let line = table.lines().find(|line| line.starts_with("model name"))?;

@@ -19,8 +19,8 @@ use crate::{
     film::{self, Film},
 };
 
-/// Maximum width and height of the whole picture on the page, in pixels. A page is not much wider,
-/// and the file stays small.
+/// Maximum width and height of the whole picture on the page, in pixels. A larger picture is
+/// reduced, since a page is not much wider, and the file stays small.
 const WHOLE: [u32; 2] = [640, 480];
 
 /// Returns the page, with a section for each scene.
@@ -92,8 +92,8 @@ fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &MethodPicture)> 
 }
 
 /// Returns a description of the part of the picture that is shown for every method, and the
-/// pictures of that part: first by the exact method, then by the others. Both are empty if no other
-/// method has a picture.
+/// pictures of this part: the exact one first, then one for each sampled method. Returns no
+/// description and no pictures if no sampled method has a picture.
 fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let shown = shown_methods(measured);
     let Some(&(first, &MethodPicture { part, .. })) = shown.first() else {

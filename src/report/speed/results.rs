@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{area::Area, film::Film, render::Exact, scene::Method};
 
-/// The measured scene.
+/// The measured scene, as the user named it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredScene {
     /// Name of the scene as the user gave it.
@@ -43,7 +43,7 @@ pub struct Measurement {
     pub threads: usize,
     /// Seed of the scene, from which the runs' seeds are derived.
     pub seed: u64,
-    /// Measured numbers of samples per pixel, ascending.
+    /// Measured numbers of samples per pixel, in ascending order.
     pub rungs: Vec<u64>,
     /// Requested errors, in linear light.
     pub errors: Vec<f64>,
@@ -51,7 +51,7 @@ pub struct Measurement {
     pub reference: Exact,
     /// Renders by the exact method, if it was requested.
     pub exact: Option<Vec<Run>>,
-    /// Results of the sampled methods, in the order of the language's table.
+    /// Results of the sampled methods, in the order of the methods in the language's reference.
     pub series: Vec<MethodSeries>,
     /// Whether the user interrupted the measurement.
     pub interrupted: bool,
@@ -60,15 +60,16 @@ pub struct Measurement {
 /// Results of a sampled method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodSeries {
-    /// The method.
+    /// Method that was measured.
     pub method: Method,
-    /// Results by samples per pixel, ascending.
+    /// Results for each number of samples per pixel, in ascending order.
     pub points: Vec<SeriesPoint>,
-    /// Picture of the method for comparison, with about the same CPU time for all methods.
+    /// Picture that a page shows to compare methods. Each method's number of samples takes about
+    /// the same CPU time. `None` if the pictures were not rendered.
     pub picture: Option<MethodPicture>,
 }
 
-/// Results of a method with a single number of samples.
+/// Results of a method with one number of samples per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesPoint {
     /// Samples per pixel; for `scatter` the mean number.
@@ -90,7 +91,7 @@ pub struct Run {
     pub error: f64,
 }
 
-/// A method's picture for comparison.
+/// A method's picture that a page shows next to those of other methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodPicture {
     /// Samples per pixel.
@@ -99,9 +100,9 @@ pub struct MethodPicture {
     pub cpu: f64,
     /// Root mean square error of the whole picture, in linear light.
     pub rmse: f64,
-    /// Part of the picture that is shown, the same for every method.
+    /// Part of the picture that the page shows; it is the same for every method.
     pub part: Area,
-    /// Picture of that part.
+    /// Pixels of `part`.
     pub film: Film,
 }
 
@@ -118,7 +119,7 @@ impl Run {
 }
 
 impl SeriesPoint {
-    /// Returns the renders combined by [`Run::typical`].
+    /// Returns the median times and the root mean square error of the runs.
     pub fn typical(&self) -> Run {
         Run::typical(&self.runs)
     }
@@ -126,15 +127,16 @@ impl SeriesPoint {
 
 impl MethodSeries {
     /// Fits the error as a power of the number of samples. Returns `None` if fewer than two numbers
-    /// of samples were measured, or an error is 0.
+    /// of samples were measured, or if an error is 0.
     pub fn fit(&self) -> Option<PowerLaw> {
         let place = |point: &SeriesPoint| (point.per_pixel as f64, point.typical().error);
         let points: Vec<_> = self.points.iter().map(place).collect();
         PowerLaw::fit(&points)
     }
 
-    /// Returns the samples per pixel that take the CPU time `cpu`, by linear interpolation and
-    /// limited to the measured numbers. Returns `None` if nothing was measured.
+    /// Returns the samples per pixel that take the CPU time `cpu`, by linear interpolation between
+    /// the measured numbers. Outside their range, returns the least or the greatest. Returns `None`
+    /// if nothing was measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
         let slower = |pair: &&[SeriesPoint]| pair[1].typical().cpu > cpu;
@@ -153,7 +155,7 @@ impl Measurement {
         Area::whole(self.reference.film.width(), self.reference.film.height())
     }
 
-    /// Returns the greatest number of runs of any method and number of samples.
+    /// Returns the greatest number of runs with the same method and the same number of samples.
     pub fn runs(&self) -> usize {
         let sampled = self.series.iter().flat_map(|series| &series.points);
         let most = sampled.map(|point| point.runs.len()).max();

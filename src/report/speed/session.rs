@@ -1,10 +1,10 @@
 //! Times renders and compares them with the exact picture.
 //!
-//! The exact picture is rendered first. It is the reference, and it warms the machine up, so that
-//! this render's time does not count. A round then renders once with every method and every number
-//! of samples. The first round uses more and more samples, as long as there is time for a few such
-//! rounds. A fixed rule shuffles the order of each further round, so that other load on the machine
-//! affects all methods alike.
+//! The exact picture is rendered first. It is the reference for errors. Its time does not count,
+//! since this render also warms up the caches and the processor. Then come rounds; each renders
+//! once with every method and every number of samples. The first round quadruples the number of
+//! samples as long as there is time for a few such rounds. The order of the renders in the later
+//! rounds is shuffled by a fixed rule, so that other load on the machine affects all methods alike.
 //!
 //! The timed part starts with the scene in memory and ends with the film in memory: preparing the
 //! objects and the samples, starting the threads, and rendering. Reading the scene, comparing
@@ -29,22 +29,23 @@ use crate::{
     tracer::World,
 };
 
-/// Minimum and maximum number of steps if the samples are not given; the steps are 1, 4, 16, …
-/// samples per pixel. A slope through fewer than four points has no standard error.
+/// Minimum and maximum count of the numbers of samples that are measured if the user gives none: 1,
+/// 4, 16, … samples per pixel. The minimum is 4, since a slope through fewer points has no standard
+/// error.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// Number of runs that should be possible in the time available, and maximum number of runs. Among
-/// fewer than three runs, the median may be one that something else delayed.
+/// Number of runs for which there should be time, and maximum number of runs. Among fewer than
+/// three runs, the median may be of a run that other load on the machine delayed.
 const RUNS: (u64, u64) = (3, 9);
 
-/// Samples per pixel that determine the CPU time of all pictures: that of the slowest method with
-/// this many. They are enough for the methods to differ, and few enough for the eye to see it.
+/// Number of samples per pixel whose CPU time, with the slowest method, all methods get for the
+/// pictures on the page. With 16, the methods differ enough, and their noise is still visible.
 const SHOWN: u64 = 16;
 
 /// Measures the methods of the request. If it is cancelled, returns the measurement so far, marked
 /// as interrupted, or an error if the exact picture is not done yet. Calls `progress` after each
-/// timed render with the share of the whole that is done. The progress callback of `control` is not
-/// called.
+/// timed render with the share of the whole that is done. Does not call the progress callback of
+/// `control`.
 pub fn measure(
     subject: &MeasuredScene,
     scene: &Scene,
@@ -114,8 +115,8 @@ struct Benchmark<'a> {
     measured: Measurement,
 }
 
-/// A render of a round: the index of a method's series and the index of a point in that series, or
-/// `None` for the exact picture.
+/// A render of a round: the index of a method's series and the index of a point in it, or `None`
+/// for the exact picture.
 type Task = Option<(usize, usize)>;
 
 impl Benchmark<'_> {
@@ -140,8 +141,9 @@ impl Benchmark<'_> {
         self.pictures()
     }
 
-    /// Renders once with the exact method and with every sampled method: with the requested numbers
-    /// of samples, or with more and more while there is time.
+    /// Renders once with the exact method, and once with every sampled method and number of
+    /// samples. If no numbers of samples are requested, they are quadrupled as long as there is
+    /// time.
     fn first_round(&mut self) -> Result<(), RenderError> {
         self.render(None, 0)?;
         if self.measured.series.is_empty() {
@@ -161,8 +163,9 @@ impl Benchmark<'_> {
                 self.render(Some((series, point)), 0)?;
             }
             let last = started.elapsed();
-            // A time is assumed to consist of a constant and a part that is proportional to the
-            // samples, of which there will be four times as many.
+            // The time of a render is assumed to be a constant plus a part proportional to the
+            // number of samples. This number is quadrupled next, and with it the part that the last
+            // step added.
             let next = last + 4 * last.saturating_sub(before);
             if is_open && !self.goes_on(next) {
                 break;
@@ -173,8 +176,8 @@ impl Benchmark<'_> {
     }
 
     /// Returns whether to go on with four times as many samples, which are expected to take `next`.
-    /// The answer is yes up to the minimum number of steps. After that, there must be time for all
-    /// rounds, and some method must still have an error above the least requested one.
+    /// Up to the minimum of [`RUNGS`], always returns `true`. After that, there must be time for
+    /// all rounds, and some method must still have an error above the least requested one.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
         let error = |series: &MethodSeries| Some(series.points.last()?.typical().error);
@@ -211,8 +214,9 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Renders a picture with each sampled method, with as many samples as take the CPU time of the
-    /// slowest one, and keeps the same part of each.
+    /// Renders a picture with each sampled method for the page, all in about the same CPU time:
+    /// that of the slowest method with at least [`SHOWN`] samples. Keeps the same part of each
+    /// picture.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
@@ -286,12 +290,13 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// Maximum width and height of the part that is shown, in pixels. Several parts stand side by side
-/// on a page, and the noise of single samples should be visible.
+/// Maximum width and height of the part of a picture that a page shows for each method, in pixels.
+/// Several parts fit side by side, and are not reduced, so that the noise of single samples is
+/// visible.
 const PART: (u32, u32) = (240, 135);
 
-/// Returns the part of a picture with the greatest error. Parts are compared in steps of half of
-/// their size.
+/// Returns the part of a picture with the greatest error. The parts that are compared are half
+/// their size apart.
 fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     let (width, height) = (film.width().min(PART.0), film.height().min(PART.1));
     let places = |length: u32, size: u32| {
@@ -311,8 +316,8 @@ fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
     Ok(worst)
 }
 
-/// Does `work` and measures its time. Returns the result and a run whose error is NaN. Nothing else
-/// runs in the process meanwhile, except a progress bar.
+/// Does `work` and measures its time. Returns the result, and a run whose error is NaN. The CPU
+/// time is that of the whole process, in which nothing else runs meanwhile except a progress bar.
 fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, Run), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;

@@ -30,8 +30,9 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
 pub struct PowerLaw {
     /// Exponent b, the slope of the line.
     pub slope: f64,
-    /// Standard error of b; `None` for fewer than four points. With three, there is one residual
-    /// more than the line has parameters, and the standard error would mean next to nothing.
+    /// Standard error of b; `None` for fewer than four points. With three points and two fitted
+    /// parameters, only one degree of freedom is left, and the standard error would mean next to
+    /// nothing.
     pub slope_error: Option<f64>,
 }
 

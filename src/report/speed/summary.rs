@@ -11,7 +11,7 @@ use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 pub struct SummaryTable {
     /// Column headings. A line feed marks where a heading may break if the column is narrow.
     pub heads: Vec<String>,
-    /// Rows: a method's name and the method's other cells.
+    /// Rows of the table: the method's name, then the cells of the other columns.
     pub rows: Vec<Vec<String>>,
 }
 

@@ -7,11 +7,11 @@ use super::{
     summary::{self, heading, notes, printable, verdict},
 };
 
-/// Maximum length of a line, in characters.
+/// Maximum length of a line, in characters. Longer lines are wrapped.
 const WIDTH: usize = 100;
 
-/// Returns the measurement as text: a description, then a table and the recommended method for each
-/// requested error of the picture, then notes on the tables.
+/// Returns the measurement as text: a description of the measurement, then a table and the
+/// recommended method for each requested error, then notes on the tables.
 pub fn text(measured: &Measurement) -> String {
     let filled = |text: &str| textwrap::fill(text, WIDTH) + "\n";
     let mut text = format!(

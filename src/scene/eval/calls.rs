@@ -1,4 +1,4 @@
-//! Evaluates calls of functions, and reports wrong ones.
+//! Evaluates calls of functions, and reports calls that are wrong.
 
 use super::{
     evaluator::{Evaluator, LARGEST},
@@ -21,7 +21,8 @@ use crate::{
     },
 };
 
-/// Functions of other languages, each with what to write instead.
+/// Functions of other languages. A row holds their names and the help, which says what to write
+/// instead.
 #[rustfmt::skip]
 const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("pow power sq square", "write a product, such as `x * x`"),
@@ -37,12 +38,12 @@ const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("exp log ln random rand noise", "write the number itself"),
 ];
 
-/// Number of recent problems that are searched for the same help; searching ten thousand would be
-/// slow.
+/// Maximum number of recent problems that are searched for the list of all functions in their help,
+/// so that the list is not repeated. A search of all ten thousand possible problems would be slow.
 const LOOKED_BACK: usize = 8;
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the result of a call; `None` if it has errors, which are reported.
+    /// Returns the result of a call. Reports errors and then returns `None`.
     pub(super) fn call(&mut self, call: &Call<'s>) -> Option<Value> {
         let Call {
             function,
@@ -97,7 +98,8 @@ impl<'s> Evaluator<'_, 's> {
         Some(result)
     }
 
-    /// Reports an unknown function, with the nearest one that takes these arguments.
+    /// Reports an unknown function, and suggests the function with the nearest name that accepts
+    /// arguments of these types.
     fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Option<Type>]) {
         if self.names.suggestions.is_trying() {
             return;
@@ -122,7 +124,7 @@ impl<'s> Evaluator<'_, 's> {
             Some((_, instead)) => (*instead).to_owned(),
             None => format!("the functions are {}", suggest::list(all_names())),
         };
-        // The list of functions is not repeated if a recent report has it.
+        // If a recent report lists all functions, the list is not repeated.
         let has_list = |it: &Diagnostic| it.help.as_ref() == Some(&all);
         let mut last = self.problems.iter().rev().take(LOOKED_BACK);
         let all = if last.any(has_list) && elsewhere.is_none() {
@@ -170,7 +172,8 @@ impl<'s> Evaluator<'_, 's> {
 
     /// Reports a call with a wrong number of arguments.
     fn argument_count(&mut self, row: &Function, span: Span, arguments: &[Element<'s>]) {
-        // An argument that could not be parsed may be several ones.
+        // A text that could not be parsed may contain several arguments, so their number is
+        // unknown.
         if arguments.iter().any(|it| it.value.kind == ValueKind::Bad) {
             return;
         }
@@ -184,10 +187,11 @@ impl<'s> Evaluator<'_, 's> {
         let text = |element: &Element<'_>| self.sources.text(element.value.span).to_owned();
         let is_color = |name| css::color(name).is_some();
         let is_rgb = row.gives == Type::Color;
-        // The coordinates of a vector need parentheses of their own, and numbers must not have
-        // them.
+        // A function of vectors needs parentheses around the coordinates, and a function of numbers
+        // must not have them.
         let meant = match (row.takes, arguments) {
-            // A fourth channel would be transparency, and a colour by itself needs no `rgb`.
+            // The language has no transparency, so a fourth channel is left out. A colour alone
+            // needs no `rgb`.
             (_, [r, g, b, _]) if is_rgb => Some(format!("rgb({})", [r, g, b].map(text).join(", "))),
             (_, [only])
                 if is_rgb
@@ -234,7 +238,7 @@ impl<'s> Evaluator<'_, 's> {
         );
     }
 
-    /// Reports an argument of another type.
+    /// Reports an argument of a type that the function does not take.
     fn argument_type(
         &mut self,
         row: &Function,
@@ -265,7 +269,7 @@ impl<'s> Evaluator<'_, 's> {
         self.problems.push(problem);
     }
 
-    /// Whether the channels of a colour lie from 0 to 255; reports those that do not.
+    /// Returns whether all channels of a colour lie from 0 to 255. Reports those that do not.
     fn in_range(&mut self, color: Color, arguments: &[Element<'s>]) -> bool {
         let mut fits = true;
         let names = ["red", "green", "blue"];
@@ -291,8 +295,8 @@ impl<'s> Evaluator<'_, 's> {
         fits
     }
 
-    /// Warns of a colour whose channels seem to go from 0 to 1: all are at most 1, and one has a
-    /// fraction.
+    /// Warns of an `rgb` whose channels seem to be scaled from 0 to 1 instead of 0 to 255: all are
+    /// at most 1, and one is not whole.
     fn unit_parts(&mut self, span: Span, color: Color, arguments: &[Element<'s>]) {
         let parts = color.srgb;
         if parts.iter().any(|part| *part > 1.0) || parts.iter().all(|part| part.fract() == 0.0) {
@@ -338,7 +342,8 @@ impl<'s> Evaluator<'_, 's> {
             "asin" | "acos" => (
                 format!("`{name}` takes a number from -1 to 1"),
                 match known {
-                    // More than a rounding error out of range.
+                    // The number is out of range by more than a rounding error, so it has no
+                    // inverse sine or cosine.
                     [Value::Number(x)] if x.abs() > 1.0 + 1e-9 && !written.contains('/') => {
                         "no angle has that".to_owned()
                     }
@@ -366,7 +371,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Returns the operator that may have been left out between two values.
+/// Returns the operator that was probably left out between values of these types, if there is one.
 fn operator_between(kinds: (Type, Type)) -> Option<char> {
     match kinds {
         (Type::Vector, Type::Vector) | (Type::Angle, Type::Angle) => Some('+'),

@@ -1,4 +1,5 @@
-//! Evaluates expressions; literals and numbers without a unit are handled in this file.
+//! Evaluates expressions. This file handles literals and numbers that lack a unit; the other files
+//! of `eval` handle the other kinds of expressions.
 
 use super::{names::Names, origin::UnitOrigin};
 use crate::{
@@ -13,10 +14,10 @@ use crate::{
     },
 };
 
-/// Evaluates values and collects their problems.
+/// Evaluator of expressions, which collects their problems.
 #[derive(Debug)]
 pub struct Evaluator<'a, 's> {
-    /// The texts.
+    /// The file and the `--set` arguments.
     pub sources: &'s Sources,
     /// The names that are defined.
     pub names: &'a Names<'s>,
@@ -24,7 +25,8 @@ pub struct Evaluator<'a, 's> {
     pub problems: &'a mut Problems,
 }
 
-/// Returns the value of a text that uses no names of a scene, such as a default of the schema.
+/// Returns the value of `written`, which uses no names of a scene, such as a default in the schema.
+/// Returns `None` if it has errors.
 pub fn literal(written: &str, takes: Type) -> Option<Value> {
     if takes == Type::Method {
         return schema::method(written).map(Value::Method);
@@ -39,7 +41,7 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     evaluator.value(&tree, Some(takes))
 }
 
-/// Whether a value is of a field's type and meets its conditions.
+/// Returns whether the value of `tree` has the type of `field` and meets its conditions.
 pub fn suits<'s>(
     field: &schema::FieldRow,
     tree: &tree::Value<'s>,
@@ -59,7 +61,8 @@ pub fn suits<'s>(
 }
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the value of an expression; `wanted` is the type that would fit, if it is known.
+    /// Returns the value of an expression; `wanted` is the type that the place requires, if that is
+    /// known. The result may have another type. Reports errors and then returns `None`.
     pub fn value(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         match &value.kind {
             ValueKind::Number(written) => Some(Value::Number(self.number(written, value.span)?)),
@@ -78,7 +81,8 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// Parses a number; warns of one that is rounded to 0.
+    /// Parses a number. Warns if it is rounded to 0; if it is too large, reports an error and
+    /// returns `None`.
     fn number(&mut self, written: &str, span: Span) -> Option<f64> {
         let number: f64 = if written.contains('_') {
             written.replace('_', "").parse().ok()?
@@ -110,8 +114,8 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    /// Describes a number in the place of an angle. Only units with which the number fits are
-    /// offered.
+    /// Returns the error that `number` stands where an angle is required. `what` names the place in
+    /// words. The fixes add a unit; only units for which `fits` holds are offered.
     pub fn bare_angle(
         &self,
         what: &str,
@@ -170,8 +174,8 @@ impl<'s> Evaluator<'_, 's> {
             .fixes(fixes)
     }
 
-    /// Returns the first name in a value whose own value comes from an argument, and the span of
-    /// that argument, where the mistake is.
+    /// Returns the first name in `value` that a `--set` argument defines, and the span of the
+    /// argument's value. The mistake is then in the argument.
     pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
         let ValueKind::Name(name) = value.kind else {
             return value.parts().into_iter().find_map(|part| self.set_in(part));
@@ -181,8 +185,8 @@ impl<'s> Evaluator<'_, 's> {
         is_set.then_some((name, from))
     }
 
-    /// Returns the only factor of a product that a `let` of the file defines as a plain number, and
-    /// that number; `None` if there are none or several.
+    /// Returns the factor of a product that a `let` of the file defines as a number literal: its
+    /// name and the literal. Returns `None` if no factor or more than one is defined so.
     fn number_without_unit(&self, value: &tree::Value<'s>) -> Option<(&'s str, &'s str)> {
         let ValueKind::Chain { first, rest } = &value.kind else {
             return None;
@@ -206,12 +210,12 @@ impl<'s> Evaluator<'_, 's> {
             .filter(|_| is_product && numbers.next().is_none())
     }
 
-    /// Returns fixes that write a number as an angle, the likelier unit first.
+    /// Returns fixes that add a unit to a number, the likelier unit first.
     ///
-    /// A number that comes from `pi` or is at most pi is more likely in radians, any other in
-    /// degrees; a number of more than one turn in radians is surely in degrees. If the unit is
-    /// not sure, the titles give the angle in the other unit. If the formula speaks for both
-    /// units, the author is to choose.
+    /// A number derived from `pi`, or of at most pi, is more likely in radians, any other in
+    /// degrees. A number above 2 pi is certainly in degrees. If the unit is uncertain, the titles
+    /// also give the angle in the other unit. If parts of the formula suggest different units, the
+    /// fixes are marked as placeholders, so that the author must choose.
     pub fn units(&self, value: &tree::Value<'s>, number: f64) -> [(Unit, Fix); 2] {
         let text = self.sources.text(value.span);
         let is_literal = is_plain_number(value);
@@ -252,7 +256,8 @@ impl<'s> Evaluator<'_, 's> {
         })
     }
 
-    /// Returns the text of a span for a message: a literal as it is, any other text in backquotes.
+    /// Returns the text at `span` for a message: a number or list literal as it is, any other text
+    /// in backquotes.
     pub fn quoted(&self, span: Span) -> String {
         let written = shorten(self.sources.text(span));
         let literal = written
@@ -269,7 +274,7 @@ impl<'s> Evaluator<'_, 's> {
 /// Help for a number that is too large.
 pub(super) const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
 
-/// Returns the colour of a code; the parser has checked the number of digits.
+/// Returns the colour of a code such as `#ff8000`. The parser has checked the number of digits.
 pub(super) fn color_code(written: &str) -> Option<Color> {
     let digits = written.strip_prefix('#')?;
     let code = u32::from_str_radix(digits, 16).ok()?;
@@ -282,7 +287,7 @@ pub(super) fn color_code(written: &str) -> Option<Color> {
     }))
 }
 
-/// Whether a value is a number literal, perhaps with a sign.
+/// Returns whether a value is a number literal, with or without a minus.
 fn is_plain_number(value: &tree::Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Negation { operand, .. } => matches!(operand.kind, ValueKind::Number(_)),
@@ -290,7 +295,8 @@ fn is_plain_number(value: &tree::Value<'_>) -> bool {
     }
 }
 
-/// Rounds an angle in the other unit for people: degrees to tenths, radians to thousandths.
+/// Formats an angle for a message: to thousandths below 1, which is usual in radians, and otherwise
+/// to tenths.
 fn rounded(number: f64) -> String {
     if number.abs() < 1.0 {
         format!("{number:.3}")

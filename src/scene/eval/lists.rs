@@ -15,7 +15,7 @@ use crate::{
 };
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the value of a list; `None` if it has errors, which are reported.
+    /// Returns the value of a list. Reports errors and then returns `None`.
     pub(super) fn tuple(
         &mut self,
         elements: &[Element<'s>],
@@ -68,7 +68,7 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports a part of a list of the wrong type.
+    /// Reports `part` of a list, which has the wrong type `found`.
     fn wrong_part(&mut self, list: Type, part: &tree::Value<'s>, found: Type) {
         let parts = list
             .parts()
@@ -130,8 +130,9 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Returns a third number for two literals: the greater one of them, because such sides form a
-/// triangle, but not 0, because a zero vector has no direction.
+/// Returns an example for a missing third coordinate: the greater one of the other two, because
+/// sides of such lengths form a triangle; but 1 if both are 0, because a zero vector has no
+/// direction.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {
@@ -141,8 +142,9 @@ fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     })
 }
 
-/// Returns the vector of four numbers of which two are joined by a decimal comma: the only comma
-/// without a blank behind it.
+/// Returns the vector that four numbers mean if two of them are one number with a decimal comma, as
+/// in `(1,5, 2, 3)`: that comma is the only one without a space behind it. Returns `None` if there
+/// is no such comma, or more than one.
 fn with_decimal_comma(elements: &[Element<'_>], texts: &[&str]) -> Option<String> {
     let is_tight = |pair: &[Element<'_>]| match pair {
         [one, other] => one.value.span.end + 1 == other.value.span.start,

@@ -1,4 +1,4 @@
-//! Looks names up, and reports those that are not defined.
+//! Looks up names, and reports undefined ones.
 
 use super::{
     evaluator::{Evaluator, color_code, literal},
@@ -15,7 +15,8 @@ use crate::{
 };
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the value of a name; `None` if it has none, which is reported.
+    /// Returns the value of a name. Returns `None` if it has none, after a report if the name is
+    /// undefined.
     pub(super) fn name(
         &mut self,
         name: &'s str,
@@ -26,7 +27,8 @@ impl<'s> Evaluator<'_, 's> {
             return value;
         }
         let defined = self.names.defined.get(name);
-        // Blocks that an argument changes are evaluated after all definitions.
+        // With `--set` arguments, all definitions are evaluated before the blocks. Still, text of
+        // the file may use only names that are defined above it.
         let is_above =
             |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
         if let Some(defined) = defined.filter(is_above) {
@@ -60,7 +62,7 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports a name that is not defined, or adds this use of it to the report.
+    /// Reports an undefined name. If the name was reported before, adds this use to the report.
     fn report(&self, name: &'s str, span: Span, wanted: Option<Type>) {
         let mut problems = self.names.problems.borrow_mut();
         let mut reported = self.names.reported.borrow_mut();
@@ -72,7 +74,7 @@ impl<'s> Evaluator<'_, 's> {
                 }
                 suggested
             }
-            // Problems beyond the maximum are dropped, so they are not remembered.
+            // Problems beyond the maximum are discarded, so the name is not entered in `reported`.
             None if problems.is_full() => None,
             None => {
                 let (problem, suggested) = match self.names.definition(name) {
@@ -103,8 +105,8 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// Returns the span of a colour such as `light-blue` that begins at a name, and the colour in
-    /// one word.
+    /// If a hyphenated colour such as `light-blue` starts at `span`, returns its span and its name
+    /// in one word.
     fn hyphenated(&self, span: Span) -> Option<(Span, String)> {
         let text = self.sources.get(span.source).text().get(span.start..)?;
         let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '-';
@@ -115,7 +117,7 @@ impl<'s> Evaluator<'_, 's> {
         is_one.then_some((Span { end, ..span }, joined))
     }
 
-    /// Describes a use of a name before its definition.
+    /// Returns the error that a name is used before its definition.
     fn used_before(&self, name: &str, span: Span, definition: Span) -> Diagnostic {
         let line = self.sources.get(definition.source).line(definition.start);
         let used = self.sources.get(span.source).line(span.start);
@@ -134,8 +136,8 @@ impl<'s> Evaluator<'_, 's> {
             })
     }
 
-    /// Describes a name that is not defined, and returns the meaning of the name that is suggested
-    /// instead.
+    /// Returns the error that a name is undefined, and the meaning of the suggested name, if there
+    /// is a suggestion.
     fn unknown_name(
         &self,
         name: &str,
@@ -187,7 +189,8 @@ impl<'s> Evaluator<'_, 's> {
         )
     }
 
-    /// Returns the value of a suggested name or colour code.
+    /// Returns the value of the suggested name or colour code `name`. Returns `None` if it has
+    /// errors.
     pub(super) fn meaning(&self, name: &str) -> Option<Value> {
         if let Some(defined) = self.names.defined.get(name) {
             return defined.value;
@@ -198,15 +201,16 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// Returns the nearest name: of colours if one is wanted, and otherwise of values that can be
-    /// computed with. Names whose values are known to be of another type are passed over.
+    /// Returns the name that is nearest to `name`, and whether it is a safe replacement. Considers
+    /// definitions and colours if a colour is wanted, and otherwise definitions, constants and, if
+    /// no type is wanted, colours. Leaves out names whose values have another type than `wanted`.
     fn nearest(
         &self,
         name: &str,
         wanted: Option<Type>,
         is_color: bool,
     ) -> Option<(String, Applicability)> {
-        // The code of a colour without its sign, such as `ff0000`.
+        // The name may be a colour code without its `#`, such as `ff0000`.
         let is_digits = name.bytes().all(|byte| byte.is_ascii_hexdigit());
         if is_color && matches!(name.len(), 3 | 6) && is_digits {
             return Some((format!("#{name}"), Applicability::Safe));
@@ -215,7 +219,7 @@ impl<'s> Evaluator<'_, 's> {
             let pi = if name == "M_PI" { "pi" } else { "(2 * pi)" };
             return Some((pi.to_owned(), Applicability::Unsafe));
         }
-        // Two colours, as in `olive green`: nobody knows which one is meant.
+        // It is uncertain which of two colours is meant, as in `olive green`, so none is suggested.
         if name.contains(' ') && name.split(' ').all(|word| css::color(word).is_some()) {
             return None;
         }
@@ -236,7 +240,7 @@ impl<'s> Evaluator<'_, 's> {
             Some(_) => None,
         });
         let near = near?;
-        // `lightred` is no misspelling of `lightgrey`.
+        // `lightred` is not a CSS colour, but it is probably not a misspelt `lightgrey` either.
         let is_of_colors = css::color(near).is_some();
         if is_of_colors && near != name.replace('_', "") && is_of_tone(name) {
             return None;
@@ -248,7 +252,8 @@ impl<'s> Evaluator<'_, 's> {
         Some((near.to_owned(), Applicability::safe_if(is_sure)))
     }
 
-    /// Returns the type of a value in words, and where it was defined if it is a name.
+    /// Returns the type of a value in words. If the value is a name, the text also says where it
+    /// was defined.
     pub fn described(&self, value: &tree::Value<'s>, kind: Type) -> String {
         let noun = kind.noun();
         let defined = match value.kind {
@@ -271,8 +276,8 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Whether a name consists of a colour and a word such as `light` that begins the names of other
-/// colours, so that it is no misspelling of another name.
+/// Returns whether a name is made of a prefix such as `light` and a colour, as in `lightred`. Such
+/// a name is not a misspelling of another colour.
 fn is_of_tone(name: &str) -> bool {
     let name = name.to_ascii_lowercase().replace('_', "");
     css::names().any(|hue| {
@@ -286,7 +291,7 @@ fn is_of_tone(name: &str) -> bool {
     })
 }
 
-/// Returns the help for an undefined name without a suggestion.
+/// Returns the help for an undefined name for which no other name is suggested.
 fn no_other(name: &str, is_color: bool) -> String {
     if !is_color {
         format!("define it before it is used: `let {name} = …`")
@@ -298,13 +303,14 @@ fn no_other(name: &str, is_color: bool) -> String {
     }
 }
 
-/// Adds another use of the same name to a problem.
+/// Adds another use of an undefined name, at `span`, to the report of its first use.
 fn and_here(problem: &mut Diagnostic, span: Span) {
-    // A value that is evaluated twice has one label.
+    // A value may be evaluated more than once, but each use gets only one label.
     if problem.labels.iter().any(|label| label.span == span) {
         return;
     }
-    /// Maximum number of further uses that are labelled. More would hide the first one.
+    /// Maximum number of further uses of a name that get a label; later uses get none. More labels
+    /// would hide the first use.
     const MOST: usize = 20;
     if problem.labels.len() <= MOST {
         let message = "and here".to_owned();

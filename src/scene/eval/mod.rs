@@ -1,8 +1,8 @@
-//! The values of expressions.
+//! Evaluates expressions.
 //!
 //! In: the tree of a value, and the names that are defined. Out: the value, or problems. A value
-//! with errors is unknown (`None`), and expressions that use it stay silent. The purpose of a value
-//! is not known here, except the type that is wanted.
+//! with errors is unknown (`None`), and an expression that uses it is not reported again.
+//! Evaluation knows only which type is wanted, not which field the value is for.
 //!
 //! `evaluator` handles literals; lists, operators, calls and names have a file each.
 

@@ -1,4 +1,5 @@
-//! The names that are defined at a place of the text.
+//! Keeps the names that are defined at the current place of the text, and what was reported about
+//! names.
 
 use std::{
     cell::RefCell,
@@ -20,56 +21,58 @@ use crate::{
     },
 };
 
-/// The names that are defined at a place of the text.
+/// Names that are defined at the current place of the text, and what was reported about names.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
-    /// The `let`s and indices so far.
+    /// Definitions and indices so far, with their values.
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
     /// Words of texts that could not be parsed and were reported. They may have been meant as
     /// names, so their uses are not reported.
     pub(super) parts: HashSet<&'s str>,
-    /// Every `let` of the file, wherever it is.
+    /// Every definition of the file with the span of its name, including later ones.
     definitions: HashMap<&'s str, Span>,
-    /// The names of the file's objects, which are no values.
+    /// Names of the file's objects. They have no value, but a message can explain that.
     pub(super) objects: HashSet<&'s str>,
     /// The names of the indices of all blocks.
     pub(super) indices: HashSet<&'s str>,
-    /// The number of comparisons left for nearest names.
+    /// Remaining number of comparisons in searches for the nearest name.
     budget: ComparisonBudget,
-    /// Problems of names, kept apart from the other problems, some of which are dropped again.
+    /// Problems of undefined names. They are kept apart because some of the other problems are
+    /// discarded when a value is evaluated again.
     pub(in crate::scene) problems: RefCell<Problems>,
-    /// The names that were reported. Further uses become labels of the same problem.
+    /// Names that were reported as undefined. Further uses become labels of the same problem.
     pub(super) reported: RefCell<HashMap<&'s str, Reported>>,
-    /// The names that are suggested in place of undefined ones.
+    /// Suggestions in place of undefined names.
     pub(in crate::scene) suggestions: Suggestions<'s>,
 }
 
-/// A name that was reported.
+/// Report of an undefined name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reported {
-    /// The index of its problem.
+    /// Index of the report in [`Names::problems`].
     pub index: usize,
-    /// The meaning of the name that is suggested instead, if one is.
+    /// Meaning of the name that the report suggests, if it suggests one.
     pub suggested: Option<Meaning>,
 }
 
-/// A `let` or an index.
+/// A defined name: a `let` or an index.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) struct Defined {
-    /// The value; `None` if it has errors or is not known yet.
+    /// The value. `None` if it has errors, or for an index without a value yet.
     pub value: Option<Value>,
-    /// The name in the definition.
+    /// Span of the name in its definition.
     pub place: Span,
     /// The span of the value, in the file or in an argument.
     pub from: Span,
-    /// The unit of a number without one, as far as its formula tells.
+    /// Unit in which the value is meant if it is a number without a unit, as far as its formula
+    /// shows.
     pub origin: UnitOrigin,
 }
 
 impl<'s> Names<'s> {
-    /// Returns the names of a file, none of which is defined yet.
+    /// Collects the names of a file. None of them is defined yet.
     pub fn of(tree: &Tree<'s>) -> Self {
         let mut names = Self::default();
         for item in &tree.items {
@@ -90,7 +93,8 @@ impl<'s> Names<'s> {
         names
     }
 
-    /// Defines a name, unless it is defined already.
+    /// Defines a name with its value, unless it is defined already. `tree` is the value's
+    /// expression.
     pub fn define(&mut self, name: Name<'s>, value: Option<Value>, tree: &tree::Value<'s>) {
         let origin = self.origin(tree);
         if let Entry::Vacant(free) = self.defined.entry(name.text) {
@@ -104,12 +108,13 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the unit that a number without one counts, as far as its formula tells.
+    /// Returns in which unit a number is meant that lacks one, as far as its formula shows.
     pub fn origin(&self, value: &tree::Value<'_>) -> UnitOrigin {
         UnitOrigin::of(value, &|name| Some(self.defined.get(name)?.origin))
     }
 
-    /// Gives an index a value within its block, or `None` if it is not known yet.
+    /// Defines an index of the current block with the value `value`, or with an unknown value if it
+    /// is `None`.
     pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
         let index = Defined {
             value,
@@ -122,8 +127,9 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Removes and returns the definition that an index hides: one of the same name further down,
-    /// which is known already if arguments are given.
+    /// Removes and returns the `let` of the same name as `index` that stands further down in the
+    /// file, if it is defined already. With `--set` arguments, all definitions are evaluated before
+    /// the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;
@@ -134,12 +140,12 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Restores hidden definitions.
+    /// Restores definitions that [`Self::hide_below`] removed.
     pub fn restore(&mut self, hidden: Vec<(&'s str, Defined)>) {
         self.defined.extend(hidden);
     }
 
-    /// Forgets an index behind its block.
+    /// Removes an index at the end of its block.
     pub fn forget_index(&mut self, name: Name<'s>) {
         if self.place(name.text) == Some(name.span) {
             self.defined.remove(name.text);
@@ -148,13 +154,14 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Remembers the words of a text that could not be parsed: uses of them are not reported.
+    /// Records the words of a text that could not be parsed, so that their uses are not reported as
+    /// undefined.
     pub fn know_words(&mut self, text: &'s str) {
         let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
         self.parts.extend(text.split(is_other));
     }
 
-    /// Returns the span of the name in its definition, if it is defined.
+    /// Returns the span of a name in its definition; `None` if the name is not defined yet.
     pub fn place(&self, name: &str) -> Option<Span> {
         self.defined.get(name).map(|defined| defined.place)
     }
@@ -164,27 +171,28 @@ impl<'s> Names<'s> {
         self.defined.get(name)?.value
     }
 
-    /// Returns the first `let` of the file that defines a name, wherever it is.
+    /// Returns the span of a name in the first `let` of the file that defines it, even further
+    /// down.
     pub fn definition(&self, name: &str) -> Option<Span> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, to search for the nearest one; `None` if the
-    /// budget of comparisons is spent.
+    /// Returns the names that are defined so far, for a search for the nearest one. Charges the
+    /// search to the budget of comparisons, and returns `None` if that is spent.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)
     }
 
-    /// Forgets the suggestion for a name.
+    /// Removes the suggestion from the report of an undefined name.
     pub fn withdraw(&self, name: &str) {
         if let Some(reported) = self.reported.borrow_mut().get_mut(name) {
             reported.suggested = None;
         }
     }
 
-    /// Returns the number of comparisons left for nearest names.
+    /// Returns the budget of comparisons in searches for the nearest name.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }

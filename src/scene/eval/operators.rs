@@ -1,4 +1,4 @@
-//! Evaluates signs and operators.
+//! Evaluates negations and binary operators.
 
 use super::evaluator::{Evaluator, LARGEST};
 use crate::{
@@ -13,11 +13,12 @@ use crate::{
     },
 };
 
-/// The left operand: its value, its span, and its tree unless it is the result of an operator.
+/// Left operand of an operator: its value, its span, and its tree. There is no tree if the operand
+/// is itself the result of an operator.
 type Left<'t, 's> = (Value, Span, Option<&'t tree::Value<'s>>);
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the negative of a value; reports a type that has none.
+    /// Returns the negative of a value. Reports a type that has none.
     pub(super) fn negation(&mut self, sign: Span, operand: &tree::Value<'s>) -> Option<Value> {
         let value = self.value(operand, None)?;
         let negative = value::negate(value);
@@ -34,19 +35,20 @@ impl<'s> Evaluator<'_, 's> {
         negative
     }
 
-    /// Returns the result of operators of one precedence, from left to right.
+    /// Returns the result of operators of one precedence, applied from left to right.
     pub(super) fn chain(
         &mut self,
         first: &tree::Value<'s>,
         rest: &[Step<'s>],
         wanted: Option<Type>,
     ) -> Option<Value> {
-        // The wanted type of an intermediate result is not known.
+        // With several operators, no type is wanted, since intermediate results may have any type.
         let wanted = wanted.filter(|_| rest.len() == 1);
         let mut left = self.value(first, None);
         let mut span = first.span;
         for (index, step) in rest.iter().enumerate() {
-            // Both operands of a sum are of one type.
+            // Both operands of a sum have the same type, so the left one's type is wanted on the
+            // right.
             let alike = left.filter(|_| !step.operator.is_of_product());
             let right = self.value(&step.operand, alike.map(|left| left.kind()));
             left = match (left, right) {
@@ -61,7 +63,7 @@ impl<'s> Evaluator<'_, 's> {
         left
     }
 
-    /// Returns the result of one operator.
+    /// Returns the result of one operator, or `None` after a report.
     fn step(
         &mut self,
         step: &Step<'s>,
@@ -107,8 +109,8 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports operands that do not go together. Fixes are offered only if they give the wanted
-    /// type.
+    /// Reports operands whose types the operator does not accept. A fix is offered only if its
+    /// result has the wanted type.
     fn operand_types(
         &mut self,
         step: &Step<'s>,
@@ -149,7 +151,7 @@ impl<'s> Evaluator<'_, 's> {
             _ => "only numbers, angles and vectors of one kind go together".to_owned(),
         };
         let vector = |span, text: &str| vec![Fix::write(span, format!("({text}, {text}, {text})"))];
-        // The unit of the other operand comes first.
+        // The unit of the other operand is the likelier one, so its fix comes first.
         let with_unit = |tree: &tree::Value<'s>, value: Value, other: Value| match (value, other) {
             (Value::Number(number), Value::Angle(angle)) if self.set_in(tree).is_none() => {
                 let mut units = self.units(tree, number);
@@ -189,7 +191,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Returns the message that an operator does not take two types.
+/// Returns the message that `operator` does not accept operands of the types `left` and `right`.
 fn cannot(operator: Operator, left: Type, right: Type) -> String {
     let (a, b) = (left.noun(), right.noun());
     let both = if left == right {

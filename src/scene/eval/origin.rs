@@ -1,32 +1,33 @@
-//! Derives the unit of a number without one from its formula: a number that comes from `pi` counts
-//! radians.
+//! Finds out in which unit a number is meant that stands for an angle but lacks a unit. A number
+//! derived from `pi`, for example, is meant in radians.
 //!
-//! In: the tree of a value, and the origins of the `let`s that it uses. Out: the unit that was
-//! meant, as far as the formula tells.
+//! In: the tree of a value, and the origins of the names that it uses. Out: the [`UnitOrigin`],
+//! which the formula determines.
 
 use crate::{
     schema::predefined,
     syntax::tree::{self, Operator, Unit, ValueKind},
 };
 
-/// The unit of a number without one, as far as its formula tells.
+/// Unit in which a number without a unit is meant, as far as its formula shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitOrigin {
-    /// Unknown: the formula consists of numbers without `pi`.
+    /// Unknown, since the formula consists of numbers without `pi`.
     Plain,
-    /// The number counts this unit.
+    /// The number is meant in this unit.
     In(Unit),
-    /// Parts of the formula speak for both units.
+    /// Uncertain: parts of the formula suggest different units.
     Unclear,
 }
 
 use UnitOrigin::{In, Plain, Unclear};
 
-/// The first digits of pi, of its multiples, and of pi / 180, as people write them.
+/// First digits of pi, 2 pi, pi/2 and pi/180, as people write them. A number that starts with them
+/// suggests radians.
 const LIKE_PI: [&str; 5] = ["3.14", "6.28", "1.57", "0.0174", ".0174"];
 
 impl UnitOrigin {
-    /// Returns the origin of a value, given the origins of the names that it uses.
+    /// Returns the origin of a value. `known` returns the origin of a name that the value uses.
     pub fn of(value: &tree::Value<'_>, known: &impl Fn(&str) -> Option<Self>) -> Self {
         let all = || {
             let parts = value.parts().into_iter();
@@ -62,7 +63,7 @@ impl UnitOrigin {
                     let by_turn = by_turn || is_half_turn(operand);
                     let product = match (left, step.operator, right, unit) {
                         (_, Operator::Divide, _, Some(unit)) => In(unit),
-                        // `x * 180 / pi`
+                        // The product `x * 180 / pi` converts radians to degrees.
                         (Plain | In(Unit::Radians), Operator::Divide, In(Unit::Radians), _)
                             if by_turn =>
                         {
@@ -80,7 +81,7 @@ impl UnitOrigin {
         }
     }
 
-    /// Returns the origin of a sum.
+    /// Returns the origin of a sum of two terms, from the origins of the terms.
     fn plus(self, other: Self) -> Self {
         match (self, other) {
             (Plain, it) | (it, Plain) => it,
@@ -90,7 +91,7 @@ impl UnitOrigin {
     }
 }
 
-/// Whether a factor is the number of degrees of a half or a whole turn.
+/// Returns whether a factor is 180 or 360, the degrees of a half or a whole turn.
 fn is_half_turn(factor: &tree::Value<'_>) -> bool {
     matches!(factor.kind, ValueKind::Number("180" | "360"))
 }

@@ -1,8 +1,9 @@
-//! Suggestions for undefined names, which are kept until they have been tried.
+//! Suggestions for undefined names.
 //!
 //! In: an undefined name, and the nearest defined one. Out: the meaning of the undefined name while
-//! the suggestion is tried. Only the whole value shows whether the suggestion leads to another
-//! error, so the caller evaluates the value again.
+//! the suggestion is tried. Whether a suggestion leads to another error shows only in the whole
+//! value. So the caller evaluates the value again, with the meaning of the suggested name, and then
+//! keeps or withdraws the suggestion.
 
 use std::cell::RefCell;
 
@@ -11,14 +12,14 @@ use crate::{
     source::Span,
 };
 
-/// A name to write in place of an undefined one.
+/// A name that is suggested in place of an undefined one.
 #[derive(Clone, Debug)]
 pub struct Suggestion<'s> {
     /// The undefined name.
     pub name: &'s str,
     /// The meaning of the suggested name.
     pub means: Meaning,
-    /// The first label of the report.
+    /// Span of the first label of the report, which identifies it.
     pub report: Span,
     /// The help of the report if the suggestion is withdrawn.
     pub otherwise: String,
@@ -33,7 +34,7 @@ pub enum Meaning {
     Function(&'static Function),
 }
 
-/// The suggestions made while a value is evaluated.
+/// Suggestions that were made while a value was evaluated.
 #[derive(Debug, Default)]
 pub struct Suggestions<'s> {
     made: RefCell<Vec<Suggestion<'s>>>,
@@ -47,23 +48,24 @@ impl<'s> Suggestions<'s> {
         self.made.borrow_mut().push(suggestion);
     }
 
-    /// Takes the suggestions made since they were last taken.
+    /// Returns and removes the suggestions that were added.
     pub fn take(&self) -> Vec<Suggestion<'s>> {
         self.made.take()
     }
 
-    /// Begins to try a suggestion, or ends trying if there is none.
+    /// Sets the suggestion that is tried; `None` ends the trial.
     pub fn set_tried(&self, suggestion: Option<&Suggestion<'s>>) {
         let tried = suggestion.map(|suggestion| (suggestion.name, suggestion.means));
         *self.tried.borrow_mut() = tried;
     }
 
-    /// Whether a suggestion is being tried. Undefined names are not reported then.
+    /// Returns whether a suggestion is being tried. Undefined names are then not reported.
     pub fn is_trying(&self) -> bool {
         self.tried.borrow().is_some()
     }
 
-    /// Returns the meaning of a name if its suggestion is being tried.
+    /// Returns the suggested meaning of `name` while that suggestion is being tried, and otherwise
+    /// `None`.
     pub fn meaning(&self, name: &str) -> Option<Meaning> {
         let tried = *self.tried.borrow();
         tried.and_then(|(known, meaning)| (known == name).then_some(meaning))

@@ -1,4 +1,4 @@
-//! Blocks → scene: the parts of the scene, once all fields have values.
+//! Builds the image, camera and sampler of a scene from blocks whose fields have values.
 
 use super::{
     fixes,
@@ -18,18 +18,19 @@ use crate::{
     syntax::shorten,
 };
 
-/// Span of what is missing from the file.
+/// Span for problems about blocks that the file lacks: the empty span at the start of the file.
 const START: Span = Span {
     source: SourceId::File,
     start: 0,
     end: 0,
 };
 
-/// Maximum number of samples of a picture, also if `per_pixel` is given.
+/// Maximum number of samples of a whole picture. If `per_pixel` times the number of pixels is
+/// greater, that is reported as an error.
 const MOST_SAMPLES: u64 = 1 << 53;
 
 impl<'s> Lowering<'s> {
-    /// Builds the parts of the scene; a part with errors is missing.
+    /// Builds the parts of the scene. A part with errors is `None`.
     pub(super) fn build(&mut self) -> Parts {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
@@ -71,7 +72,7 @@ impl<'s> Lowering<'s> {
 
     fn has_errors(&self) -> bool {
         let mut all = self.problems.iter().chain(&self.found);
-        // Every problem of a name is an error.
+        // All problems in `names.problems` are errors.
         all.any(Diagnostic::is_error)
             || !self.names.problems.borrow().is_empty()
             || !self.sources.file.invalid_utf8().is_empty()
@@ -108,7 +109,8 @@ impl<'s> Lowering<'s> {
         );
     }
 
-    /// Returns a block with the fields that it needs, and a fix that adds it.
+    /// Returns the text of a block with the fields that it needs, and a fix that adds it to the
+    /// file.
     fn new_block(&self, kind: BlockKind) -> (String, Fix) {
         let row = schema::of_kind(kind);
         let (example, title) = (row.example(), format!("add {}", row.noun));
@@ -116,7 +118,7 @@ impl<'s> Lowering<'s> {
         (example, fix)
     }
 
-    /// Builds the image; `None` if a value is missing or wrong.
+    /// Builds the image. Returns `None` if a value is missing or wrong.
     fn image(&mut self, block: &LoweredBlock<'s>) -> Option<Image> {
         let ImageFields {
             width,
@@ -130,8 +132,8 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    /// Builds the sampler; `None` if a value is missing or wrong. A number of samples that does not
-    /// go with the picture's size is reported.
+    /// Builds the sampler. Returns `None` if a value is missing or wrong. If `image` is given,
+    /// reports a number of samples that is too small or too large for its number of pixels.
     pub(super) fn sampler(
         &mut self,
         block: &LoweredBlock<'s>,

@@ -1,4 +1,4 @@
-//! The camera, and warnings about what it sees.
+//! Builds the camera, and warns if it does not see what was probably meant.
 
 use glam::DVec3;
 
@@ -18,11 +18,12 @@ use crate::{
     suggest,
 };
 
-/// Maximum number of objects that one warning names.
+/// Maximum number of objects that one warning names. For the remaining objects, it gives only their
+/// number.
 const MOST_NAMED: usize = 3;
 
 impl<'s> Lowering<'s> {
-    /// Builds the camera; `None` if a value is missing or wrong.
+    /// Builds the camera. Returns `None` if a value is missing or wrong.
     pub(super) fn camera(&mut self, block: &LoweredBlock<'s>) -> Option<Camera> {
         let CameraFields {
             eye,
@@ -54,7 +55,8 @@ impl<'s> Lowering<'s> {
                         .at(eye_place, "the eye")
                         .help("move one of them, or give a `direction` instead of `lookat`"),
                 );
-                // Editors, which show what there is of a broken scene, get no camera either.
+                // An editor shows the correct parts of a scene with errors. Without a view, it
+                // shows no camera.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -90,7 +92,7 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    /// Warns of an up vector that is parallel to the view direction, or nearly so.
+    /// Warns of an up vector that is parallel, or nearly parallel, to the view direction.
     fn up_parallel(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -100,7 +102,8 @@ impl<'s> Lowering<'s> {
     ) {
         let Some(up) = up else { return };
         let is_parallel = predicates::cross_is_zero(up, from, to);
-        // Differences and squares of numbers near the ends of their range may overflow or vanish.
+        // Numbers near the ends of the range of `f64` may overflow or underflow in differences and
+        // squares, so vectors are scaled first.
         let unit = |v: DVec3| (v / v.abs().max_element()).normalize();
         let along = if (to - from).is_finite() {
             to - from
@@ -108,11 +111,12 @@ impl<'s> Lowering<'s> {
             0.5 * to - 0.5 * from
         };
         let sine = unit(up).cross(unit(along)).length();
-        // A comparison with NaN is false.
+        // The negation also returns here if `sine` is NaN.
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // See `level_direction`. The scale of up does not matter, but its square could overflow.
+        // The formula is explained at `level_direction`. Only the direction of `up` matters; it is
+        // scaled so that its square does not overflow.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
@@ -156,7 +160,7 @@ impl<'s> Lowering<'s> {
         );
     }
 
-    /// Reports a far plane that is not behind the near plane.
+    /// Reports a `far` that is not greater than `near`.
     fn empty_depth(&mut self, block: &LoweredBlock<'s>, near: f64, far: f64, given: Given) {
         let (near, far) = (numbers::beside(near, &[far]), numbers::beside(far, &[near]));
         let problem = error("empty_depth", "`far` must be more than `near`")
@@ -179,7 +183,7 @@ impl<'s> Lowering<'s> {
         });
     }
 
-    /// Warns of a camera that sees no object, or of named objects outside of the picture.
+    /// Warns if the camera sees no object, or if named objects are outside of the picture.
     pub(super) fn unseen(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -233,8 +237,8 @@ impl<'s> Lowering<'s> {
 }
 
 impl Lowering<'_> {
-    /// Warns of named objects that lie wholly outside of the picture, and of repeated blocks all of
-    /// whose objects do.
+    /// Warns of named objects, and of named repeated blocks, that lie wholly outside of the
+    /// picture.
     fn outside(&mut self, camera: &Camera, image: &Image, objects: &[Object]) {
         let Some(sight) = Sight::new(camera, image) else {
             return;
@@ -287,7 +291,8 @@ impl Lowering<'_> {
         self.problems.push(problem);
     }
 
-    /// Warns of checkerboards whose squares samples cannot tell apart.
+    /// Warns of checkerboards whose squares are too small, compared with their distance, for
+    /// samples to tell apart.
     pub(super) fn lost_squares(&mut self, camera: &Camera, image: &Image) {
         let boards = std::mem::take(&mut self.boards);
         // Only the first board of a repeated block is reported.
@@ -300,8 +305,8 @@ impl Lowering<'_> {
                 continue;
             }
             reported = Some(place);
-            // Suggested sides that people can tell apart: a metre, or the eye's height over the
-            // board.
+            // Suggest 1 m or the eye's height above the board as the side, if samples can tell such
+            // squares apart.
             let height = (board.y - camera.eye.y).abs();
             let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));
             let larger = larger.map(numbers::short);
@@ -324,7 +329,8 @@ impl Lowering<'_> {
     }
 }
 
-/// Writes the value with which the camera looks at a point; `None` if it cannot.
+/// Returns the value of `lookat` or `direction` with which the camera looks at `point`, as text.
+/// Returns `None` if there is no such direction.
 fn towards(camera: &Camera, point: DVec3) -> Option<String> {
     let (from, to) = match camera.view {
         View::Lookat(_) => (camera.eye, point),

@@ -18,8 +18,8 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// Returns the value of a field, if it is of the field's type and meets its conditions.
-    /// Problems are reported.
+    /// Evaluates the value of a field. Reports an error, and returns `None`, if the value has
+    /// errors or another type than the field, or breaks the field's conditions.
     pub(super) fn typed(
         &mut self,
         row: &'static FieldRow,
@@ -61,8 +61,8 @@ impl<'s> Lowering<'s> {
         let Some(&condition) = broken else {
             return Some(value);
         };
-        // A number that rounds to 0 was reported for that; the broken condition is reported
-        // instead.
+        // A number that rounds to 0 has a warning already. The report of the broken condition
+        // replaces it.
         let is_rounded = self.problems.len() > before && value == Value::Number(0.0);
         if is_rounded {
             self.problems.truncate(before);
@@ -93,7 +93,7 @@ impl<'s> Lowering<'s> {
         None
     }
 
-    /// Reports a list in the place of a value that is none.
+    /// Reports a list in place of a value that is not a list.
     fn unexpected_list(
         &mut self,
         row: &'static FieldRow,
@@ -109,7 +109,8 @@ impl<'s> Lowering<'s> {
         let texts: Vec<&str> = texts.map(|it| self.sources.text(it.value.span)).collect();
         let meant = match (row.takes, texts.as_slice()) {
             (Type::Color, [r, g, b, _]) => Some(format!("rgb({r}, {g}, {b})")),
-            // Fields without a default, such as `far`, depend on other fields.
+            // The value of a field without a default, such as `far`, depends on other fields, so it
+            // is not guessed.
             (Type::Number, [first, second])
                 if first == second && matches!(row.preset, Preset::Value(_)) =>
             {
@@ -124,7 +125,7 @@ impl<'s> Lowering<'s> {
         self.problems.push(problem);
     }
 
-    /// Returns a method by its word; reports an unknown one.
+    /// Returns the method named `written`. Reports an unknown name and returns `None`.
     fn method(&mut self, written: &str, tree: &tree::Value<'s>) -> Option<Value> {
         if let Some(method) = schema::method(written) {
             return Some(Value::Method(method));
@@ -144,11 +145,12 @@ impl<'s> Lowering<'s> {
         None
     }
 
-    /// Describes a value of another type than that of its field.
+    /// Returns the error that a value has another type than its field.
     fn wrong_type(&mut self, row: &FieldRow, tree: &tree::Value<'s>, value: Value) -> Diagnostic {
         if let (Type::Angle, Value::Number(number)) = (row.takes, value) {
             let what = format!("`{}`", row.name);
-            // Only units with which the condition holds are offered: `fov 45rad` would be an error.
+            // A unit is offered only if the field's condition then holds: `fov 45rad` would be an
+            // error.
             let fits = |unit: Unit| row.allows(Value::Angle(unit.of(number)));
             return self.evaluator().bare_angle(&what, tree, number, fits);
         }
@@ -158,8 +160,8 @@ impl<'s> Lowering<'s> {
             .at(tree.span, label)
     }
 
-    /// Returns how a value of another type has to be written for a field, and how sure that is;
-    /// `None` if nobody can tell.
+    /// Returns the text that expresses a value of another type as one of the field's type, and
+    /// whether replacing the value is safe. Returns `None` if the intended value is unknown.
     pub(super) fn converted(
         &mut self,
         row: &FieldRow,
@@ -185,13 +187,14 @@ impl<'s> Lowering<'s> {
                 Some(unsure(format!("({text}, {text}, {text})")))
             }
             (Type::Color, Value::Vector(parts), _) => rgb(parts, tree, text),
-            // A checkerboard of one colour.
+            // A single colour is used for both kinds of squares.
             (Type::Colors, Value::Color(_), _) => Some(unsure(format!("({text}, {text})"))),
             _ => None,
         }
     }
 
-    /// Describes a value of another type, with what was probably meant.
+    /// Returns the error that a value, which is `found`, has another type than its field. `meant`
+    /// is the text to write instead, if that is known.
     fn other_type(
         &mut self,
         row: &FieldRow,
@@ -235,8 +238,8 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Returns a value that meets a condition, in the place of one that does not: derived from that
-/// one, or made up.
+/// Returns a replacement that meets the broken `condition`, and the applicability of the fix. The
+/// replacement is derived from `value` if possible; otherwise it is a placeholder.
 fn allowed(row: &FieldRow, condition: Condition, value: Value) -> (String, Applicability) {
     let allowed = match (condition, value) {
         (Condition::Whole, Value::Number(number))
@@ -256,8 +259,9 @@ fn allowed(row: &FieldRow, condition: Condition, value: Value) -> (String, Appli
     (allowed, Applicability::Placeholder)
 }
 
-/// Returns a colour whose channels were written as a vector: from 0 to 1 if none is greater, and
-/// otherwise from 0 to 255.
+/// Returns the `rgb` call for a colour that was written as a vector. The channels are assumed to go
+/// from 0 to 1 if none is greater than 1, and otherwise to 255. Returns `None` if a channel is
+/// negative or greater than 255, or if the vector has channels from 0 to 1 that are not literals.
 fn rgb(parts: DVec3, tree: &tree::Value<'_>, text: &str) -> Option<(String, Applicability)> {
     let ValueKind::Tuple(elements) = &tree.kind else {
         return None;

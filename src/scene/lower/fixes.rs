@@ -9,7 +9,7 @@ use crate::{
     suggest,
 };
 
-/// Returns a fix that adds lines with made-up values at the end of the file.
+/// Returns a fix that adds `lines`, whose values are placeholders, at the end of the file.
 pub(super) fn at_end(title: impl Into<String>, lines: &str, sources: &Sources) -> Fix {
     let text = sources.file.text();
     let line_end = sources.file.line_end();
@@ -19,8 +19,8 @@ pub(super) fn at_end(title: impl Into<String>, lines: &str, sources: &Sources) -
     Fix::new(title, [Edit::insert(SourceId::File, text.len(), added)]).placeholder()
 }
 
-/// Returns the fixes for a thing that is given twice: keep the first one, or the second. If both
-/// are equal, the fixes are safe.
+/// Returns two fixes for something that stands twice in the text: keep the first one, or keep the
+/// second. The fixes are safe if the two texts are equal, except for white space.
 pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sources) -> [Fix; 2] {
     let ways = [("first", "second", second), ("second", "first", first)];
     ways.map(|(kept, removed, span)| {
@@ -34,8 +34,8 @@ pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sourc
     })
 }
 
-/// Returns a fix that removes a text which is also given elsewhere. It is safe unless a comment is
-/// removed as well.
+/// Returns a fix that removes the text at `span`, which also stands elsewhere. The fix is safe
+/// unless it also removes a comment.
 pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix {
     let fix = Fix::remove_whole(title, span, sources);
     let mut taken = fix.edits.iter().map(|edit| sources.text(edit.span));
@@ -44,8 +44,9 @@ pub(super) fn remove_equal(title: String, span: Span, sources: &Sources) -> Fix 
 }
 
 impl Lowering<'_> {
-    /// Returns a fix that adds fields with made-up values at the end of a block: on its line, or on
-    /// lines of their own. Returns `None` if the block is not in the file.
+    /// Returns a fix that adds `fields`, whose values are placeholders, at the end of a block: on
+    /// its line if the block is on one line, and otherwise on lines of their own. Returns `None` if
+    /// the block is not in the file.
     pub(super) fn add_fields(
         &self,
         block: &LoweredBlock<'_>,
@@ -56,9 +57,10 @@ impl Lowering<'_> {
         Some(Fix::new(title, [edit]).placeholder())
     }
 
-    /// Returns the fixes for two fields that exclude each other: keep either way and remove the
-    /// other. A way is kept only if it is complete, and removed only if no other field stands
-    /// between its own.
+    /// Returns the fixes for two fields that exclude each other because they belong to different
+    /// ways of the [`Choice`] `choice`: keep all fields of one way and remove those of the other
+    /// ways. There is no fix if the kept way would lack a field, or if another field stands between
+    /// the removed ones.
     pub(super) fn one_of(
         &self,
         block: &LoweredBlock<'_>,
@@ -93,13 +95,14 @@ impl Lowering<'_> {
     }
 }
 
-/// Lists names in a title.
+/// Lists names in backquotes, for a title.
 pub(super) fn quoted(names: &[&str]) -> String {
     let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     suggest::list(names.iter().map(String::as_str))
 }
 
-/// Writes fields with values that fit those of the given fields.
+/// Returns the fields `names` as text, each with an example value that does not contradict the
+/// given fields.
 pub(super) fn examples(block: &LoweredBlock<'_>, names: &[&str]) -> Vec<String> {
     let rows = names.iter().filter_map(|name| block.row.field(name));
     rows.map(|row| {

@@ -16,7 +16,8 @@ use crate::{
     syntax::tree::{self, Definition, Item, Name, ValueKind},
 };
 
-/// Shapes of other programs that can be built of triangles.
+/// Shapes of other programs, separated by spaces. The help says that such shapes can be made of
+/// triangles.
 const OTHER_SHAPES: &str = "cylinder cone torus disk disc pyramid quad mesh prism";
 
 impl<'s> Lowering<'s> {
@@ -46,7 +47,7 @@ impl<'s> Lowering<'s> {
             it.evaluate(&definition.value, None)
         });
         let Some(name) = name else { return };
-        // A name without its `let` was reported by the parser.
+        // A definition with an empty keyword lacks its `let`, which the parser has reported.
         let reported = definition.keyword.range().is_empty();
         match (predefined(name.text), first) {
             (Some(what), _) => {
@@ -57,13 +58,13 @@ impl<'s> Lowering<'s> {
                     let problem = problem.at(name.span, "this name is taken").help(help);
                     self.problems.push(problem);
                 }
-                // Uses of the name are silent, because nobody can tell what they mean.
+                // Uses of the name are not reported, because their meaning is uncertain.
                 self.names.define(name, None, &definition.value);
             }
             (None, None) => {
                 self.names.define(name, value, &definition.value);
             }
-            // The name keeps its value.
+            // The parser has reported this definition, and the first one stays valid.
             (None, Some(_)) if reported => {}
             (None, Some(first)) => {
                 let message = format!("`{}` is defined twice", name.text);
@@ -125,7 +126,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Evaluates the fields of a block, and reports their problems.
+    /// Evaluates the fields of a block, and reports their problems. An unknown field is reported,
+    /// too.
     pub(super) fn lowered(
         &mut self,
         row: &'static BlockRow,
@@ -135,7 +137,8 @@ impl<'s> Lowering<'s> {
         let mut lowered = LoweredBlock {
             keyword: block.keyword(),
             name: block.name.filter(|_| row.is_object),
-            // The end of the block is missing, or the text before the `{` may have been a field.
+            // If the end of the block is missing, or text before its `{` could not be parsed, a
+            // field may be lost.
             unfinished: block.close.is_none() || block.bad.iter().any(|bad| Some(bad.start) < open),
             ..LoweredBlock::empty(row, block.span)
         };
@@ -143,7 +146,7 @@ impl<'s> Lowering<'s> {
             let text = self.sources.text(*span);
             let mentioned = row.field_names().filter(|name| mentions(text, name));
             lowered.meant.extend(mentioned);
-            // Names in an index that could not be parsed are not reported again.
+            // Names in indices that could not be parsed are not reported again where they are used.
             if Some(span.start) < open {
                 self.names.know_words(text);
             }
@@ -156,7 +159,7 @@ impl<'s> Lowering<'s> {
             self.field(field, &mut lowered);
         }
         let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
-        // If two words stand for one field, nobody knows which of them is meant.
+        // If two unknown words stand for one field, it is uncertain which of them is meant.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
             .iter()
@@ -167,7 +170,7 @@ impl<'s> Lowering<'s> {
             }
             tried.push(field.name);
         }
-        // Unknown fields come last, because the others tell what they can mean.
+        // Unknown fields are handled last, because the known ones limit what they can mean.
         for field in unknown {
             self.unknown_field(field, &mut lowered);
         }
@@ -178,7 +181,8 @@ impl<'s> Lowering<'s> {
         lowered
     }
 
-    /// Returns the row of a block; for a mistyped keyword that of the nearest kind, after a report.
+    /// Returns the schema's row for the kind of a block. Reports an unknown kind, and then returns
+    /// the row of the nearest kind, if there is one.
     fn row(&mut self, block: &tree::Block<'s>) -> Option<&'static BlockRow> {
         let kind = block.kind?;
         let row = schema::block(kind.text);
@@ -188,14 +192,16 @@ impl<'s> Lowering<'s> {
         let near = schema::nearest_block(kind.text);
         let is_sure = |near: &BlockRow| {
             let is_tried = suggest::is_among(kind.text, near.also_tried);
-            // A plane of another program has one colour and no squares.
+            // A `plane` of another program has one colour and no squares, so replacing it by a
+            // checkerboard is not safe.
             let is_plane = matches!(kind.text, "plane" | "floor" | "ground");
             is_tried && !is_plane && !schema::is_word(kind.text)
                 || suggest::is_only_near(kind.text, near.name, schema::block_names())
         };
-        // A block of an unknown kind may be an object.
+        // A block of an unknown kind may be meant as an object, so missing objects are not
+        // reported.
         self.has_objects |= near.is_none();
-        // The parser has reported all there is of a block that is only begun.
+        // If the block has only its start, the parser has reported it already.
         if near.is_none() && block.close.is_none() && block.fields.is_empty() {
             return None;
         }
@@ -227,7 +233,8 @@ impl<'s> Lowering<'s> {
         near
     }
 
-    /// Evaluates a field that the block has, and reports one that is given twice.
+    /// Evaluates a field that the block's kind has. Reports a field that is given twice, and keeps
+    /// the first one.
     fn field(&mut self, field: &tree::Field<'s>, block: &mut LoweredBlock<'s>) {
         let before = self.problems.len();
         let mut rows = block.row.fields.iter().enumerate();
@@ -265,8 +272,9 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Improves the report of a field with a wrong number of colours, such as
-    /// `color (red, green, blue)`: if the block has a free field for that number, it is suggested.
+    /// Improves the report of a field with a wrong number of colours, such as `color (red, green,
+    /// blue)`: suggests the block's field that takes that number, `color` or `colors`, if `is_free`
+    /// says that it is not given.
     fn other_colors(&mut self, before: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
         let is_color = |value: &tree::Value<'s>| match &value.kind {
             ValueKind::Call(call) => call.function.text == "rgb",
@@ -303,9 +311,10 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports two fields that exclude each other; the first label is on the later one.
+    /// Reports two fields that exclude each other. The first label is at the later one.
     fn conflicts(&mut self, block: &LoweredBlock<'s>) {
-        // A choice is reported once, even for a box with center, size, min and max.
+        // Each group of excluding fields is reported at most once, even for a box with center,
+        // size, min and max.
         for choice in block.row.choices {
             let fields = choice.ways.iter().flat_map(|way| way.iter().copied());
             let given = fields
@@ -348,7 +357,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns a fix that replaces the `size` beside one corner of a box by the other corner.
+    /// For a box with a `size` and one corner, returns a fix that replaces the size by the other
+    /// corner.
     fn other_corner(&self, block: &LoweredBlock<'s>) -> Option<Fix> {
         if block.row.kind != BlockKind::Box || block.given(BOX.center).is_some() {
             return None;
@@ -361,13 +371,14 @@ impl<'s> Lowering<'s> {
         };
         let texts = [corner, size].map(|it| self.sources.text(it.span));
         let written = format!("{} {sign} {}", texts[0], texts[1]);
-        // Behind a minus sign, a sum would need parentheses.
+        // After a minus, a sum would need parentheses, so there is no fix.
         let is_sum = sign == "-" && size.value.is_some() && !texts[1].starts_with('(');
         let is_sum = is_sum && texts[1].contains(['+', '-']);
         (!is_sum).then(|| Fix::write(size.field(), format!("{other} {written}")))
     }
 
-    /// Reports a field without a value. The fix replaces a sign of other languages behind the name.
+    /// Reports a field without a value. The fix adds an example, in place of a `=` or `:` that
+    /// follows the name.
     fn missing_value(&mut self, name: &Name<'s>, row: &schema::FieldRow) {
         let (noun, field, example) = (row.takes.noun(), row.name, row.example);
         let text = self.sources.get(name.span.source).text();
@@ -382,7 +393,8 @@ impl<'s> Lowering<'s> {
         let behind = Span::new(name.span.source, name.span.end, end);
         let edit = Edit::new(behind, format!(" {example}"));
         self.problems.push(Diagnostic {
-            // The parser cannot report it, because only lowering knows the names of fields.
+            // This is a syntax problem. The parser cannot report it, since only lowering knows the
+            // names of fields.
             is_of_syntax: true,
             ..error("missing_value", format!("`{field}` has no value"))
                 .at(name.span, "a value should follow this")
@@ -393,13 +405,14 @@ impl<'s> Lowering<'s> {
         });
     }
 
-    /// Remembers the name of an object, and reports one that cannot be used. Other blocks take no
-    /// name.
+    /// Records the name of an object. Reports a name that cannot be used, and the name of a block
+    /// that takes none.
     fn name_of_block(&mut self, row: &BlockRow, block: &tree::Block<'s>) {
         let Some(name) = block.name else { return };
         let text = name.text;
         let problem = if !row.is_object {
-            // The text that could not be parsed may be a field, and the name a part of it.
+            // Text of the block could not be parsed. The name may be a part of it, so it is not
+            // reported.
             if !block.bad.is_empty() {
                 return;
             }

@@ -1,4 +1,5 @@
-//! The state of lowering: what is known of a scene while its items are read.
+//! State of lowering, i.e. of converting a tree to a scene: what is known while the items are
+//! processed.
 
 use std::{collections::HashMap, sync::atomic::AtomicBool};
 
@@ -9,31 +10,34 @@ use crate::{
     source::{Sources, Span},
 };
 
-/// The state of lowering.
+/// State of the conversion of a tree to a scene.
 pub(super) struct Lowering<'s> {
     pub(super) sources: &'s Sources,
-    /// Set by another thread to give up.
+    /// Flag that another thread sets to cancel lowering.
     pub(super) cancel: &'s AtomicBool,
     /// Whether a mistake hides the end of the text, such as a comment that is never closed.
     pub(super) cut: bool,
     pub(super) names: Names<'s>,
-    /// The blocks other than objects, each the first of its kind.
+    /// Blocks that are not objects, such as `camera`; only the first of each kind.
     pub(super) blocks: Vec<LoweredBlock<'s>>,
-    /// Whether the sum of the current indices is odd, within a repeated block.
+    /// Whether the sum of the current indices is odd; `None` outside of repeated blocks. It selects
+    /// a colour of a pair.
     pub(super) is_odd: Option<bool>,
     /// The objects built so far.
     pub(super) objects: Vec<Object>,
-    /// The checkerboards, each with the span of its `square`, or of its keyword.
+    /// Checkerboards, each with the span of its `square` field, or of its keyword if that field is
+    /// not given.
     pub(super) boards: Vec<(Checkerboard, Span)>,
     /// Whether the file has any items.
     pub(super) has_items: bool,
-    /// Whether the file has a block of an object, built or not.
+    /// Whether the file has a block of an object, even one with errors.
     pub(super) has_objects: bool,
     /// The span of the first use of each object's name.
     pub(super) first_names: HashMap<&'s str, Span>,
     /// The texts of items that could not be parsed.
     pub(super) bad: Vec<&'s str>,
-    /// Problems from before lowering: of the syntax, and of the targets of arguments.
+    /// Problems of the syntax and of the targets of `--set` arguments, which were found before
+    /// lowering.
     pub(super) found: Vec<Diagnostic>,
     pub(super) problems: Problems,
     /// The spans of the values of unknown fields, in the order of the text.
@@ -66,7 +70,7 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Whether a text contains a word.
+/// Returns whether `text` contains the name `word`.
 pub(super) fn mentions(text: &str, word: &str) -> bool {
     let other = |c: char| !c.is_ascii_alphanumeric() && c != '_';
     text.split(other).any(|found| found == word)

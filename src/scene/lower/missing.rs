@@ -1,4 +1,4 @@
-//! Fields that a block needs and is not given.
+//! Reports the fields that a block needs but does not have.
 
 use super::{
     fixes::{examples, quoted},
@@ -10,7 +10,8 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// Reports the fields that a block needs and is not given.
+    /// Reports the fields that a block needs but does not have, unless a field may have been lost
+    /// by a syntax error.
     pub(super) fn missing_fields(&mut self, block: &LoweredBlock<'s>) {
         if block.unfinished {
             return;
@@ -22,12 +23,13 @@ impl<'s> Lowering<'s> {
         };
         let required = row.field_names();
         let required = required.filter(|name| is_missing(name, Preset::Required));
-        // Each element is one way to give what is missing.
+        // Each element is a set of fields that would complete the block; the first one is the usual
+        // choice.
         let mut ways: Vec<Vec<&'static str>> = vec![required.collect()];
         for choice in row.choices {
             let is_taken = |way: &&&[&str]| way.iter().any(has);
             let taken = choice.ways.iter().filter(is_taken).count();
-            // Two ways that are taken exclude each other, which is reported elsewhere.
+            // If the block uses two ways of a choice, their conflict is reported elsewhere.
             let open = choice
                 .ways
                 .iter()

@@ -1,9 +1,9 @@
-//! Tree → scene.
+//! Lowers a syntax tree to a scene.
 //!
-//! In: the tree of a file, with the values of arguments in it. Out: the scene, or problems. The
-//! items are walked once, in order: each item defines its name, evaluates its fields and builds its
-//! objects; then image, camera and sampler are built. A problem of one field never hides a problem
-//! of another.
+//! In: the tree of a file, in which the values of `--set` arguments replace those of the file. Out:
+//! the scene, or problems. The items are processed once, in order: each item defines its name,
+//! evaluates its fields or builds its objects. Then image, camera and sampler are built. A problem
+//! of one field never hides a problem of another.
 
 mod build;
 mod camera;

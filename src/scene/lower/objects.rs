@@ -1,4 +1,4 @@
-//! Objects, built once all fields of their blocks have values.
+//! Builds an object when all fields of its block have values.
 
 use super::lowering::Lowering;
 use crate::{
@@ -7,8 +7,8 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// Builds an object of a block at some values of its indices. Returns whether it is built: not
-    /// if a value is missing or wrong.
+    /// Builds the object of a block for the values `indices` of its indices. Returns `false`, and
+    /// builds nothing, if a value is missing or wrong.
     pub(super) fn object(&mut self, block: &LoweredBlock<'s>, indices: &[u32]) -> bool {
         let Some(shape) = Shape::lower(block, &mut self.problems) else {
             return false;

@@ -1,4 +1,5 @@
-//! From the text to the tree and on to the scene: in parts if there are no mistakes, or as a whole.
+//! Reads a scene: parses the text and lowers the tree. A large file is read in parts if it has no
+//! mistakes, and otherwise as a whole.
 
 use std::sync::atomic::AtomicBool;
 
@@ -16,7 +17,8 @@ use crate::{
     syntax::{self, tree::Item},
 };
 
-/// Number of bytes at the start of a file by which binary files are recognised.
+/// Number of bytes at the start of a file that are searched for zero bytes, which show that the
+/// file is binary.
 const BINARY_BYTES: usize = 1 << 14;
 
 /// Reads a scene: parses the file and the overrides, and lowers them.
@@ -24,31 +26,32 @@ pub fn read(sources: &Sources) -> Reading {
     read_in_parts(sources, PART_BYTES)
 }
 
-/// Reads a scene as [`read`] does, but gives up soon after a flag is set.
+/// Reads a scene as [`read`] does, but stops soon after `cancel` is set.
 ///
 /// # Errors
 ///
-/// The flag is set.
+/// Returns [`Cancelled`] if `cancel` is set.
 pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Cancelled> {
     let reading = read_as_far(sources, PART_BYTES, cancel);
     cancel::unless_set(cancel, reading)
 }
 
-/// Minimum size of the parts that a file is read in, in bytes. A part is long enough to be worth a
-/// thread with a stack of its own, and so short that its tree takes little memory and that reading
-/// can soon be given up.
+/// Minimum size, in bytes, of the parts in which a file is read. A part is long enough to be worth
+/// a thread with a stack of its own. It is short enough that its tree takes little memory and that
+/// cancelling takes effect soon.
 const PART_BYTES: usize = 1 << 16;
 
-/// Reads a scene as [`read`] does, in parts of at least a number of bytes. The parts are parsed and
-/// lowered one after the other, so that there is never a tree of the whole file.
+/// Reads a scene as [`read`] does, in parts of at least `bytes` bytes. The parts are lowered one
+/// after the other, so that the tree of the whole file is never in memory.
 ///
-/// The result does not depend on the parts: a file with mistakes is read again as a whole, because
-/// a report may point to other places.
+/// The result does not depend on the size of the parts: a file with mistakes is read again as a
+/// whole, because one report may refer to places in several parts.
 pub fn read_in_parts(sources: &Sources, bytes: usize) -> Reading {
     read_as_far(sources, bytes, &cancel::NEVER)
 }
 
-/// Reads a scene. The result is of no use if reading is cancelled.
+/// Reads a scene in parts of at least `bytes` bytes. If `cancel` is set, the result is incomplete
+/// and must be discarded.
 fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading {
     in_parts(sources, bytes, cancel).unwrap_or_else(|| {
         let parsed = syntax::parse_unless(&sources.file, SourceId::File, cancel);
@@ -56,7 +59,7 @@ fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading 
     })
 }
 
-/// Reads a file in parts; `None` if it has problems.
+/// Reads a file in parts of at least `bytes` bytes. Returns `None` if it has problems.
 fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Reading> {
     let mut lowering = Lowering::new(sources, Names::default(), cancel);
     let mut overrides = overrides::read(sources, &mut lowering.problems);
@@ -80,7 +83,8 @@ fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Read
     lowering.is_right().then(|| lowering.reading())
 }
 
-/// Reads a scene as [`read`] does, and keeps its tree and the parts that have no errors.
+/// Reads a scene as [`read`] does, and also returns its tree and those parts of the scene that have
+/// no errors.
 pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     let parsed = syntax::parse(&sources.file, SourceId::File);
     let (parts, diagnostics, names) = whole(sources, &parsed, &cancel::NEVER).finish();
@@ -120,7 +124,7 @@ fn whole<'s>(
 }
 
 impl<'s> Lowering<'s> {
-    /// Returns the scene and the problems.
+    /// Returns the scene, if it has no errors, and the problems.
     fn reading(self) -> Reading {
         let (parts, diagnostics, _) = self.finish();
         let failed = diagnostics.iter().any(Diagnostic::is_error);
@@ -130,7 +134,7 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Whether there are no problems so far.
+    /// Returns whether there are no problems so far.
     fn is_right(&self) -> bool {
         self.problems.is_empty() && self.names.problems.borrow().is_empty()
     }
@@ -139,10 +143,10 @@ impl<'s> Lowering<'s> {
     fn finish(mut self) -> (Parts, Vec<Diagnostic>, Names<'s>) {
         let parts = self.build();
         let mut diagnostics = std::mem::take(&mut self.found);
-        // The syntax of a value does not matter if its field is unknown.
+        // Syntax problems within the value of an unknown field are dropped.
         diagnostics.retain(|diagnostic| !starts_in(diagnostic, &self.unknown));
         let mut of_names = Vec::from(self.names.problems.take());
-        // Uses of a name are not always found in the order of the text.
+        // Uses of a name were not always found in the order of the text, so their edits are sorted.
         for fix in of_names.iter_mut().flat_map(|problem| &mut problem.fixes) {
             sort_by_span(&mut fix.edits, |edit| edit.span);
         }
@@ -153,7 +157,7 @@ impl<'s> Lowering<'s> {
             .iter_mut()
             .flat_map(|problem| &mut problem.fixes);
         fixes.for_each(|fix| fix.make_careful(self.sources));
-        // An argument that is used in several places is reported once.
+        // A `--set` argument that is used in several places is reported once.
         let mut in_sets: Vec<Span> = Vec::new();
         let is_reported_once = |it: &Diagnostic| it.is("bare_angle");
         diagnostics.retain(|it| match it.labels.first().map(|label| label.span) {
@@ -169,7 +173,8 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Whether a problem is in one of several places, which are in the order of the text.
+/// Returns whether the first label of a problem starts in one of `places`, which must be in the
+/// order of the text.
 fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
     let Some(label) = diagnostic.labels.first() else {
         return false;
@@ -181,7 +186,8 @@ fn starts_in(diagnostic: &Diagnostic, places: &[Span]) -> bool {
         && place.is_some_and(|place| place.start <= label.span.start)
 }
 
-/// Reports bytes that are not UTF-8, and drops other problems of the words that contain them.
+/// Reports bytes that are not UTF-8, and drops other problems with labels that contain such bytes.
+/// A UTF-16 or binary file is reported as such, and all its other problems are dropped.
 fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
     let invalid = sources.file.invalid_utf8();
     if sources.file.is_utf16() {
@@ -190,7 +196,7 @@ fn invalid_utf8(sources: &Sources, diagnostics: &mut Vec<Diagnostic>) {
         diagnostics.push(syntax::UTF16.at(first, &[], None));
         return;
     }
-    // No text contains zero bytes; up to two may be slips.
+    // Texts contain no zero bytes, except perhaps one or two by mistake.
     let mut start = sources.file.text().as_bytes();
     start = start.get(..BINARY_BYTES).unwrap_or(start);
     if start.contains(&0) && start.iter().filter(|&&byte| byte == 0).count() > 2 {

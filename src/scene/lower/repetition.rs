@@ -1,4 +1,5 @@
-//! Repeated blocks: a block with indices stands for many objects.
+//! Lowers repeated blocks: a block with indices, such as `sphere for i < 8 { … }`, stands for many
+//! objects.
 
 use std::collections::BTreeSet;
 
@@ -16,12 +17,13 @@ use crate::{
     },
 };
 
-/// Maximum number of objects of a scene with repeated blocks.
+/// Maximum number of objects in a scene with repeated blocks. A block that would exceed it is
+/// reported as an error and builds no objects.
 const MOST_OBJECTS: usize = 1 << 24;
 
 impl<'s> Lowering<'s> {
-    /// Builds an object for each combination of the indices' values, the last index fastest. A
-    /// mistake ends the repetition, so that it is reported once.
+    /// Builds an object for each combination of the indices' values; the last index changes
+    /// fastest. Stops at the first combination with a mistake, so that it is reported once.
     pub(super) fn repeated(
         &mut self,
         row: &'static BlockRow,
@@ -29,7 +31,7 @@ impl<'s> Lowering<'s> {
         repetition: &Repetition<'s>,
     ) {
         if repetition.indices.is_empty() {
-            // The names of the indices are not known; these are the likely ones.
+            // The names of the indices are unknown, so uses of the usual names are not reported.
             self.names.know_words("i j k");
             return self.unbuilt(row, block);
         }
@@ -47,7 +49,7 @@ impl<'s> Lowering<'s> {
         } else if are_right {
             match self.combinations(block, repetition) {
                 Some(combinations) => self.objects_of(row, block, repetition, combinations),
-                // Problems of the block are reported even if its head is wrong.
+                // The head is wrong, but problems of the fields are reported, too.
                 None => self.unbuilt_without_indices(row, block, repetition),
             }
         }
@@ -57,11 +59,13 @@ impl<'s> Lowering<'s> {
         self.names.restore(hidden);
     }
 
-    /// Returns the combinations of the indices' values one behind the other, in order; `None` if a
-    /// count is wrong. Each index extends the combinations of those before it by all of its values.
+    /// Returns the combinations of the indices' values, concatenated in order. Reports a wrong
+    /// count and then returns `None`. Each index extends every combination of the indices before it
+    /// by all of its values.
     ///
-    /// Counts that depend on no index are evaluated before memory is taken for any combination, so
-    /// that a product that is too large is reported whatever the order of its factors.
+    /// Counts that depend on no index are evaluated before any combination is stored. So a product
+    /// of counts that is too large is reported without much memory, whatever the order of the
+    /// indices.
     fn combinations(&mut self, block: &Block<'s>, repetition: &Repetition<'s>) -> Option<Vec<u32>> {
         let most = MOST_OBJECTS.saturating_sub(self.objects.len());
         if !self.are_counted_before(repetition) {
@@ -101,7 +105,8 @@ impl<'s> Lowering<'s> {
                     self.too_many(repetition, &found);
                     return None;
                 }
-                // If a later index has no values, this one may have any number of them.
+                // If a later index has no values, there are no combinations at all, so nothing is
+                // stored.
                 if behind > 0 {
                     for last in 0..count as u32 {
                         longer.extend_from_slice(values);
@@ -163,7 +168,7 @@ impl<'s> Lowering<'s> {
             };
             let is_built = self.is_wanted() && self.object(lowered, values);
             if is_built && self.problems.len() > before {
-                // A warning of one repetition is not repeated for the others.
+                // A warning that several objects of the block cause is reported once.
                 for problem in self.problems.split_off(before) {
                     let place = problem.labels.first().map(|label| label.span);
                     if warnings.insert((problem.code.clone(), place)) {
@@ -199,7 +204,7 @@ impl<'s> Lowering<'s> {
         self.unbuilt(row, block);
     }
 
-    /// Gives the indices their values.
+    /// Sets the indices to `values`.
     fn set_indices(&mut self, repetition: &Repetition<'s>, values: &[u32]) {
         for (index, &value) in repetition.indices.iter().zip(values) {
             let value = Value::Number(f64::from(value));
@@ -207,14 +212,15 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Whether the text of a value mentions an index.
+    /// Returns whether the text of a value contains the name of an index.
     fn depends(&self, value: Span, repetition: &Repetition<'_>) -> bool {
         let text = self.sources.text(value);
         let mut indices = repetition.indices.iter();
         indices.any(|index| has_name(text, index.name.text))
     }
 
-    /// Whether no count uses its own index or a later one; reports it otherwise.
+    /// Returns whether every count uses only earlier indices. Otherwise reports the first count
+    /// that does not.
     fn are_counted_before(&mut self, repetition: &Repetition<'s>) -> bool {
         for (at, index) in repetition.indices.iter().enumerate() {
             let mut later = repetition.indices.iter().skip(at);
@@ -241,7 +247,8 @@ impl<'s> Lowering<'s> {
         true
     }
 
-    /// Whether the name of an index is free; reports it otherwise.
+    /// Returns whether the name of an index is not defined yet, and defines it with an unknown
+    /// value. Otherwise reports it.
     fn is_index(&mut self, name: Name<'s>) -> bool {
         let text = name.text;
         let problem = if let Some(what) = predefined(text) {
@@ -263,7 +270,8 @@ impl<'s> Lowering<'s> {
     fn unused_index(&mut self, name: Name<'s>, block: &Block<'s>) {
         let behind = Span::new(name.span.source, name.span.end, block.span.end);
         let text = self.sources.text(behind);
-        // A use in other capitals is reported itself.
+        // A use of the index in other capitals is reported as an undefined name, so the index is
+        // not reported as unused.
         let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
         if block.open.is_none()
             || has_name(text, name.text)
@@ -281,7 +289,8 @@ impl<'s> Lowering<'s> {
             .push(problem.at(name.span, "no value depends on it").help(help));
     }
 
-    /// Returns the number of an index's values, given the values of the indices before it.
+    /// Returns the number of values of an index; the indices before it must have values. Reports a
+    /// count that is not a whole number ≥ 0 and then returns `None`.
     fn count(&mut self, index: &Index<'s>) -> Option<usize> {
         let (tree, name) = (&index.count, index.name.text);
         let value =
@@ -329,7 +338,8 @@ impl<'s> Lowering<'s> {
             .push(problem.help("let the indices count less far, or take some of them away"));
     }
 
-    /// Adds the current values of the indices to the problems after the first `before`.
+    /// Adds labels with the current values of the indices to the problems from the index `before`
+    /// on.
     fn label_with_indices(
         &mut self,
         before: usize,
@@ -349,9 +359,11 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem of the first combination is often one of all.
+        // A problem with the first combination often occurs with all combinations. Such a problem
+        // gets a label with the indices only if its value depends on one.
         let is_first = values.iter().all(|&value| value == 0);
-        // A value that fits one combination must not replace a formula that differs by index.
+        // A fix must not replace a formula that depends on an index by the value for one
+        // combination.
         let keeps = |edit: &Edit| {
             let mut indices = repetition.indices.iter();
             let written = self.sources.text(edit.span);
@@ -370,7 +382,8 @@ impl<'s> Lowering<'s> {
                 let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
                 problem.help = Some(help.to_owned());
             }
-            // Typical of rows of triangles that meet in a point.
+            // Triangles with vertices on one line are typical of rows of triangles that meet in a
+            // point.
             if problem.is("on_one_line")
                 && let Some(help) = &mut problem.help
             {
@@ -386,7 +399,7 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports a repetition of a block that is no object.
+    /// Reports indices of a block that is not an object.
     pub(super) fn not_repeated(&mut self, row: &BlockRow, repetition: &Repetition<'s>) {
         let (name, span) = (row.name, repetition.span());
         let help = format!("take this away; only objects are repeated: a scene has one `{name}`");
@@ -397,7 +410,7 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Returns the span of the first use of a name in a value.
+/// Returns the span of the first use of `name` in a value, if there is one.
 fn use_of(value: &tree::Value<'_>, name: Name<'_>) -> Option<Span> {
     match value.kind {
         ValueKind::Name(used) => (used == name.text).then_some(value.span),

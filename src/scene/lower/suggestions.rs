@@ -1,14 +1,15 @@
-//! Withdraws suggestions that would lead to another error.
+//! Withdraws suggested names that would lead to another error.
 //!
-//! In: a function that evaluates a value. Out: its reports, in which a name is suggested only if
-//! the value with that name has no further error: of a type, a number of arguments, or a condition
-//! of its field.
+//! In: a function that evaluates a value. Out: its result and reports. A name is suggested only if
+//! the value with that name has no further error, such as a wrong type, a wrong number of
+//! arguments, or a broken condition of its field.
 
 use super::lowering::Lowering;
 use crate::{diagnostic::Diagnostic, scene::eval::Suggestion, source::Span};
 
 impl<'s> Lowering<'s> {
-    /// Evaluates a value, and then evaluates it again with each name that was suggested.
+    /// Evaluates a value with `evaluate` and returns the result. Then evaluates it again with each
+    /// suggested name, and withdraws suggestions that cause more errors.
     pub(super) fn with_tried_suggestions<T>(
         &mut self,
         value: Span,
@@ -37,7 +38,7 @@ impl<'s> Lowering<'s> {
         found
     }
 
-    /// Removes a suggestion from its report.
+    /// Removes the fixes for a suggestion from its report, and replaces the help.
     fn withdraw(&mut self, suggestion: Suggestion<'s>) {
         self.names.withdraw(suggestion.name);
         let mut of_names = self.names.problems.borrow_mut();

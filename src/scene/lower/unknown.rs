@@ -1,7 +1,7 @@
-//! Reports fields that a block does not have, with what was probably meant.
+//! Reports fields that a block does not have, with the fields that were probably meant.
 //!
-//! A fix renames a field only if the result has no error: the block may still be given that field,
-//! and the value is of its type or can be converted.
+//! A fix renames a field only if that leads to no error: the block may still be given the new
+//! field, and the value has the field's type or can be converted to it.
 
 use super::{fixes::quoted, lowering::Lowering};
 use crate::{
@@ -21,25 +21,27 @@ use crate::{
     syntax::tree::{self, Name, ValueKind},
 };
 
-/// The largest possible picture.
+/// Largest possible picture. It stands in for the image when a sampler is checked before the
+/// picture's size is known.
 const LARGEST: Image = Image {
     width: 1 << 20,
     height: 1 << 20,
     background: Color::BLACK,
 };
 
-/// The fields that a word which is no field was probably meant to be.
+/// Fields that an unknown word was probably meant to be.
 struct Meant {
     /// The fields.
     fields: Vec<&'static str>,
     /// The fields in words.
     shown: String,
-    /// Fixes that write the fields, if the result has no error.
+    /// Fixes that write the fields; empty if they would lead to an error.
     fixes: Vec<Fix>,
 }
 
 impl<'s> Lowering<'s> {
-    /// Reports a field that the block does not have.
+    /// Reports a field that the block does not have, and records the fields that were probably
+    /// meant, so that they are not reported as missing.
     pub(super) fn unknown_field(&mut self, field: &tree::Field<'s>, block: &mut LoweredBlock<'s>) {
         if field.value.span.source == SourceId::File {
             self.unknown.push(field.value.span);
@@ -55,8 +57,9 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports words that stand for the parts of one field, or for all fields of a way, such as
-    /// `p1`, `p2` and `p3`, in one report. Returns the spans of the words.
+    /// Reports several unknown words together that stand for the parts of one field, or for several
+    /// fields, such as `p1`, `p2` and `p3` for the vertices of a triangle. Returns the spans of
+    /// these words.
     pub(super) fn parted(
         &mut self,
         fields: &[tree::Field<'s>],
@@ -64,7 +67,7 @@ impl<'s> Lowering<'s> {
     ) -> Vec<Span> {
         let (row, mut taken) = (block.row, Vec::new());
         let is_unknown = |it: &tree::Field<'_>| row.field(it.name.text).is_none();
-        // Most blocks have no unknown field.
+        // Most blocks have no unknown field, so this case is fast.
         if !fields.iter().any(is_unknown) {
             return taken;
         }
@@ -97,7 +100,8 @@ impl<'s> Lowering<'s> {
         taken
     }
 
-    /// Reports words that stand for the parts of one field, or for one of several fields each.
+    /// Reports the fields `found`, whose names stand for the parts of the field `names[0]`, or, if
+    /// there are several `names`, for one of them each.
     fn report_parts(
         &mut self,
         row: &BlockRow,
@@ -135,8 +139,8 @@ impl<'s> Lowering<'s> {
         self.problems.push(problem.fixes(are_right.then_some(fix)));
     }
 
-    /// Reports an unknown field, also of a `--set` argument. Returns the fields that were probably
-    /// meant.
+    /// Reports an unknown field of a block or of a `--set` argument. Returns the fields that were
+    /// probably meant.
     fn report_unknown(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -169,7 +173,8 @@ impl<'s> Lowering<'s> {
         fields
     }
 
-    /// Returns what an unknown field was probably meant to be.
+    /// Returns the fields that the unknown field `name` was probably meant to be; `None` if there
+    /// is no guess.
     fn meant(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -183,7 +188,8 @@ impl<'s> Lowering<'s> {
         let is_tried = |words| is_of_file && suggest::is_among(word, words);
         if let Some(field) = row.field_tried(word) {
             let meant = self.renamed(block, field, name, value, whole);
-            // A field of another block may belong there.
+            // If another kind of block has this field, the field may have been meant for such a
+            // block.
             let is_known = schema::is_word(word);
             return Some(if is_known { meant.unsure() } else { meant });
         }
@@ -226,7 +232,7 @@ impl<'s> Lowering<'s> {
                 written,
             ));
         }
-        // The word may be the value of a field whose name is missing.
+        // The word may be a value whose field's name is missing.
         let takes = match value.kind {
             ValueKind::Missing if schema::method(word).is_some() => Some(Type::Method),
             ValueKind::Missing if css::color(word).is_some() => Some(Type::Color),
@@ -251,7 +257,9 @@ impl<'s> Lowering<'s> {
         Some(if is_near { meant } else { meant.unsure() })
     }
 
-    /// Renames a field to the one that was meant. An argument keeps the `=` between name and value.
+    /// Returns the meaning `field` of an unknown field, with a fix that renames it and converts its
+    /// value if necessary. In a `--set` argument, a value cannot be converted, and the name is
+    /// replaced alone.
     fn renamed(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -275,10 +283,10 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Evaluates a value. Only problems of its names are reported.
+    /// Evaluates a value, but reports only its undefined names.
     fn evaluate_quietly(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         if let ValueKind::Name(name) = value.kind {
-            // The name may be a word that only the unknown field accepts.
+            // The name may be the word of a method, which only a field for methods accepts.
             let is_known = self.names.place(name).is_some() || css::color(name).is_some();
             if !is_known && matches!(wanted, None | Some(Type::Method)) {
                 return schema::method(name).map(Value::Method);
@@ -292,8 +300,9 @@ impl<'s> Lowering<'s> {
         found
     }
 
-    /// Returns how a value has to be written for a field, and how sure that is; `None` if the block
-    /// cannot be given the field, or the value does not fit and cannot be converted.
+    /// Returns the text of a value as the block's field `row` needs it, and whether replacing it is
+    /// safe. Returns `None` if the block cannot be given that field, or if the value does not fit
+    /// and cannot be converted.
     fn fitting(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -331,19 +340,20 @@ impl<'s> Lowering<'s> {
         (self.errors_of(&with_it) <= self.errors_of(block)).then_some(written)
     }
 
-    /// Returns the number of errors that the fields of a block make together, without a report.
+    /// Returns the number of errors that building the block from its fields causes. Reports
+    /// nothing.
     fn errors_of(&mut self, block: &LoweredBlock<'s>) -> usize {
         let problems = std::mem::take(&mut self.problems);
         match block.row.kind {
             BlockKind::Camera => {
                 self.camera(block);
             }
-            // The size of the picture may not be known yet.
+            // The size of the picture may be unknown yet, so the largest one is assumed.
             BlockKind::Sampler => {
                 self.sampler(block, Some(LARGEST));
             }
             BlockKind::Image => {}
-            // Any other kind is an object.
+            // All other kinds of blocks are objects.
             _ => {
                 Shape::lower(block, &mut self.problems);
             }
@@ -352,7 +362,8 @@ impl<'s> Lowering<'s> {
         tried.iter().filter(|problem| problem.is_error()).count()
     }
 
-    /// Writes several fields, each with a part of a value.
+    /// Returns the text of `fields`, each with one part of the list `value`, and whether writing it
+    /// is safe. Returns `None` if a part does not fit its field.
     fn spread(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -371,7 +382,7 @@ impl<'s> Lowering<'s> {
         let written: Option<Vec<(String, Applicability)>> = written.collect();
         let (written, applicability): (Vec<String>, Vec<Applicability>) =
             written?.into_iter().unzip();
-        // Comments between the parts would be lost.
+        // A comment between the parts would be lost, so the fix is then not safe.
         let text = self.sources.text(value.span);
         let has_comment = text.contains("//") || text.contains("/*");
         let least = Applicability::safe_if(!has_comment);
@@ -396,7 +407,7 @@ impl Meant {
         }
     }
 
-    /// Marks the fixes as unsafe, because something else may be meant.
+    /// Marks the fixes as unsafe, because the word may have another meaning.
     fn unsure(mut self) -> Self {
         for fix in &mut self.fixes {
             fix.applicability = fix.applicability.max(Applicability::Unsafe);
@@ -404,7 +415,7 @@ impl Meant {
         self
     }
 
-    /// Joins two meanings. A value that fits only one of them leaves only that one's fix.
+    /// Joins two possible meanings, with the fixes of both.
     fn or(mut self, other: Self) -> Self {
         self.shown += &format!(" or {}", other.shown);
         self.fields.extend(other.fields);

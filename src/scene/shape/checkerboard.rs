@@ -1,4 +1,4 @@
-//! The checkerboard.
+//! The shape `checkerboard`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
 use serde_json::{Value as Json, json};
@@ -14,9 +14,9 @@ use crate::{
 /// The infinite checkerboard in a horizontal plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checkerboard {
-    /// The height of the plane.
+    /// Height of the plane in metres, i.e. its y coordinate.
     pub y: f64,
-    /// The side of a square, > 0.
+    /// Side of a square in metres, > 0.
     pub square: f64,
     /// The colours of the even and of the odd squares.
     pub colors: [Color; 2],

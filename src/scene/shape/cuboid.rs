@@ -1,4 +1,4 @@
-//! The box.
+//! The shape `box`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
 use serde_json::{Value as Json, json};
@@ -64,8 +64,9 @@ impl Cuboid {
         })
     }
 
-    /// Returns the centre or the size, by the name of the field, without the digits that the
-    /// rounding of two corners leaves.
+    /// Returns the value of the field `name` if that is `center` or `size`; otherwise `None`. The
+    /// value is rounded to fifteen digits, which removes the rounding errors of computing it from
+    /// the corners.
     pub(super) fn center_or_size(&self, name: &str) -> Option<DVec3> {
         if name == BOX.center.name {
             Some(tidy(self.min.midpoint(self.max)))
@@ -76,8 +77,8 @@ impl Cuboid {
         }
     }
 
-    /// Moves the box to another centre, or gives it another size, by the name of the field. Returns
-    /// whether the field is one of these.
+    /// Sets the field `name`, `center` or `size`, to `to` by changing the corners. Returns `false`
+    /// and changes nothing if `name` is another field.
     pub(super) fn set_center_or_size(&mut self, name: &str, to: DVec3) -> bool {
         let (center, half) = if name == BOX.center.name {
             (to, (self.max - self.min) / 2.0)
@@ -155,7 +156,7 @@ fn empty(block: &LoweredBlock<'_>, min: DVec3, max: DVec3, problems: &mut Proble
     let problem = error("empty_box", format!("the box has no extent along {axis}"));
     problems.push(match (block.given(BOX.min), block.given(BOX.max)) {
         (Some(low_given), Some(high_given)) => {
-            // If the corners are equal on an axis, ordering them does not help.
+            // Ordering the coordinates of the corners does not help if two of them are equal.
             let in_order = min.cmpne(max).all().then(|| {
                 let corners = [(low_given, min.min(max)), (high_given, min.max(max))];
                 let edits = corners.map(|(given, corner)| Edit::new(given.span, exactly(corner)));
@@ -179,13 +180,13 @@ fn empty(block: &LoweredBlock<'_>, min: DVec3, max: DVec3, problems: &mut Proble
     });
 }
 
-/// Writes a vector with all its digits.
+/// Returns the text of a vector with all digits of its coordinates.
 fn exactly(vector: DVec3) -> String {
     let [x, y, z] = vector.to_array();
     format!("({x}, {y}, {z})")
 }
 
-/// Rounds each coordinate to fifteen digits.
+/// Rounds each coordinate to fifteen significant digits.
 fn tidy(v: DVec3) -> DVec3 {
     let tidy = |x: f64| format!("{x:.14e}").parse().unwrap_or(x);
     DVec3::from(v.to_array().map(tidy))

@@ -1,10 +1,11 @@
-//! What an object is: one of the kinds of shapes, with its colours.
+//! Shapes of objects, with their colours.
 //!
-//! Each kind has a file, which says how the kind is lowered from its block, where it is and how far
-//! it reaches, what its fields are, and how it is described. Here is only the choice between them.
+//! Each kind of shape has a file. It defines how the kind is lowered from its block, its position
+//! and extent, its fields, and its description. This file only dispatches to the kinds.
 //!
-//! A new kind begins with [`BlockKind`] and its row in the schema. From there the compiler and the
-//! tests lead to everything else; CONTRIBUTING.md lists where to, and what nothing leads to.
+//! A new kind begins with [`BlockKind`] and its row in the schema. From there, compiler errors and
+//! failing tests lead to everything else; CONTRIBUTING.md lists the places, including those to
+//! which nothing leads.
 
 mod checkerboard;
 mod cuboid;
@@ -76,8 +77,8 @@ impl From<Checkerboard> for Shape {
 }
 
 impl Shape {
-    /// Makes an object's shape of its block. Returns `None` if a value is missing or wrong, which
-    /// is reported here only if the values contradict each other.
+    /// Makes the shape of an object's block. Returns `None` if a value is missing or wrong. Reports
+    /// only values that contradict each other; other problems were reported before.
     pub(super) fn lower(block: &LoweredBlock<'_>, problems: &mut Problems) -> Option<Self> {
         Some(match block.row.kind {
             BlockKind::Sphere => Self::Sphere(Sphere::lower(block)?),
@@ -103,14 +104,14 @@ impl Shape {
         schema::of_kind(self.block_kind()).name
     }
 
-    /// Returns the shape's colours: of a box those of the faces across x, y and z, of a
-    /// checkerboard those of the even and of the odd squares. The last one is repeated up to
-    /// three.
+    /// Returns the shape's colours: for a box, those of the faces across x, y and z; for a
+    /// checkerboard, those of the even and the odd squares. If there are fewer than three, the last
+    /// one is repeated.
     pub fn colors(&self) -> [Color; 3] {
         for_each_kind!(self, own => own.colors())
     }
 
-    /// Returns the contents of a checkerboard; `None` for any other shape.
+    /// Returns the checkerboard, or `None` for any other shape.
     pub fn checkerboard(&self) -> Option<&Checkerboard> {
         match self {
             Self::Checkerboard(board) => Some(board),
@@ -118,13 +119,13 @@ impl Shape {
         }
     }
 
-    /// Returns the middle of the shape; `None` if it has no end.
+    /// Returns the centre of the shape's bounding sphere; `None` if the shape is infinite.
     pub fn center(&self) -> Option<DVec3> {
         self.bounding_sphere().map(|(center, _)| center)
     }
 
-    /// Returns the least and the greatest coordinates of the shape; `None` if it has no end. The
-    /// vertices of a triangle are computed by the caller's function.
+    /// Returns the least and the greatest coordinates of the shape; `None` if it is infinite.
+    /// `vertices` computes the vertices of a triangle.
     pub fn bounding_box(
         &self,
         vertices: impl FnOnce(&Triangle) -> [DVec3; 3],
@@ -140,20 +141,21 @@ impl Shape {
         }
     }
 
-    /// Returns the centre and the radius of a sphere around the shape; `None` if the shape has no
-    /// end.
+    /// Returns centre and radius of a sphere that contains the shape; `None` if the shape is
+    /// infinite.
     pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
         for_each_kind!(self, own => own.bounding_sphere())
     }
 
-    /// Returns the greatest of the shape's lengths and of its points' coordinates relative to a
-    /// point.
+    /// Returns the greatest absolute value among the shape's lengths, such as a radius, and the
+    /// coordinates of its points relative to `from`.
     pub fn greatest_length(&self, from: DVec3) -> f64 {
         for_each_kind!(self, own => own.greatest_length(from))
     }
 
-    /// Returns the value of a field by its name; `None` if the shape is not written with it. A box
-    /// has all fields of both of its ways.
+    /// Returns the value of a field by its name. Returns `None` if the shape was not written with
+    /// the field, such as `v0` of a triangle that is given by its centroid. For a box, all of
+    /// `min`, `max`, `center` and `size` are available.
     pub fn field(mut self, name: &str) -> Option<Value> {
         if let Self::Box(cuboid) = &self
             && let Some(value) = cuboid.center_or_size(name)
@@ -163,8 +165,8 @@ impl Shape {
         Some(self.field_mut(name)?.get())
     }
 
-    /// Returns the shape with another value of a field that it is written with; `None` if there is
-    /// no such field, or the value is of another type. Conditions are not checked.
+    /// Returns a copy with another value of a field. Returns `None` if the shape was not written
+    /// with that field, or if the value has another type. Does not check the language's conditions.
     pub fn with_field(mut self, name: &str, value: Value) -> Option<Self> {
         if let (Self::Box(cuboid), Value::Vector(to)) = (&mut self, value)
             && cuboid.set_center_or_size(name, to)
@@ -187,13 +189,13 @@ impl Shape {
         for_each_kind!(self, own => own.field_mut(name))
     }
 
-    /// Whether the language's conditions hold, as far as rounded numbers tell.
+    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
+    /// rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         for_each_kind!(self, own => own.is_possible())
     }
 
-    /// Describes the shape in one line. The vertices of a triangle are computed by the caller's
-    /// function.
+    /// Describes the shape in one line. `vertices` computes the vertices of a triangle.
     pub fn summary(&self, vertices: impl FnOnce(&Triangle) -> [DVec3; 3]) -> String {
         match self {
             Self::Sphere(sphere) => sphere.summary(),
@@ -203,8 +205,8 @@ impl Shape {
         }
     }
 
-    /// Returns the shape's members in the JSON of `inspect`. The vertices of a triangle are
-    /// computed by the caller's function.
+    /// Returns the members that describe the shape in the JSON output of `pinhole inspect`.
+    /// `vertices` computes the vertices of a triangle.
     pub fn facts(
         &self,
         vertices: impl FnOnce(&Triangle) -> [DVec3; 3],
@@ -233,7 +235,8 @@ mod tests {
         source::{Source, Sources},
     };
 
-    /// For each way of the block's choices the fields that can be given together.
+    /// Returns sets of fields that can be given together, such that each way of each of the block's
+    /// choices occurs in one of them.
     fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {
         let most = row.choices.iter().map(|choice| choice.ways.len()).max();
         (0..most.unwrap_or(1)).map(move |way| {

@@ -1,4 +1,4 @@
-//! The sphere.
+//! The shape `sphere`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
 use serde_json::{Value as Json, json};
@@ -15,7 +15,7 @@ use crate::{
 pub struct Sphere {
     /// The centre.
     pub center: DVec3,
-    /// The radius, > 0.
+    /// Radius in metres, > 0.
     pub radius: f64,
     /// The colour.
     pub color: Color,

@@ -1,4 +1,4 @@
-//! The triangle.
+//! The shape `triangle`: how it is lowered, its fields, its extent and its description.
 
 use glam::DVec3;
 use serde_json::{Value as Json, json};
@@ -21,30 +21,32 @@ pub struct Triangle {
     pub color: Color,
 }
 
-/// The vertices of a triangle, in either of the language's two ways.
+/// Vertices of a triangle, in either of the language's two forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TriangleOutline {
-    /// The vertices themselves, which do not lie on one line.
+    /// The vertices themselves. They do not lie on one line.
     Vertices([DVec3; 3]),
-    /// Centroid, normal and sides.
+    /// Centroid, normal, sides and spin.
     Centered(CenteredTriangle),
 }
 
-/// A triangle by centroid, normal and sides.
+/// A triangle that is given by centroid, normal, sides and spin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CenteredTriangle {
     /// The mean of the vertices.
     pub centroid: DVec3,
     /// The normal, not zero, of any length.
     pub normal: DVec3,
-    /// The lengths (a, b, c) of the sides, c that of the base; they form a triangle.
+    /// Lengths (a, b, c) of the sides in metres; c is the base. They satisfy the triangle
+    /// inequality.
     pub sides: DVec3,
-    /// The turn in the triangle's plane, counter-clockwise seen from the tip of the normal.
+    /// Rotation in the triangle's plane about the centroid, counter-clockwise as seen from the tip
+    /// of the normal.
     pub spin: Angle,
 }
 
 impl TriangleOutline {
-    /// Returns the mean of the vertices, rounded.
+    /// Returns the mean of the vertices, with rounding errors.
     pub fn centroid(&self) -> DVec3 {
         match self {
             // Each vertex is divided first, so that the sum does not overflow.
@@ -135,7 +137,7 @@ impl Triangle {
                 let distances = vertices.map(|vertex| vertex.distance(centroid));
                 distances.into_iter().fold(0.0, f64::max)
             }
-            // A vertex is no farther from the centroid than the longest side is long.
+            // The distance from the centroid to a vertex is at most the length of the longest side.
             TriangleOutline::Centered(triangle) => triangle.sides.max_element(),
         };
         Some((centroid, radius))

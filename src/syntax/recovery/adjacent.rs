@@ -1,5 +1,5 @@
-//! Several values where one is expected: the parts of a list without parentheses, a product without
-//! its operator, a number with commas, or the value of a field whose name is missing.
+//! Reads several values where one is expected: the parts of a list without parentheses, a product
+//! without its operator, a number with commas, or the value of a field whose name is missing.
 
 use super::{Recovery, example, is_plain_number};
 use crate::{
@@ -22,7 +22,7 @@ impl<'s> Recovery<'_, 's> {
         texts.collect::<Vec<_>>().join(", ")
     }
 
-    /// Reports several values that stand where one is expected. Returns the value that they
+    /// Reports `values` if there are several, since one is expected. Returns the value that they
     /// probably mean, or a bad value if that is uncertain.
     pub(super) fn adjacent_values(
         &mut self,
@@ -33,8 +33,7 @@ impl<'s> Recovery<'_, 's> {
             [] => return bad(self.behind()),
             [_] => return values.swap_remove(0),
             [first, second, rest @ ..] => {
-                // The span ends with the last value, since a comment of another language may follow
-                // it.
+                // A comment of another language may follow, so the span ends with the last value.
                 let last = rest.last().unwrap_or(second);
                 (first.clone(), second.clone(), first.span.to(last.span))
             }
@@ -65,13 +64,14 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, format!("rgb({parts})"));
                 self.report(&said, span, &[example(takes)], fix);
             }
-            // Digits are grouped by spaces, as in `6 371 000`.
+            // Spaces in a number, as in `6 371 000`, are meant to group its digits.
             (None | Some(Type::Number), _) if numbers && commas == 0 && are_thousands(whole) => {
                 let label = "no spaces stand in a number";
                 let fix = replace(span, whole.replace(' ', ""));
                 self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
-            // `2 ball` in place of a vector is a product, whatever type `ball` has.
+            // In place of a vector, `2 ball` is a product: both a number and a vector `ball` can be
+            // multiplied by 2.
             (Some(Type::Vector), 2) if commas == 0 && self.is_named_factor(&first, &second) => {
                 self.missing_between(&first, &second);
             }
@@ -105,8 +105,8 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reports a list without parentheses. If the list begins within a word, as in `center1.6, 1,
-    /// 0`, a part of its first value is missing, and there is no fix.
+    /// Reports a list without parentheses. In `center1.6, 1, 0`, the first value is only the end of
+    /// a word, so there is no fix.
     pub(super) fn missing_parentheses(&mut self, span: Span, fix: Option<Fix>) {
         let help = example(self.context.takes);
         let before = self.line_before(span.start);
@@ -115,8 +115,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISSING_PARENTHESES, span, &[help], fix);
     }
 
-    /// Reports two values with nothing between them: an operator is missing, or a field's name
-    /// before the second value.
+    /// Reports two values with nothing between them. Either an operator is missing, or the second
+    /// value belongs to a field whose name is missing.
     pub(super) fn missing_between(&mut self, left: &Value<'s>, right: &Value<'s>) {
         let is_whole = self.is_color(left) || matches!(left.kind, ValueKind::Tuple(_));
         let (l, r) = (self.short(left.span), self.short(right.span));
@@ -130,11 +130,12 @@ impl<'s> Recovery<'_, 's> {
             };
             return self.report(said, right.span, &[&r], None);
         }
-        // `2 pi` is a product if one value is a number literal and the other surely is a number.
+        // Two values are a product, as in `2 pi`, if one is a number literal and the other surely
+        // is a number.
         let sign = Span::new(self.id, left.span.end, right.span.start);
         let are_numbers = (is_plain_number(left) && self.is_factor(right))
             || (self.is_factor(left) && is_plain_number(right));
-        // So are `2 ball` and `(n * 0.28) ball` in place of a vector or an angle.
+        // In place of a vector or an angle, `2 ball` and `(n * 0.28) ball` are products, too.
         let is_scaled = matches!(self.context.takes, Some(Type::Vector | Type::Angle))
             && self.is_named_factor(left, right);
         let is_product =
@@ -144,13 +145,14 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISSING_OPERATOR, right.span, &[&l, &r], fix);
     }
 
-    /// Reports that a `(` is missing, as in `sin30deg * i)`, where the function's name is joined to
-    /// its argument and the `)` is the next token. Reports it only if exactly one such name stands
-    /// between `start` and the `)`. Returns whether it was reported.
+    /// Reports a missing `(`, as in `sin30deg * i)`, where the function's name is joined to its
+    /// argument. The `)` is the next token. Reports the mistake only if exactly one such name
+    /// stands between `start` and the `)`. Returns whether it was reported.
     pub(super) fn unopened_call(&mut self, start: usize) -> bool {
         let end = self.here().start;
-        // Maximum length, in bytes, of a value that is searched. A value with many surplus
-        // parentheses is searched once for each of them, so this limits the time.
+        // Maximum length, in bytes, of the text between `start` and the `)`. In a longer text,
+        // nothing is searched or reported. A value is searched again for each of its surplus `)`,
+        // so the limit bounds the time.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {
             return false;
@@ -238,8 +240,8 @@ impl<'s> Recovery<'_, 's> {
         if !(rest.iter().all(is_digits) && (is_grouped || is_decimal)) {
             return false;
         }
-        // A comma before exactly three digits separates thousands: few decimal fractions have
-        // exactly three digits.
+        // If exactly three digits follow the only comma, the comma separates thousands: few decimal
+        // fractions have exactly three digits.
         let is_whole_number = are_thousands && is_single && *head != "0";
         let (message, sign) = if is_grouped || is_whole_number {
             ("no commas stand in a number", "_")
@@ -267,7 +269,8 @@ fn are_thousands(text: &str) -> bool {
         && text.bytes().all(|it| it.is_ascii_digit() || it == b' ')
 }
 
-/// Returns whether a `)` after `value` changes nothing, wherever its `(` would be.
+/// Returns whether a surplus `)` after `value` can be removed: wherever its `(` was meant, the
+/// parentheses would not change the value.
 pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
     match &value.kind {
         ValueKind::Chain { first, rest } => {
@@ -281,8 +284,8 @@ pub(super) fn is_same_in_parentheses(value: &Value<'_>) -> bool {
             })
         }
         ValueKind::Negation { .. } => is_plain_number(value),
-        // In `normalize(1, 0, 0))` the call has a wrong number of arguments, so the `)` may belong
-        // to a missing `(`.
+        // If the call has a wrong number of arguments, as in `normalize(1, 0, 0))`, the `)` may
+        // belong to a `(` that is missing in the call.
         ValueKind::Call(call)
             if schema::function(call.function.text)
                 .is_some_and(|row| !row.accepts(call.arguments.len())) =>

@@ -1,4 +1,4 @@
-//! Reads definitions, also those that lack their `let`, their name, their `=` or their value.
+//! Reads definitions, including those that lack their `let`, their name, their `=` or their value.
 
 use super::{Recovery, is_name};
 use crate::{
@@ -12,12 +12,13 @@ use crate::{
     },
 };
 
-/// Words that other languages use for `let`.
+/// Words that start a definition in other languages, separated by spaces.
 const OTHER_LETS: &str =
     "var const def define set val auto local int float double number vec3 vector";
 
-/// Maximum number of preceding items that are searched for a definition of the same name. Without
-/// this limit, each line of a long text would be compared with all items before it.
+/// Maximum number of preceding items that are searched for a definition of the same name; earlier
+/// definitions are not found. Without this limit, the time would grow with the square of the number
+/// of lines.
 const ITEMS_BEFORE: usize = 64;
 
 impl<'s> Recovery<'_, 's> {
@@ -44,7 +45,7 @@ impl<'s> Recovery<'_, 's> {
         self.clear_uncertain_fixes(problems_before);
         definition.span = keyword.to(definition.value.span);
         let is_right = self.problems.len() == problems_before;
-        // The next item may start with a name; `;` and `,` may separate it.
+        // The definition may be followed by a name, which starts the next item, or by a separator.
         let is_next = self.is_name(0) || (is_right && matches!(self.word(0), ";" | ","));
         if !is_next && !self.is_boundary() {
             if is_right {
@@ -81,8 +82,8 @@ impl<'s> Recovery<'_, 's> {
         value
     }
 
-    /// Reads the name after `let`. If several tokens stand before the `=`, all of them are reported
-    /// as a bad name. Returns `None` if the name is missing.
+    /// Reads the name after `let`. Several tokens before the `=` are reported together as a bad
+    /// name. Returns `None` if the name is missing.
     fn name_of_definition(&mut self, keyword: Span) -> Option<Name<'s>> {
         let is_sign = matches!(self.word(0), "=" | ":" | ":=");
         if is_sign || self.is_end_of_definition() || self.is_head(0) {
@@ -123,7 +124,7 @@ impl<'s> Recovery<'_, 's> {
         None
     }
 
-    /// Returns whether the definition ends here, so that no value can follow.
+    /// Returns whether the next token ends the definition, so that its value is missing.
     fn is_end_of_definition(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}" | ";")
@@ -133,8 +134,8 @@ impl<'s> Recovery<'_, 's> {
                 && (!self.words.is_value(word) || self.is_head(0)))
     }
 
-    /// Reads a definition that lacks its `let`, as in `x = 3` or `var x = 3`. Returns whether the
-    /// line is one.
+    /// Reads a definition that lacks its `let`, as in `x = 3` or `var x = 3`. Returns `false` and
+    /// reads nothing if the line is not such a definition.
     pub(super) fn missing_let(&mut self) -> bool {
         let (word, start) = (self.word(0), self.here());
         let is_let = suggest::nearest(word, ["let"]).is_some()
@@ -174,7 +175,7 @@ impl<'s> Recovery<'_, 's> {
             let right = shorten(written);
             let title = format!("write `let {text} = {right}`");
             let fix = (is_right && is_next).then(|| Fix::new(title, edits));
-            // The other language's word may mean more than `let`, so the fix is not safe.
+            // A word of another language may mean more than `let`, so replacing it is not safe.
             let is_foreign = !is_plain && suggest::nearest(word, ["let"]).is_none();
             let said = say::MISSING_LET.safe_if(!is_foreign);
             self.report(&said, start, &[&text, &right], fix);

@@ -1,4 +1,4 @@
-//! The fields of a block.
+//! Reads the fields of a block.
 
 use super::{Context, Recovery, foreign::CommentPosition};
 use crate::{
@@ -14,8 +14,8 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads a block after its `{`, up to and including the token `close`, or up to where that
-    /// token is missing.
+    /// Reads the fields of a block after its `{`. Ends after the token `close`, or where that token
+    /// is missing.
     pub(super) fn body(&mut self, block: &mut Block<'s>, close: &'static str) {
         let within = Context {
             kind: block.kind.map_or("", |kind| kind.text),
@@ -25,7 +25,8 @@ impl<'s> Recovery<'_, 's> {
         };
         let outside = std::mem::replace(&mut self.context, within);
         let problems_before = self.problems.len();
-        // Once braces within the block were reported, it is uncertain which brace is missing.
+        // After a report about braces within the block, it is uncertain which brace is missing, so
+        // a missing `}` is not reported.
         let (mut braces, mut had_braces) = (0_usize, false);
         block.close = loop {
             self.comments(CommentPosition::Start);
@@ -57,7 +58,8 @@ impl<'s> Recovery<'_, 's> {
                     self.report(&say::NESTED_BRACES, span, &["braces within a block"], None);
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
-                    // The inner block may contain the fields that the outer one lacks.
+                    // The fields that the outer block lacks may be in the inner one, so they are
+                    // not reported as missing.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();
@@ -77,15 +79,15 @@ impl<'s> Recovery<'_, 's> {
         self.context = outside;
     }
 
-    /// Returns whether a condition or a loop of another language starts here, and `name` is not a
-    /// field of the block.
+    /// Returns whether `name` starts a condition or a loop of another language rather than a field
+    /// of the block.
     fn is_statement_in_block(&self, name: &str) -> bool {
         let is_one = matches!(name, "if" | "else" | "for" | "while" | "repeat");
         is_one && !self.is_field_name(name)
     }
 
-    /// Returns whether an item starts here that shows that the block's `}` was forgotten: it is the
-    /// first of its line and indented no more than the block.
+    /// Returns whether the next token starts an item that shows that the `}` of `block` was
+    /// forgotten: the token is the first of its line and indented no more than the block.
     fn is_after_block(&mut self, block: &Block<'s>) -> bool {
         let start = self.here().start;
         (self.is(0, "let") || self.starts_block() || self.starts_item())
@@ -112,8 +114,8 @@ impl<'s> Recovery<'_, 's> {
         let mut apart = " ";
         if self.written(open.to(end)).contains('\n') {
             apart = self.source.line_end();
-            // A comment in the line of the last field stays there, so the `}` is written at the end
-            // of that line.
+            // A comment after the last field stays in its line, so the `}` is written at the end of
+            // that line.
             let line_end = line_end(self.text, end.start);
             let rest = self.text.get(end.start..line_end).unwrap_or_default();
             if self.here().start >= line_end && !rest.contains("/*") {
@@ -133,8 +135,8 @@ impl<'s> Recovery<'_, 's> {
         self.problems.push(found);
     }
 
-    /// Reports a block within a block. Reads the inner block as an item of its own if its kind is
-    /// known, and skips it otherwise.
+    /// Reports a block within a block. If the inner block's kind is known, reads it as an item of
+    /// its own; otherwise, skips it.
     fn nested_block(&mut self) {
         let (kind, span) = (self.word(0), self.here());
         let what = format!("the block `{}` stands within another one", shorten(kind));
@@ -142,7 +144,7 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(kind) {
             return self.block();
         }
-        // The head may have indices, and its `{` may be missing.
+        // Skip the head, which may have indices. Its `{` may be missing.
         self.skip_head();
         if self.is(0, "{") {
             self.bump();
@@ -150,8 +152,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports definitions within a block, and reads them as if they stood before the block. A
-    /// definition that uses an index of the block gets a bad value.
+    /// Reports definitions within `block` and reads them as if they stood before it. A definition
+    /// that uses an index of the block gets a bad value, since the index is unknown outside.
     fn misplaced_let(&mut self, block: &Block<'s>) {
         let (keyword, before) = (self.here(), self.items.len());
         self.context.is_block = false;
@@ -176,7 +178,7 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISPLACED_LET, keyword, &[help], None);
     }
 
-    /// Reads indices within a block as if they stood in the block's head.
+    /// Reports indices, `for i < 8`, within `block`, and reads them as if they stood in its head.
     fn misplaced_indices(&mut self, block: &mut Block<'s>) {
         let (keyword, mut indices) = (self.bump(), Vec::new());
         while self.is_name(0) && self.is(1, "<") {
@@ -256,7 +258,7 @@ impl<'s> Recovery<'_, 's> {
         if numeric_part(rest) != rest && !self.words.is_value(rest) {
             return None;
         }
-        // If a value follows, the word is a name by itself.
+        // If a value follows, the whole word is the name, as in `radius2 3`.
         let next = self.word(behind);
         let is_value = self.words.is_value(next) && !self.is_field_name(next);
         if self.starts_value(behind) && (!self.is_name(behind) || is_value) {
@@ -280,7 +282,8 @@ impl<'s> Recovery<'_, 's> {
         let after = Span::new(self.id, name.end, name.end);
         self.comments(CommentPosition::Value);
         let word = self.word(0);
-        // The next line starts with another name that has a value.
+        // `is_next` says that the next line starts with another field, i.e. with a name and a
+        // value.
         let is_next = self.is_on_new_line(0)
             && self.starts_value(1)
             && !self.words.is_value(word)
@@ -298,8 +301,8 @@ impl<'s> Recovery<'_, 's> {
         self.value()
     }
 
-    /// Reads values that stand in a block without a field's name. If the values are certainly those
-    /// of the first fields of a sphere or box, they become these fields.
+    /// Reports values in a block that lack a field's name. If they are certainly the values of the
+    /// first fields of a sphere or a box, adds these fields to the block.
     fn value_without_field(&mut self, block: &mut Block<'s>) {
         let (start, problems_before) = (self.here(), self.problems.len());
         if matches!(self.word(0), ")" | "]") {
@@ -308,7 +311,8 @@ impl<'s> Recovery<'_, 's> {
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // After a comma, a name is a value unless a value of its own follows it.
+            // A name after a comma is taken as a value. If a value follows the name, it is the next
+            // field.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {
@@ -330,10 +334,10 @@ impl<'s> Recovery<'_, 's> {
             block.bad.push(start.to(self.behind()));
             return;
         }
-        // A comment after the values does not belong to them.
+        // The span ends with the last value, before a comment.
         let span = start.to(end);
         block.bad.push(span);
-        // Mistakes within the values are part of this mistake.
+        // Mistakes within the values are not reported on their own.
         self.problems.truncate(problems_before);
         let is_vector =
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);
@@ -351,7 +355,8 @@ impl<'s> Recovery<'_, 's> {
         });
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
-        // The two vectors of a box may also be its centre and its size, so its fix is not safe.
+        // Two vectors in a box are read as its corners. They may also be its centre and its size,
+        // so that fix is not safe.
         let said = say::MISSING_FIELD_NAME.safe_if(kind == Some(BlockKind::Sphere));
         self.report(&said, span, &[&self.short(span)], fix);
         let fields = names.iter().zip(values);
@@ -362,8 +367,8 @@ impl<'s> Recovery<'_, 's> {
     }
 }
 
-/// Returns the names of the fields that values without names stand for at the start of a block.
-/// The shape says of each value whether it is a vector.
+/// Returns the names of the fields that the first values of a block stand for if they lack names;
+/// empty if that is uncertain. `shape` says for each value whether it is a vector.
 fn names_of_values(kind: BlockKind, shape: &[bool]) -> &'static [&'static str] {
     match (kind, shape) {
         (BlockKind::Sphere, [true] | [true, false]) => {

@@ -16,10 +16,12 @@ use crate::{
     },
 };
 
-/// Maximum number of tokens that are searched for the `?` of a conditional expression.
+/// Maximum number of tokens that are searched for the `?` of a conditional expression. An
+/// expression whose `?` comes later is not recognized as a condition.
 const CONDITION_TOKENS: usize = 24;
 
-/// Position in the text. It decides which tokens may start a comment of another language.
+/// Position where a comment of another language may start. It decides which tokens start one: `#`,
+/// for example, also starts a colour code.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum CommentPosition {
     /// Before an item or a field.
@@ -30,8 +32,8 @@ pub(super) enum CommentPosition {
     Operator,
 }
 
-/// Characters of mathematical notation and of other languages. A row holds characters, the help if
-/// one of them stands in place of a value, and the help if one stands after a value.
+/// Characters of mathematical notation and of other languages. A row holds several characters, the
+/// help for one in place of a value, and the help for one after a value.
 #[rustfmt::skip]
 const NOTATION: &[(&str, [&str; 2])] = &[
     ("π", ["write `pi`", "write `* pi`"]),
@@ -43,11 +45,11 @@ const NOTATION: &[(&str, [&str; 2])] = &[
     ("?", ["there are no conditions: `pinhole explain condition` says what to write instead"; 2]),
 ];
 
-/// Help for the operator `%`, and for conditions that choose between colours.
+/// Help for the operator `%`, and for a condition that chooses between colours.
 pub(super) const TURNS: &str = "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows";
 
-/// Returns the help for the first row of [`NOTATION`] with a character of `word`. `is_behind` says
-/// that `word` stands after a value.
+/// Returns the help from the first row of [`NOTATION`] that contains a character of `word`, or
+/// `None`. `is_behind` selects the help for a word after a value.
 pub(super) fn help_for_notation(word: &str, is_behind: bool) -> Option<&'static str> {
     let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
     let (_, [value, behind]) = NOTATION.iter().find(is_in)?;
@@ -63,7 +65,8 @@ impl<'s> Recovery<'_, 's> {
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
-        // A `Bad` item prevents reports about unknown names that the statement may define.
+        // The statement may define names. Lowering does not report uses of names that occur in a
+        // `Bad` item.
         self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
@@ -71,8 +74,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reads a known word after the name of a library, as in `Math.sin(a)`, `np.cos(a)` or
-    /// `std::f64::consts::PI`, and reports it. Returns `None` if the name starts something else.
+    /// Reads and reports a name from a library, such as `Math.sin(a)`, `np.cos(a)` or
+    /// `std::f64::consts::PI`, if its last word is known. Returns `None` if `first` does not start
+    /// such a name.
     pub(super) fn library_name(&mut self, first: Name<'s>) -> Option<Value<'s>> {
         let mut last = 0;
         loop {
@@ -104,7 +108,7 @@ impl<'s> Recovery<'_, 's> {
         Some(bad(span.to(self.behind())))
     }
 
-    /// Returns whether a `?` follows that may belong to the same value.
+    /// Returns whether a `?` follows that may belong to the current value.
     fn has_question_mark(&mut self) -> bool {
         for at in 0..CONDITION_TOKENS {
             match self.word(at) {
@@ -117,8 +121,8 @@ impl<'s> Recovery<'_, 's> {
         false
     }
 
-    /// Reports and skips a condition: `> 1 ? a : b` after the operand `n`, or `if n > 1 then a`.
-    /// Returns whether one starts here.
+    /// Reports and skips a condition, such as `> 1 ? a : b` after an operand, or `if n > 1 then a`.
+    /// Returns whether the next token starts one.
     pub(super) fn condition(&mut self) -> bool {
         let is_one = match self.word(0) {
             "if" => !self.words.is_let("if"),
@@ -146,7 +150,8 @@ impl<'s> Recovery<'_, 's> {
             self.bump();
         }
         let span = start.to(self.behind());
-        // In `i % 2 == 0 ? red : blue`, the remainder and the condition are one mistake.
+        // In `i % 2 == 0 ? red : blue`, the remainder and the condition are reported as one
+        // mistake.
         let of_remainder = |it: &Diagnostic| it.message == "there is no operator `%`";
         let last = self.problems.last().filter(|it| of_remainder(it));
         let of_color = matches!(self.context.takes, Some(Type::Color | Type::Colors));
@@ -162,9 +167,9 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Skips comments of other languages and records what starts them. A comment ends with its
-    /// line; if the line opens a block before the comment, it ends before the `}` at the end of the
-    /// line.
+    /// Skips comments of other languages, and records their first characters, such as `#`, for a
+    /// report. A comment ends with its line. If the line opens a block before the comment, the
+    /// comment ends before the `}` at the end of the line.
     pub(super) fn comments(&mut self, place: CommentPosition) {
         while self.starts_comment(place) {
             let start = self.here().start;
@@ -178,7 +183,7 @@ impl<'s> Recovery<'_, 's> {
             let end = start + kept.len().max(1);
             let sign = if line.starts_with(['#', '%']) { 1 } else { 2 };
             let place = Span::new(self.id, start, start + sign);
-            // Written with `//`, the comment would include the `}`, so there is no fix.
+            // A comment with `//` would include the `}`, so there is no fix.
             if kept.len() < line.len() {
                 let words = [self.written(place), ""];
                 self.report(&say::COMMENT_SIGN, place, &words, None);
@@ -205,7 +210,7 @@ impl<'s> Recovery<'_, 's> {
                 || (word == "%" && place == CommentPosition::Operator);
             return is_place && self.is_prose();
         }
-        // `1 -- big` is a value with a comment, but `1 --b` and `1 -- b` with a known `b` are
+        // In `1 -- big`, the `--` starts a comment. `1 --b`, and `1 -- b` if `b` is defined, are
         // differences.
         let name = self.word(2);
         let is_remark = self.is_name(2)
@@ -220,8 +225,8 @@ impl<'s> Recovery<'_, 's> {
                 || (place == CommentPosition::Operator && is_remark))
     }
 
-    /// Returns whether the next token starts a comment in plain words, as in `; a comment`: unknown
-    /// words follow it in its line.
+    /// Returns whether the next token starts a comment in plain words: it is `;;`, or unknown words
+    /// follow it in its line, as in `; a comment`.
     fn is_prose(&mut self) -> bool {
         let mut is_word = |at| {
             let word = self.word(at);
@@ -237,16 +242,17 @@ impl<'s> Recovery<'_, 's> {
                 && !self.is_on_new_line(1)
     }
 
-    /// Returns whether the words after a `#` in place of a value are a comment, rather than the
-    /// digits or the name of a colour.
+    /// Returns whether the words after a `#` that stands in place of a value are a comment, rather
+    /// than the digits or the name of a colour.
     fn is_remark(&mut self) -> bool {
         let word = self.word(1);
         let is_lone_color = self.words.is_color(word) && !self.is_on_new_line(2);
         self.is(1, "#") || (self.is_name(1) && !is_color_code(word) && !is_lone_color)
     }
 
-    /// Reports and skips the rest of nested comments, such as `c */` in `/* /* */ c */`, where the
-    /// first `*/` ended the comment. Returns whether the text here is such a rest.
+    /// Reports and skips the rest of nested comments. In `/* /* */ c */`, the first `*/` ended the
+    /// comment, so `c */` is the rest. Returns `false` and skips nothing if the text is not such a
+    /// rest.
     pub(super) fn nested_comment(&mut self) -> bool {
         const ENOUGH: usize = 64;
         let start = self.here().start;

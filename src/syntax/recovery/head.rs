@@ -1,28 +1,31 @@
-//! Finds mistakes in the indices of an object's head, `for i < 8, j < i`, with tables of patterns.
+//! Finds mistakes in the indices of an object's head, such as `for i < 8, j < i`, with tables of
+//! patterns.
 //!
-//! In: the head's text from its first word on. Out: the place of the first mistake, what is wrong,
-//! and the corrected head if it is certain.
+//! In: the head's text from `for` on. Out: the place of the first mistake, the message, and the
+//! corrected head if the correction is certain.
 
 use std::ops::Range;
 
 use crate::syntax::tokens::{is_name_char, numeric_part};
 
-/// First mistake in a head.
+/// First mistake in the indices of a head.
 pub(super) struct HeadSlip {
     /// Range of the mistake in the head's text, in bytes.
     pub at: Range<usize>,
-    /// The message; empty if the mistake is unknown.
+    /// The message; empty if no pattern describes the mistake.
     pub said: &'static str,
-    /// The help if the corrected head is not certain.
+    /// The help, for use if there is no correction.
     pub help: String,
     /// The corrected head, if it is certain.
     pub right: Option<String>,
 }
 
-/// A row: pattern, message, correction, and help if the correction is not certain. In the pattern,
-/// `I` and `W` are names, `O` is a name if another one follows it, `N` and `M` are values, `$` is
-/// the end, `|` separates alternatives, and the mistake is between `«` and `»`. In message,
-/// correction and help, `{I}`, `{W}`, `{N}` and `{M}` stand for the matched texts.
+/// Row of a table of patterns: pattern, message, correction, and help for the case that the
+/// correction is not certain.
+///
+/// In the pattern, `I` and `W` are names, `O` is a name if another one follows it, `N` and `M` are
+/// values, `$` is the end of the head, `|` separates alternatives, and the mistake is between `«`
+/// and `»`. In the other texts, `{I}`, `{W}`, `{N}` and `{M}` stand for the matched texts.
 type HeadPattern = [&'static str; 4];
 
 const FROM_ZERO: &str = "an index begins at 0 by itself";
@@ -33,10 +36,10 @@ const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the v
 const LACKS_COUNT: &str =
     "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
 const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
-/// Correction of a row that moves the object's name before the `for`.
+/// Correction that moves the object's name before the `for`.
 const NAME_FIRST: &str = "^";
 
-/// Patterns of an index with its count.
+/// Patterns of one index with its count, such as `i < 8`, without and with mistakes.
 #[rustfmt::skip]
 const INDICES: [HeadPattern; 27] = [
     ["I < N", "", "{I} < {N}", ""],
@@ -70,7 +73,7 @@ const INDICES: [HeadPattern; 27] = [
 
 const COMMA: &str = "a comma separates two indices";
 
-/// Patterns of what may follow an index and its count.
+/// Patterns of the text after an index and its count, without and with mistakes.
 #[rustfmt::skip]
 const BEHIND: [HeadPattern; 9] = [
     ["« , » $", "no comma stands behind the last index", "", ""],
@@ -144,7 +147,7 @@ pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     }
 }
 
-/// Texts that the letters of a pattern matched last.
+/// Texts that the names and values of a pattern matched last.
 #[derive(Default)]
 struct Captures<'t> {
     i: &'t str,
@@ -154,8 +157,8 @@ struct Captures<'t> {
 }
 
 impl<'t> Captures<'t> {
-    /// Matches a row's pattern at offset `from`. Returns the end of the match and the range of the
-    /// mistake, or `None` if the text does not match.
+    /// Matches the pattern `row` at the offset `from` of `text`. Returns the end of the match and
+    /// the range of the mistake, or `None` if the text does not match.
     fn read(&mut self, row: &str, text: &'t str, from: usize) -> Option<(usize, Range<usize>)> {
         let (mut at, mut under, mut index) = (from, from..from, "");
         for item in row.split(' ') {
@@ -212,8 +215,8 @@ impl<'t> Captures<'t> {
         Some((at, under))
     }
 
-    /// Fills the matched texts into a template; computes sums and differences if the texts are
-    /// numbers.
+    /// Fills the matched texts into the template `text`. Sums and differences in the template are
+    /// computed if the matched texts are numbers.
     fn filled(&self, text: &str) -> String {
         let [n, m] = [self.n, self.m].map(|text| text.parse::<u32>().ok());
         let or = |number: Option<u32>, text: String| number.map_or(text, |it| it.to_string());
@@ -280,7 +283,7 @@ fn value_length(text: &str) -> usize {
         };
         let operand = operand.trim_start();
         let operand = operand.strip_prefix('-').unwrap_or(operand);
-        // `0..8` is a range, so `0.` must not be read as a number there.
+        // In the range `0..8`, the number is `0` and not `0.`.
         let number = numeric_part(operand);
         let is_range = operand
             .get(number.len()..)

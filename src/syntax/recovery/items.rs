@@ -13,14 +13,15 @@ use crate::{
     },
 };
 
-/// Words before a kind that are surely not the name of an object.
+/// Words that are surely not an object's name if they stand before a kind, as in `a sphere {`.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
-/// Maximum number of tokens of a line that are searched.
+/// Maximum number of tokens of a line that are searched for the end of a head. The search stops
+/// there as at the end of the line.
 const LINE_TOKENS: usize = 24;
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads one item, or whatever stands in place of one.
+    /// Reads one item, or reports the text that stands in its place.
     pub(super) fn any_item(&mut self) {
         self.comments(CommentPosition::Start);
         match self.word(0) {
@@ -44,8 +45,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns the number of tokens in the line before the first for which `is_end` holds. It is at
-    /// least 1 and at most [`LINE_TOKENS`].
+    /// Searches the line, from its second token on, for a token for which `is_end` holds. Returns
+    /// the number of tokens before that token, or before the end of the line; at most
+    /// [`LINE_TOKENS`].
     pub(super) fn find_in_line(&mut self, is_end: fn(&str) -> bool) -> usize {
         let mut count = 1;
         while count < LINE_TOKENS && !self.is_on_new_line(count) && !is_end(self.word(count)) {
@@ -54,7 +56,7 @@ impl<'s> Recovery<'_, 's> {
         count
     }
 
-    /// Reads a block whose head is a kind and perhaps a name, or is missing.
+    /// Reads a block whose head is a kind, a kind and a name, or missing.
     pub(super) fn block(&mut self) {
         let span = self.here();
         let kind = self.is_name(0).then(|| self.name());
@@ -76,8 +78,9 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reads a block from its `{` on.
     fn open_block(&mut self, mut block: Block<'s>) {
-        // Maximum depth of nested blocks that are read, although no block may stand in another one;
-        // deeper blocks are skipped.
+        // Maximum depth of nested blocks that are read; deeper blocks are skipped. No block may
+        // stand within another one, but reading the inner blocks allows reports about their
+        // mistakes.
         const DEEPEST: usize = 3;
         block.open = Some(self.bump());
         if self.blocks == DEEPEST {
@@ -98,7 +101,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports a block that contains blocks, as in `scene { sphere { … } }`, and reads the inner
-    /// blocks one by one.
+    /// blocks as items.
     fn container(&mut self, kind: Name<'s>) {
         let name = shorten(kind.text);
         let what = format!("blocks stand by themselves, not within `{name}`");
@@ -109,8 +112,8 @@ impl<'s> Recovery<'_, 's> {
         self.bump();
     }
 
-    /// Reads a line that usually starts with a name: a block, even if its head is wrong, or another
-    /// line.
+    /// Reads a block, whose head may be wrong, or any other line. The line usually starts with a
+    /// name.
     fn block_or_line(&mut self) {
         let has_other_kind = self.is_name(0) && self.is_kind(1) && !self.is_kind(0);
         if self.is_head(0) && !has_other_kind {
@@ -197,7 +200,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reads a block that lacks its `{`: `camera:`, `image 640 480`, `sphere (…)`, or `sphere Ball`
-    /// followed by fields. Returns whether the text is such a block.
+    /// followed by fields. Returns `false` and reads nothing if the text is not such a block.
     fn unopened_block(&mut self) -> bool {
         let Some(row) = schema::block(self.word(0)) else {
             return false;
@@ -214,12 +217,12 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Reads a block from the place where its `{` is missing, and reports that.
+    /// Reports a missing `{`, and reads the block from there on.
     fn without_open(&mut self, mut block: Block<'s>, kind: Name<'s>) {
         let head = block.span.to(self.behind());
         block.span = head;
         let close = if self.is(0, "(") { ")" } else { "}" };
-        // The span that ` {` replaces.
+        // The span that the fix replaces by ` {`.
         let mut open = self.behind();
         if matches!(self.word(0), "(" | ":" | "=") {
             open = open.to(self.bump());
@@ -228,8 +231,8 @@ impl<'s> Recovery<'_, 's> {
         block.bad.push(open);
         if self.is_name(0) && self.words.takes(kind.text, self.word(0)).is_some() {
             self.body(&mut block, close);
-            // A fix is offered only if the end of the block is certain: something closes it, and no
-            // `{` in it may own that brace.
+            // There is a fix only if the end of the block is certain: a token closes the block, and
+            // the block contains no `{` that this token could belong to.
             let is_flat = !self.written(block.span).contains('{');
             fix = block.close.filter(|_| is_flat).map(|close| {
                 let title = format!("write `{} {{`", self.short(head));
@@ -263,7 +266,7 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Bad(start.to(self.behind())));
     }
 
-    /// Skips to the next item that starts a line, or past a `}`.
+    /// Skips to the next item that starts a line, or past the next block or `}`.
     fn skip_lines(&mut self) {
         while self.kind(0) != TokenKind::End {
             if self.is_on_new_line(0) {
@@ -284,14 +287,16 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    // Closing brackets and braces that were never opened.
+    // The methods below report closing brackets and braces that were never opened.
 
-    /// Reports a `)` or `]` that was never opened. The fix removes it if `is_needless` says that
-    /// the bracket changes nothing, and if its line has no surplus opening bracket.
+    /// Reports a `)` or `]` that was never opened. The fix removes the bracket. There is a fix only
+    /// if the caller knows that the bracket changes nothing (`is_needless`) and the line has no
+    /// surplus opening bracket.
     pub(super) fn stray_parenthesis(&mut self, is_needless: bool) {
         let sign = self.word(0);
         let span = self.bump();
-        // The opening bracket may be part of another mistake in the line.
+        // There is no fix if the line has a surplus opening bracket, which may be part of another
+        // mistake.
         let line = self.line_before(span.start);
         let open = if sign == ")" { '(' } else { '[' };
         let is_opened = line.matches(open).count() > line.matches(sign).count();
@@ -307,7 +312,7 @@ impl<'s> Recovery<'_, 's> {
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        // If no item follows, the `}` may be meant as another token.
+        // If no item follows, another token than `}` may have been meant.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
         // The `}` may close a block that lacks its `{`.
         let mut last = self.problems.iter().rev().take(8);

@@ -28,19 +28,21 @@ struct List<'s> {
     is_round: bool,
     /// Indices of the values that lack a comma before them.
     gaps: Vec<usize>,
-    /// A comma without a value on one side.
+    /// A comma that lacks a value before or after it.
     needless: Option<Span>,
 }
 
 impl<'s> Recovery<'_, 's> {
-    /// Returns whether a `{` in place of a value opens a list rather than fields.
+    /// Returns whether the next token, a `{` in place of a value, opens a list of values rather
+    /// than fields.
     pub(super) fn is_flat_list(&mut self) -> bool {
         let sign = 1 + usize::from(self.is(1, "-"));
         let is_number = self.kind(sign) == TokenKind::Number;
         self.is(0, "{") && (is_number || (self.is_name(sign) && self.is(sign + 1, ",")))
     }
 
-    /// Reads a vector, a pair or triple of colours, or a value in parentheses.
+    /// Reads a vector, a pair or triple of colours, or a value in parentheses. `close` is the
+    /// bracket that ends it.
     pub(super) fn group(&mut self, close: &'static str) -> Value<'s> {
         let takes = self.context.takes;
         let (parts, count) = match takes {
@@ -80,8 +82,8 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_foreign_function(function.text) && self.problems.len() == problems_before {
             return self.foreign_function(function, list);
         }
-        // In `rgb(100%, 0%, 0%)`, or in the arguments of another function that makes colours, all
-        // `%` are one mistake.
+        // All `%` among the arguments of a function that makes colours, as in `rgb(100%, 0%, 0%)`,
+        // are reported as one mistake.
         let is_known = schema::function(function.text).is_some();
         if self.problems.len() > problems_before + 1 && self.written(parentheses).contains('%') {
             self.problems.truncate(problems_before);
@@ -126,8 +128,8 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reads a list, however its values are separated. Returns `None` if its end is missing and its
-    /// values are uncertain, or if it nests too deep.
+    /// Reads a list, whatever separates its values. Returns `None` if the list nests too deep, or
+    /// if its end is missing and its values are uncertain.
     fn list(
         &mut self,
         close: &'static str,
@@ -203,7 +205,7 @@ impl<'s> Recovery<'_, 's> {
                 if !is_value_next {
                     list.gaps.push(list.elements.len());
                 }
-                // Skip the name of a part, as in `(x = 3, …)`.
+                // Skip the name of a part of the list, as in `(x = 3, …)`.
                 let is_path = self.is(1, ":") && self.is(2, ":");
                 if self.is_name(0) && matches!(self.word(1), "=" | ":") && !is_path {
                     let name = self.bump();
@@ -219,8 +221,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Returns whether the next token, a `}`, was exchanged with a `)`, as in `(0, 1, 0} radius 1
-    /// )`.
+    /// Returns whether the next token, a `}`, was probably exchanged with the `)` that ends the
+    /// block, as in `(0, 1, 0} radius 1 )`.
     fn is_exchanged_brace(&mut self, close: &str) -> bool {
         let next = self.word(1);
         (self.word(0), close) == ("}", ")")
@@ -231,8 +233,8 @@ impl<'s> Recovery<'_, 's> {
             && self.is_field_name(next)
     }
 
-    /// Reports a list that lacks its end. Returns the list if its number of values is allowed and
-    /// all of its values are certain.
+    /// Reports a list that lacks its closing bracket. Returns the list if its number of values is
+    /// allowed and all of its values are certain; otherwise `None`.
     fn unclosed_list(
         &mut self,
         mut list: List<'s>,
@@ -245,7 +247,8 @@ impl<'s> Recovery<'_, 's> {
             && list.needless.is_none();
         let last = last.map(|element| &element.value);
         let last = last.filter(|value| value.kind != ValueKind::Bad);
-        // If the last value is a sum or a product, the list may end after any operand of it.
+        // If the last value is a sum or a product, the missing bracket may belong after any of its
+        // operands.
         let is_sure = last.is_none_or(|it| !matches!(it.kind, ValueKind::Chain { .. }));
         let fits = is_whole && is_sure && count.contains(&list.elements.len());
         let end = last.filter(|_| fits).map(|last| last.span.end);
@@ -255,8 +258,8 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(list)
     }
 
-    /// Reports semicolons in place of commas. There is no fix unless `is_plain`, i.e. the list has
-    /// no other mistakes.
+    /// Reports semicolons in place of commas. `is_plain` says that the list has no other mistakes;
+    /// only then is there a fix.
     fn semicolons(&mut self, signs: &[Span], is_plain: bool) {
         if let Some(&first) = signs.first() {
             let commas = signs.iter().map(|sign| Edit::new(*sign, ","));
@@ -270,8 +273,8 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports parts that are named with `=` or `:`. The fix removes the names if they are x, y, z
-    /// or r, g, b in this order; otherwise the meaning is uncertain, and there is no fix.
+    /// Reports parts of a list that are named with `=` or `:`. The fix removes the names if they
+    /// are x, y, z or r, g, b, in this order. Other names have an uncertain meaning and get no fix.
     fn names_of_parts(&mut self, labels: &[Span], is_plain: bool) {
         let Some(&first) = labels.first() else {
             return;
@@ -287,8 +290,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::NOT_IN_LANGUAGE, first, &["names of parts", help], fix);
     }
 
-    /// Reports a list that opens at `open` and lacks its end. `end` is the offset where the end is
-    /// missing, if that is known.
+    /// Reports a list that opens at `open` and lacks its closing bracket. `end` is the offset where
+    /// the bracket belongs, if that is known.
     fn unclosed(&mut self, open: Span, close: &str, end: Option<usize>) {
         let word = self.word(0);
         // A field's name ends a list only if a value follows the name.
@@ -307,8 +310,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::UNCLOSED_PARENTHESIS, open, &[], fix);
     }
 
-    /// Returns the values of a list if their number is allowed. Reports a needless or missing
-    /// comma, or a wrong number of values.
+    /// Returns the values of `list` if `count` allows their number; otherwise `None`. Reports a
+    /// needless or missing comma, or a wrong number of values.
     fn checked(&mut self, list: List<'s>, count: &PartCount) -> Option<Vec<Element<'s>>> {
         let elements = list.elements;
         let fits = count.contains(&elements.len());
@@ -339,7 +342,8 @@ impl<'s> Recovery<'_, 's> {
             let edits = before.map(|e| Edit::insert(self.id, e.value.span.end, ","));
             Fix::new(format!("write `{l}, {r}`"), edits)
         });
-        // In `min1.6`, one word was split into two values, so the fix is not safe.
+        // Two values without white space between them, as in `min1.6`, were probably one word, so
+        // the fix is not safe.
         let are_apart = left.span.end < right.span.start;
         self.report(
             &say::MISSING_COMMA.safe_if(are_apart),
@@ -350,7 +354,8 @@ impl<'s> Recovery<'_, 's> {
         fits.then_some(elements)
     }
 
-    /// Reads and reports the arguments in brackets of `rgb [255, 0, 0]` or `normalize <1, 2, 3>`.
+    /// Reports a call with other brackets than parentheses, such as `rgb [255, 0, 0]` or `normalize
+    /// <1, 2, 3>`, and reads its arguments.
     pub(super) fn call_in_brackets(
         &mut self,
         name: Name<'s>,

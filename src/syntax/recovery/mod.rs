@@ -1,15 +1,15 @@
 //! Reads an item that does not follow the grammar.
 //!
 //! In: the text from the item's start. Out: nodes of what can be understood, and one problem for
-//! each mistake. This is a recursive-descent parser over the lexer's tokens. Items are read in
+//! each mistake. This is a recursive-descent parser over the lexer's tokens. It reads items in
 //! `items`, fields in `fields`, indices in `repetition`, values in `values`, `adjacent` and
 //! `lists`, names in `names`, numbers in `numbers`, needless separators in `signs`, and constructs
 //! of other languages in `foreign`. An item without mistakes is read as pest reads it. Three rules:
 //!
 //! - Where a token fits nowhere, reading continues at the next field, line, item or closing brace
 //!   (`resync`).
-//! - A fix is offered if it is obvious. Usually, a value with a mistake becomes `Bad`, with or
-//!   without a fix, so that nothing is reported about its uses.
+//! - Only an obvious fix is offered. A value with a mistake usually becomes `Bad`, whether it has a
+//!   fix or not, so that uses of the value cause no further reports.
 //! - If one value has different mistakes, none of their fixes is certain (`clear_uncertain_fixes`).
 
 mod adjacent;
@@ -50,7 +50,7 @@ pub struct Recovery<'w, 's> {
     lexer: Lexer<'s>,
     /// Tokens read ahead from the lexer, without comments and invisible characters.
     tokens: VecDeque<Token>,
-    /// End of the token that was taken last.
+    /// Offset after the last token that was taken.
     last_end: usize,
     /// The items read so far, including those that pest read.
     pub(super) items: Vec<Item<'s>>,
@@ -58,11 +58,12 @@ pub struct Recovery<'w, 's> {
     pub(super) problems: Problems,
     /// Whether a mistake hides the rest of the text.
     is_cut: bool,
-    /// Whether an item was kept as pest read it because recovery found no better explanation.
+    /// Whether recovery read an item that was probably meant otherwise, but found no better
+    /// explanation, so that pest's reading was kept.
     is_doubtful: bool,
-    /// End of the item that recovery read last.
+    /// Offset after the last item that recovery read.
     pub(super) read_to: usize,
-    /// Whether the text is known not to be a file of another program.
+    /// Whether the text was checked for the format of another program.
     is_checked: bool,
     /// Context of what is read: the block, or the file.
     context: Context<'s>,
@@ -87,9 +88,10 @@ struct Context<'s> {
     field: &'s str,
     /// Type that the value should have, if that is known.
     takes: Option<Type>,
-    /// Needless separators and what starts comments in other languages, each with all its places.
+    /// Needless separators and the characters that start comments in other languages. Each is
+    /// mapped to its places.
     signs: BTreeMap<&'s str, Vec<Span>>,
-    /// Whether one of these may be needed after all, so that their reports get no fix.
+    /// Whether one of `signs` may be needed after all. The reports of `signs` then get no fix.
     is_doubtful: bool,
 }
 
@@ -119,9 +121,9 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    /// Reads one item, or whatever stands in place of one, and returns its end, which is after
-    /// `start`. If the text is a file of another program or the maximum number of problems is
-    /// reached, the end is that of the text.
+    /// Reads one item, or reports the text in its place. Returns the item's end, which is after
+    /// `start`. Returns the end of the text if it is a file of another program or if the maximum
+    /// number of problems is reached.
     pub fn item(&mut self, start: usize) -> usize {
         if !self.is_checked && self.foreign_file() {
             self.read_to = self.text.len();
@@ -138,10 +140,10 @@ impl<'w, 's> Recovery<'w, 's> {
         self.read_to
     }
 
-    /// Reads an item again that follows the grammar but may have been meant otherwise. Returns the
-    /// item's end if the new reading explains it better: by fields that the block has, or by a
-    /// comment or a function of another language. Otherwise, restores the items and problems and
-    /// returns `None`.
+    /// Reads the item at `start` again, which follows the grammar but may have been meant
+    /// otherwise. Returns the item's end if the new reading explains the text better: by fields
+    /// that the block has, or by a comment or a function of another language. Otherwise, restores
+    /// the items and problems and returns `None`.
     pub fn item_as_meant(&mut self, start: usize) -> Option<usize> {
         let (items, problems, read_to) = (self.items.len(), self.problems.len(), self.read_to);
         let slips = |this: &Self| this.context.signs.values().map(Vec::len).sum::<usize>();
@@ -155,7 +157,7 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
-                // An item without mistakes is not replaced by the new reading.
+                // If the new reading finds no mistake, pest's node is kept.
                 let is_new = slips(self) > slips_before || self.problems.len() > problems;
                 is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
             }
@@ -174,8 +176,8 @@ impl<'w, 's> Recovery<'w, 's> {
         None
     }
 
-    /// Reads the text from an offset to the end as one value, and reports anything that follows the
-    /// value.
+    /// Reads the text from the offset `start` to its end as one value, and reports any text after
+    /// the value.
     pub fn whole_value(&mut self, start: usize) -> Value<'s> {
         self.seek(start);
         let problems_before = self.problems.len();
@@ -188,7 +190,8 @@ impl<'w, 's> Recovery<'w, 's> {
         value
     }
 
-    /// Returns everything that was read, together with the comments and problems of the scan.
+    /// Returns the tree of everything that was read, and its problems together with the comments
+    /// and problems of `scan`.
     pub fn finish(mut self, scan: Scan) -> Parsed<'s> {
         self.report_signs(self.problems.len());
         let mut parsed = Parsed {
@@ -203,7 +206,7 @@ impl<'w, 's> Recovery<'w, 's> {
         parsed
     }
 
-    // Tokens.
+    // The methods below look at the next tokens or take them.
 
     /// Returns the token `ahead` tokens after the next one, without taking it. At the end of the
     /// text, this is an end token.
@@ -241,8 +244,8 @@ impl<'w, 's> Recovery<'w, 's> {
         self.kind(ahead) == TokenKind::Name && !self.is(ahead, "let")
     }
 
-    /// Returns the text between the token `ahead` tokens after the next one and the token before
-    /// that.
+    /// Returns the text before the token `ahead` tokens after the next one: from the end of the
+    /// previous token.
     fn space_before(&mut self, ahead: usize) -> &'s str {
         let end = match ahead {
             0 => self.last_end,
@@ -252,12 +255,14 @@ impl<'w, 's> Recovery<'w, 's> {
         self.text.get(end..start).unwrap_or_default()
     }
 
-    /// Returns whether a token ahead is the first of its line, or the end of the text.
+    /// Returns whether the token `ahead` tokens after the next one is the first of its line, or the
+    /// end of the text.
     fn is_on_new_line(&mut self, ahead: usize) -> bool {
         self.kind(ahead) == TokenKind::End || self.space_before(ahead).contains('\n')
     }
 
-    /// Returns whether nothing separates a token ahead from the token before it.
+    /// Returns whether nothing separates the token `ahead` tokens after the next one from its
+    /// predecessor.
     fn is_adjacent(&mut self, ahead: usize) -> bool {
         self.space_before(ahead).is_empty()
     }
@@ -272,7 +277,7 @@ impl<'w, 's> Recovery<'w, 's> {
         span
     }
 
-    /// Continues reading at an offset and forgets the tokens read ahead.
+    /// Continues reading at the offset `at`, and discards the tokens that were read ahead.
     fn seek(&mut self, at: usize) {
         self.tokens.clear();
         self.last_end = at;
@@ -303,8 +308,9 @@ impl<'w, 's> Recovery<'w, 's> {
         shorten(self.written(span))
     }
 
-    /// Returns whether a block starts at a token ahead: `sphere {`, `sphere Ball {` or `sphere for
-    /// i`. If the first word is not a kind, a kind on a new line starts a block of its own.
+    /// Returns whether a block starts at the token `ahead` tokens after the next one: `sphere {`,
+    /// `sphere Ball {` or `sphere for i`. A kind on a new line after that token starts another
+    /// block if the token itself is not a kind.
     fn is_head(&mut self, ahead: usize) -> bool {
         let name = ahead + 1;
         let ends = |this: &mut Self, at| this.is(at, "{") || this.is_repetition(at);
@@ -315,12 +321,12 @@ impl<'w, 's> Recovery<'w, 's> {
         self.is_name(name) && ends(self, name + 1) && !(is_kind && self.is_on_new_line(name))
     }
 
-    /// Returns whether the head of a block of a known kind starts here.
+    /// Returns whether the next token starts the head of a block of a known kind.
     fn starts_block(&mut self) -> bool {
         self.is_head(0) && self.is_kind(0)
     }
 
-    /// Returns whether a token ahead is a kind of block.
+    /// Returns whether the token `ahead` tokens after the next one is a kind of block.
     fn is_kind(&mut self, ahead: usize) -> bool {
         self.words.is_kind(self.word(ahead))
     }
@@ -340,10 +346,11 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    // Resynchronization.
+    // The methods below skip text after a mistake.
 
-    /// Returns whether every unfinished construct must end before the next token: at a brace, at
-    /// `let`, at the name of a field, at a head or at a new line.
+    /// Returns whether every unfinished construct ends before the next token: a brace, `let`, the
+    /// name of a field, the start of a head, or the first token of a line (within a block, only a
+    /// name).
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
@@ -380,7 +387,7 @@ impl<'w, 's> Recovery<'w, 's> {
         }
     }
 
-    // Problems.
+    // The methods below report problems.
 
     fn report(&mut self, said: &Message, at: Span, words: &[&str], fix: impl Into<Option<Fix>>) {
         self.problems.push(said.at(at, words, fix));
@@ -398,8 +405,8 @@ impl<'w, 's> Recovery<'w, 's> {
         let help_for_notation =
             foreign::help_for_notation(&written, expected != "a value" || is_behind_part);
         let help = help_for_notation.unwrap_or(help);
-        // If the text is a character such as `½` or `π` alone, the help names its replacement,
-        // which becomes the fix.
+        // If the text is a single character such as `½` or `π`, the help names its replacement.
+        // That replacement becomes the fix.
         let text =
             help_for_notation.filter(|_| expected == "a value" && written.chars().count() == 1);
         let text = text.and_then(|help| help.strip_prefix("write `")?.strip_suffix('`'));
@@ -413,8 +420,8 @@ impl<'w, 's> Recovery<'w, 's> {
         Fix::new(title, [Edit::remove_in(span, self.text)])
     }
 
-    /// Removes the fixes of the problems from index `first` on if the problems have different
-    /// codes, since none of the fixes is then certain.
+    /// Removes the fixes of all problems from the index `first` on if these problems have different
+    /// codes. None of the fixes is then certain.
     fn clear_uncertain_fixes(&mut self, first: usize) {
         let problems = self.problems.get_mut(first..).unwrap_or_default();
         if problems.chunk_by(|a, b| a.code == b.code).count() > 1 {
@@ -437,8 +444,8 @@ fn unquoted(written: &str) -> &str {
     written.trim_matches(marks).trim()
 }
 
-/// Returns a help with an example of a value of the type `takes`, or of any type if that is
-/// unknown.
+/// Returns a help with an example of a value of the type `takes`. If the type is unknown, the
+/// examples are of several types.
 fn example(takes: Option<Type>) -> &'static str {
     let any = "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`";
     takes.map_or(any, Type::such_as)

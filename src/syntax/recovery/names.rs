@@ -12,8 +12,8 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads a name, the call of a function, or a construct of another language that starts with a
-    /// name.
+    /// Reads a value that starts with a name: a reference, the call of a function, or a construct
+    /// of another language.
     pub(super) fn reference(&mut self) -> Value<'s> {
         let name = self.name();
         if let Some(value) = self.library_name(name) {
@@ -39,13 +39,13 @@ impl<'s> Recovery<'_, 's> {
         if self.is(0, "(") {
             return self.call(name);
         }
-        // An index in brackets, as in `sizes[i]` and `Ball[3]`.
+        // An index in brackets, as in `sizes[i]` and `Ball[3]`, is a construct of other languages.
         let (is_let, is_known) = (self.words.is_let(name.text), self.words.is_value(name.text));
         if self.is(0, "[") && self.is_adjacent(0) && (is_let || !is_known) {
             let problems_before = self.problems.len();
             self.group("]");
             self.problems.truncate(problems_before);
-            // Skip a field of an object, as in `Ball[3].center`.
+            // A field of an object, as in `Ball[3].center`, belongs to the same mistake.
             if self.is(0, ".") && self.is_adjacent(0) && self.is_name(1) {
                 self.bump();
                 self.bump();
@@ -85,7 +85,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports and reads a call without parentheses, such as `sin 30deg`, `rgb 255 0 0` or `length
-    /// v - 1`. Takes as many operands as the function has parameters.
+    /// v - 1`. Reads as many operands as the function has parameters.
     fn call_without_parentheses(&mut self, name: Name<'s>, row: &schema::Function) -> Value<'s> {
         let close = match self.word(0) {
             "[" => "]",
@@ -120,7 +120,8 @@ impl<'s> Recovery<'_, 's> {
         let is_whole = row.accepts(arguments.len())
             && (!row.more || self.lists == 0)
             && !self.goes_on(&arguments);
-        // An operator after the arguments may have been meant to be part of the last argument.
+        // If an operator follows the last argument, the call may end before or after the operator,
+        // so its end is uncertain.
         let whole = self.operations(bad(span)).span;
         let is_all = self.last_end == end;
         let mut fix = replace(span, format!("{}({list})", name.text));

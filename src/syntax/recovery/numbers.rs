@@ -1,4 +1,4 @@
-//! Reads numbers, with a unit or other text after them.
+//! Reads numbers, including a unit or other text that follows the digits.
 
 use super::Recovery;
 use crate::{
@@ -12,8 +12,8 @@ use crate::{
     },
 };
 
-/// Units: their spellings, the factor that converts to a unit of the language, and that unit.
-/// Lengths have no unit, since the language measures them in metres.
+/// Units that people write. A row holds the spellings, the factor that converts to a unit of the
+/// language, and that unit. Lengths have no unit, since the language measures them in metres.
 const UNITS: &[(&str, f64, &str)] = &[
     ("° deg degs degree degrees", 1.0, "deg"),
     ("rad rads radian radians", 1.0, "rad"),
@@ -84,8 +84,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports a number whose unit is wrong or stands apart. `factor` and `right` convert it to a
-    /// unit of the language; `whole` is the number with its unit, and `behind` the unit.
+    /// Reports a number whose unit is wrong or separated by a space. A product with `factor`
+    /// converts the number to the unit `right` of the language. `whole` is the span of number and
+    /// unit, `behind` that of the unit.
     fn with_unit(
         &mut self,
         number: &'s str,
@@ -109,8 +110,8 @@ impl<'s> Recovery<'_, 's> {
         };
         let text = scaled(number, factor).filter(|_| fits);
         let angle = |unit| ValueKind::Angle { number, unit };
-        // A correct angle or number is kept, so that other mistakes with it are reported in the
-        // same run.
+        // A number that needs no conversion is kept, so that further mistakes with it are reported
+        // in the same run.
         let meant = match (fits && factor == 1.0, right) {
             (false, _) => ValueKind::Bad,
             (true, "deg") => angle(Unit::Degrees),
@@ -151,7 +152,8 @@ impl<'s> Recovery<'_, 's> {
             let place = if unit.starts_with('.') { span } else { behind };
             ("not a part of a number", None, place)
         };
-        // The fix of `4x4` would be 16. It is shorter than the text, so it is not safe.
+        // For `4x4`, the fix writes only 16, the product. A fix that is shorter than the written
+        // text is not safe.
         let is_longer = |right: &String| right.len() >= written.len();
         let said = say::BAD_NUMBER.safe_if(right.as_ref().is_none_or(is_longer));
         let fix = right.map(|right| replace(span, right));

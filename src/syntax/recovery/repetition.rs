@@ -1,4 +1,5 @@
-//! Reads the indices of a block: the part of its head between the name of the object and the `{`.
+//! Reads the indices of a block, such as `for i < 8`. They stand in its head, between the name of
+//! the object and the `{`.
 
 use super::{Recovery, head, is_name};
 use crate::{
@@ -25,9 +26,9 @@ impl<'s> Recovery<'_, 's> {
                 || self.kind(next) == TokenKind::Number)
     }
 
-    /// Reads the indices of a block, such as `for i < 8, j < i`, if it has any. If anything else
-    /// stands before the `{`, all of it is reported as one mistake. Returns whether the block
-    /// continues after the indices.
+    /// Reads the indices of a block, such as `for i < 8, j < i`, if it has any. If any other text
+    /// stands before the `{`, all of it is reported as one mistake. Returns `false` if the block
+    /// ends here: its indices have a mistake, and neither a `{` nor a field follows.
     pub(super) fn indices(&mut self, block: &mut Block<'s>) -> bool {
         if !self.is_repetition(0) {
             return true;
@@ -70,8 +71,8 @@ impl<'s> Recovery<'_, 's> {
         is_right || self.is(0, "{") || self.starts_fields(kind)
     }
 
-    /// Returns whether a field of a block of kind `kind` starts here, with its value, so that a `{`
-    /// is missing before the field.
+    /// Returns whether the next token starts a field of a block of kind `kind`, with its value. The
+    /// block's `{` is then missing.
     pub(super) fn starts_fields(&mut self, kind: &str) -> bool {
         let is_field = self.is_name(0) && self.words.takes(kind, self.word(0)).is_some();
         is_field && self.starts_value(1) && !self.is(1, "<")
@@ -91,8 +92,8 @@ impl<'s> Recovery<'_, 's> {
         self.report_head(at, slip.said, &slip.help, fix, is_safe);
     }
 
-    /// Reports a mistake in a head. An empty `said` or `help` is replaced by a text that explains
-    /// how a head is written.
+    /// Reports a mistake in the indices of a head. An empty `said` or `help` is replaced by a
+    /// general explanation of indices.
     pub(super) fn report_head(
         &mut self,
         at: Span,
@@ -107,8 +108,9 @@ impl<'s> Recovery<'_, 's> {
         self.report(&said, at, &words, fix);
     }
 
-    /// Reports `Ball[8]`, `Ball[i] for i < 8` or `i < 8` in place of a name; `rest` is the text up
-    /// to the `for` or the `{`. Returns whether the text is one of them.
+    /// Reports a name with a count: `Ball[8]`, `Ball[i] for i < 8`, or `i < 8` in place of a name.
+    /// `rest` is the span of the text before the `for` or the `{`. Returns `false` and reports
+    /// nothing if the text is none of these.
     pub(super) fn counted_name(&mut self, kind: &str, rest: Span) -> bool {
         let written = self.written(rest);
         let id = self.id;
@@ -155,7 +157,7 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Reads an index with its count and the comma after it, as in `i < 8`. Reports `<=`, as in `i
+    /// Reads an index with its count and the comma after it, as in `i < 8,`. Reports `<=`, as in `i
     /// <= 7`.
     pub(super) fn index(&mut self) -> Index<'s> {
         let (name, less) = (self.name(), self.bump());

@@ -1,5 +1,5 @@
-//! Collects needless separators and what starts comments in other languages. A block has one report
-//! for each of them.
+//! Collects needless separators, such as `,` and `;`, and the characters that start comments in
+//! other languages, such as `#`. A block has one report for each kind of them.
 
 use super::{Recovery, numbers::unit_of};
 use crate::{
@@ -9,8 +9,8 @@ use crate::{
 };
 
 impl Recovery<'_, '_> {
-    /// Takes a `,` or `;` between fields or items and records it. Before a value, it may be meant
-    /// as something else, so the reports become doubtful.
+    /// Reads and records a `,` or `;` between fields or items. If a value follows, the sign may
+    /// have a purpose, so the reports are marked as doubtful and get no fix.
     pub(super) fn separator(&mut self) {
         let sign = self.bump();
         self.note_sign(sign);
@@ -30,8 +30,8 @@ impl Recovery<'_, '_> {
         }
     }
 
-    /// Reports the recorded separators and comment starts. If a problem from index `first` on has
-    /// no fix, it is uncertain what they belong to, so they get no fix either.
+    /// Reports the recorded separators and comment starts. If a problem from the index `first` on
+    /// has no fix, the purpose of the separators is uncertain, so they get no fix either.
     pub(super) fn report_signs(&mut self, first: usize) {
         let since = self.problems.get(first..).unwrap_or_default();
         let is_doubtful = since.iter().any(|problem| problem.fixes.is_empty())

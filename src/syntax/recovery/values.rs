@@ -19,14 +19,14 @@ use crate::{
     },
 };
 
-/// Operators of a product, and characters that people write for them.
+/// Operators of the precedence of `*`, and characters that people write for them.
 const PRODUCT: &[&str] = &["*", "/", "×", "·", "∗", "⋅", "÷", "∕", "⁄", "^", "**", "%"];
-/// Operators of a sum, and characters that people write for them.
+/// Operators of the precedence of `+`, and characters that people write for them.
 const SUM: &[&str] = &["+", "-", "−", "–", "—"];
 
 impl<'s> Recovery<'_, 's> {
-    /// Reads the value of a field, a definition or a `--set` argument, or whatever stands in place
-    /// of one.
+    /// Reads the value of a field, a definition or a `--set` argument. Reports any other text in
+    /// its place and returns a bad value.
     pub(super) fn value(&mut self) -> Value<'s> {
         let start = self.here();
         let (values, commas) = self.values();
@@ -40,8 +40,8 @@ impl<'s> Recovery<'_, 's> {
         self.stray_closings(start.start, value)
     }
 
-    /// Reads values as long as they may belong together. Returns the values and the number of
-    /// commas between them.
+    /// Reads values for as long as they may belong to one list. Returns the values and the number
+    /// of commas between them.
     fn values(&mut self) -> (Vec<Value<'s>>, usize) {
         let (mut values, mut commas) = (Vec::new(), 0);
         self.too_deep = false;
@@ -67,7 +67,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports a list that lacks its `(`. The next token is its `)`. Returns a bad value.
+    /// Reports a list that lacks its `(`; its `)` is the next token. Returns a bad value.
     fn unopened_list(&mut self, start: Span, values: &[Value<'s>], commas: usize) -> Value<'s> {
         let (sign, span) = (self.word(0), self.bump());
         let parts = self.context.takes.and_then(Type::parts);
@@ -114,18 +114,19 @@ impl<'s> Recovery<'_, 's> {
 
     fn is_stray_closing(&mut self) -> bool {
         let word = self.word(0);
-        // A closing bracket in place of a block's `}` is reported by the block.
+        // A bracket in place of the block's `}` is reported when the block ends.
         let is_end = |this: &mut Self| this.context.is_block && this.is_end_of_block();
         matches!(word, ")" | "]") && word != self.context.close && !is_end(self)
     }
 
-    /// Returns whether the next token belongs to `values`, which precede it.
+    /// Returns whether the next token continues the values that were read, `values`, rather than
+    /// ending them.
     pub(super) fn goes_on(&mut self, values: &[Value<'s>]) -> bool {
         let (word, next, is_new) = (self.word(0), self.word(1), self.is_on_new_line(0));
         match self.kind(0) {
             _ if is_new && !self.context.is_block => false,
             TokenKind::Name => {
-                // Words that together are the name of a colour or a method, as in `dark red`.
+                // Two words may together be the name of one colour or method, as in `dark red`.
                 let is_words = matches!(self.context.takes, Some(Type::Color | Type::Method))
                     && are_names(values)
                     && (!self.starts_value(1) || self.is_field_name(next));
@@ -162,7 +163,7 @@ impl<'s> Recovery<'_, 's> {
         Value { kind, span }
     }
 
-    // Operators.
+    // The methods below read operators.
 
     /// Reads a value with its operators.
     pub(super) fn expression(&mut self) -> Value<'s> {
@@ -176,7 +177,8 @@ impl<'s> Recovery<'_, 's> {
             let first = this.signed();
             this.chain(first, PRODUCT, Self::signed)
         });
-        // A condition that starts with `if` is handled in `operand`.
+        // This operator starts a condition such as `a > b ? c : d`. A condition that starts with
+        // `if` is handled in `operand`.
         let compares = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?" | "=");
         if compares && !self.is_on_new_line(0) && self.condition() {
             return bad(left.span.to(self.behind()));
@@ -231,8 +233,8 @@ impl<'s> Recovery<'_, 's> {
         chain(left, operator, sign, right)
     }
 
-    /// Returns the fix that writes `r^2` or `r**2` as a product; `None` for other bases or
-    /// exponents.
+    /// Returns the fix that writes `r^2` or `r**2` as the product `r * r`. Returns `None` unless
+    /// the base is a number or a name and the exponent is 2.
     fn power(&self, sign: &str, base: &Value<'s>, exponent: &Value<'s>) -> Option<Fix> {
         let is_square = matches!(sign, "^" | "**") && exponent.kind == ValueKind::Number("2");
         let is_one = matches!(base.kind, ValueKind::Number(_) | ValueKind::Name(_));
@@ -262,7 +264,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Skips operators that lack a left operand, and the value after them. Returns the empty span
-    /// after them.
+    /// where reading stopped.
     fn passed_operators(&mut self) -> Span {
         while PRODUCT.contains(&self.word(0)) {
             self.bump();
@@ -275,8 +277,8 @@ impl<'s> Recovery<'_, 's> {
         self.behind()
     }
 
-    /// Returns whether no value can start here: the next token is a closing or separating one, a
-    /// field's name, or the start of an item.
+    /// Returns whether no value can start at the next token, since it closes or separates
+    /// something, names a field, or starts an item.
     pub(super) fn ends_value(&mut self) -> bool {
         let word = self.word(0);
         match self.kind(0) {
@@ -322,7 +324,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    // Operands.
+    // The methods below read operands.
 
     fn operand(&mut self) -> Value<'s> {
         let word = self.word(0);
@@ -344,7 +346,8 @@ impl<'s> Recovery<'_, 's> {
             _ => {
                 let start = self.behind();
                 self.unexpected("a value", example(self.context.takes));
-                // Skip the groups of `\frac{1}{2}`, so that it is one mistake.
+                // The groups of a LaTeX command, as in `\frac{1}{2}`, are skipped, so that the
+                // command is one mistake.
                 if word == "\\" {
                     self.bump();
                     self.bump();
@@ -411,7 +414,7 @@ impl<'s> Recovery<'_, 's> {
         bad(span)
     }
 
-    /// Reports a value that nests too deep, and skips the rest of it.
+    /// Reports a value that nests deeper than [`NESTING_LIMIT`], and skips the rest of it.
     pub(super) fn pass_over(&mut self) -> Value<'s> {
         let first = self.here();
         self.report(&say::TOO_DEEP, first, &[&NESTING_LIMIT.to_string()], None);

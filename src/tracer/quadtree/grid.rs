@@ -1,8 +1,7 @@
-//! The grid of a quadtree: whole numbers for positions in the view plane and for the nearness of an
-//! object.
+//! The grid of a quadtree: whole numbers for positions in the view plane and for nearness.
 //!
-//! In: coordinates in the view plane, inverse depths. Out: units of the grid, and the upper half of
-//! an `f64`. Both conversions are monotone, and bounds are rounded outwards.
+//! In: coordinates in the view plane, and inverse depths. Out: units of the grid, and the upper
+//! half of an `f64`'s bits. Both conversions are monotone, and bounds are rounded outwards.
 
 use crate::tracer::{
     bounds2d::Extent,
@@ -11,12 +10,13 @@ use crate::tracer::{
     local_form::Patch,
 };
 
-/// Ratio of the root's side to the window's longer side. The root is a sixteenth wider on either
-/// side, so that rectangles of pixels at the picture's edge are inside, including roundings.
+/// Ratio of the side of the root cell to the longer side of the camera's window. The root is wider
+/// by a sixteenth on each side. Rectangles of pixels at the picture's edge are therefore inside,
+/// even with rounding errors.
 const ROOT_MARGIN: f64 = 1.125;
 
-/// Binary logarithm of the root's side in units of the grid. A pixel of a picture 100,000 pixels
-/// wide is about a hundred units.
+/// Binary logarithm of the side of the root cell in units of the grid. In a picture 100,000 pixels
+/// wide, a pixel is about a hundred units long.
 pub(super) const LEVELS: u32 = 24;
 
 /// A rectangle in units of the grid; both ends are included.
@@ -26,7 +26,7 @@ pub struct Rectangle {
     pub(super) high: [u32; 2],
 }
 
-/// The bounds of an object, and its maximum nearness.
+/// The bounds of an object in the view plane, and its maximum nearness.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundedObject {
     /// Rectangle in which the object may be seen.
@@ -37,8 +37,8 @@ pub struct BoundedObject {
     pub object: u32,
 }
 
-/// An inverse depth rounded to 20 bits of its fraction: the upper half of a non-negative `f64`,
-/// whose bits have the order of the numbers.
+/// An inverse depth rounded to 20 bits of its fraction: the upper 32 bits of a non-negative `f64`.
+/// The order of these bits, as an integer, is the order of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Nearness(u32);
 
@@ -47,7 +47,7 @@ pub struct Nearness(u32);
 pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// First unit of the window on each axis. No point outside of the window is looked up.
+    /// First unit of the window on each axis; no point outside of the window is looked up.
     low: [u32; 2],
     high: [u32; 2],
 }
@@ -56,8 +56,7 @@ impl Nearness {
     /// The least nearness, which hides nothing.
     pub const NONE: Self = Self(0);
 
-    /// Rounds up a number that is not negative. Returns the greatest nearness for NaN and negative
-    /// numbers.
+    /// Rounds a non-negative number up. Returns the greatest nearness for NaN and negative numbers.
     fn above(x: f64) -> Self {
         if x >= 0.0 {
             Self((x.to_bits() >> 32) as u32 + 1)
@@ -66,7 +65,7 @@ impl Nearness {
         }
     }
 
-    /// Rounds down a positive number. Returns [`NONE`](Self::NONE) for all other numbers and NaN.
+    /// Rounds a positive number down. Returns [`NONE`](Self::NONE) for all other numbers and NaN.
     pub fn below(x: f64) -> Self {
         if x > 0.0 {
             Self((x.to_bits() >> 32) as u32)
@@ -77,7 +76,7 @@ impl Nearness {
 }
 
 impl Rectangle {
-    /// The rectangle that contains every other one. Its ends are below `u32::MAX`, since
+    /// The rectangle that contains every other rectangle. Its ends are below `u32::MAX`, because
     /// [`share_of`](Self::share_of) adds one to them.
     pub const ALL: Self = Self {
         low: [0; 2],
@@ -97,7 +96,7 @@ impl Rectangle {
         holds(0) & holds(1)
     }
 
-    /// Returns the share of `other` that this rectangle covers, 0 to 1.
+    /// Returns the fraction of `other` that this rectangle covers, from 0 to 1.
     pub fn share_of(&self, other: &Self) -> f64 {
         let share = |i: usize| {
             let (low, high) = (
@@ -117,7 +116,7 @@ impl Rectangle {
 }
 
 impl CellGrid {
-    /// Builds the grid of a window.
+    /// Builds the grid for a camera's window.
     pub fn new(window: &Window<f64>) -> Self {
         let half = window.x.max(window.y) * ROOT_MARGIN;
         let mut grid = Self {
@@ -132,11 +131,11 @@ impl CellGrid {
         grid
     }
 
-    /// Returns the unit that contains a coordinate, or the nearest unit of the grid. Returns the
-    /// first unit for NaN.
+    /// Returns the unit that contains the coordinate `x`, or the nearest unit of the grid. Returns
+    /// the first unit for NaN.
     #[inline]
     fn unit(&self, x: f64) -> u32 {
-        // The last unit but one, since the window ends one unit further.
+        // This is the last unit but one, because the window ends one unit beyond the result.
         const LAST: u32 = (1 << LEVELS) - 2;
         (((x - self.least) * self.per_unit) as u32).min(LAST)
     }
@@ -151,7 +150,7 @@ impl CellGrid {
     }
 
     /// Converts ranges of X and Y to a rectangle, widened by one unit on each side and clipped to
-    /// the window. Returns `None` if it lies outside of the window.
+    /// the window. Returns `None` if the rectangle lies outside of the window.
     fn ends(&self, ranges: [Interval; 2]) -> Option<Rectangle> {
         let low = [0, 1].map(|i| {
             let low = self.unit(ranges[i].low).saturating_sub(1);
@@ -174,7 +173,7 @@ impl CellGrid {
         Some(BoundedObject {
             bounds: self.ends(extent.across)?,
             nearest: Nearness::above(extent.nearest),
-            // An index fits, since 2^32 objects would not fit into memory.
+            // The index fits, because 2^32 objects would not fit into memory.
             object: object as u32,
         })
     }

@@ -1,15 +1,15 @@
 //! The objects that rays through a point of the view plane may hit: a quadtree over their bounds
 //! there.
 //!
-//! All rays share the eye, so a ray is a point of the view plane and lies in exactly one cell of
-//! each level: its search does not branch. An object is listed in the cells that it overlaps on the
-//! level where cells are about as large as the object. There are at most four such cells, so the
-//! lists have at most four entries per object, whatever the objects look like. Each list is sorted
-//! by nearness. A ray that has hit an object leaves a list where all further entries lie behind
-//! that object.
+//! All rays share the eye, so that a ray is a point of the view plane and lies in exactly one cell
+//! of each level: its search does not branch. An object is listed in the cells that it overlaps on
+//! the level where cells are about as large as the object. There are at most four such cells, so
+//! that the lists have at most four entries per object, whatever the objects look like. Each list
+//! is sorted by nearness, the greatest first. A ray that has hit an object stops reading a list at
+//! the first entry behind this object.
 //!
 //! Cells have coordinates in whole numbers, and the conversion to them is monotone. Its rounding
-//! moves a point out of the bounds that contain it by at most one unit, and bounds are widened by
+//! may move a point out of its object's bounds by at most one unit; bounds are therefore widened by
 //! one unit.
 
 mod grid;
@@ -33,15 +33,16 @@ pub struct Quadtree {
 }
 
 impl Quadtree {
-    /// Builds a quadtree over `items`. If it is cancelled, some of the objects are missing.
+    /// Builds a quadtree over `items`. If `cancel` is set meanwhile, some of the objects are
+    /// missing.
     pub fn new(grid: CellGrid, items: Vec<BoundedObject>, cancel: &AtomicBool) -> Self {
         let tree = Cells::new(items, cancel);
         Self { grid, tree }
     }
 
-    /// Calls `visit` with the objects that a ray may hit, level by level from the largest on, until
-    /// it fails. `visit` returns the nearness at and below which objects are hidden; these are
-    /// skipped. Returns `None` if the direction is outside of the window.
+    /// Calls `visit` with the objects that a ray may hit, from the largest cell down, until `visit`
+    /// fails. `visit` returns a nearness; objects at or below it are hidden and are skipped.
+    /// Returns `None` if the direction is outside of the window.
     #[inline]
     pub fn visit<E>(
         &self,
@@ -51,9 +52,9 @@ impl Quadtree {
         Some(self.tree.visit(self.grid.units(r)?, visit))
     }
 
-    /// Finds the objects that rays through a patch may hit, in file order. For an object that fills
-    /// the patch, `behind` returns the nearness at and below which it hides other objects; these
-    /// are left out. Returns `None` if there seem to be more than `most` objects.
+    /// Returns the objects that rays through a patch may hit, in file order. `behind` is called
+    /// with an object that fills the patch, and returns a nearness; objects at or below it are
+    /// hidden and are left out. Returns `None` if there seem to be more than `most` objects.
     pub fn within(
         &self,
         patch: &Patch,
@@ -66,7 +67,7 @@ impl Quadtree {
         }
     }
 
-    /// Finds the objects that rays through a patch may hit, the nearest first. Returns `None` if
+    /// Returns the objects that rays through a patch may hit, the nearest first. Returns `None` if
     /// there seem to be more than [`OBJECTS_A_CELL`].
     pub fn nearby(&self, patch: &Patch) -> Option<Vec<BoundedObject>> {
         let mut items = self.within(patch, OBJECTS_A_CELL, |_| Nearness::NONE)?;
@@ -74,8 +75,8 @@ impl Quadtree {
         Some(items)
     }
 
-    /// Visits those of the objects `nearby` that a ray may hit, as [`visit`](Self::visit) does.
-    /// `nearby` is the result of [`nearby`](Self::nearby) for a patch that contains the ray.
+    /// Calls `visit` with the objects of `nearby` that a ray may hit, as [`visit`](Self::visit)
+    /// does. `nearby` is the result of [`nearby`](Self::nearby) for a patch that contains the ray.
     #[inline]
     pub fn visit_nearby<E>(
         &self,
@@ -87,8 +88,8 @@ impl Quadtree {
         Some(visit_list(nearby, at, &mut { Nearness::NONE }, &mut visit))
     }
 
-    /// Returns the rectangle that contains all rays through a patch. Returns `None` if the patch
-    /// lies outside of the window.
+    /// Returns a rectangle that contains all rays through a patch. Returns `None` if the patch lies
+    /// outside of the window.
     #[inline]
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         self.grid.rectangle(patch)

@@ -1,7 +1,7 @@
 //! The point query: the objects that one ray may hit.
 //!
-//! In: a point in the grid. Out: the objects of the cells that contain it, from the root down. The
-//! search leaves a list where all further entries are hidden.
+//! In: a point in the grid. Out: the objects of the cells that contain the point, from the root
+//! cell down. The search stops reading a list at the first hidden entry.
 
 use super::{
     grid::{BoundedObject, LEVELS, Nearness},
@@ -9,8 +9,8 @@ use super::{
 };
 
 impl Cells {
-    /// Calls `visit` with the objects that the ray through a point may hit, until it fails. `visit`
-    /// returns the nearness at and below which objects are hidden; these are skipped.
+    /// Calls `visit` with the objects that the ray through a point may hit, until `visit` fails.
+    /// `visit` returns a nearness; objects at or below it are hidden and are skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -36,8 +36,9 @@ impl Cells {
     }
 }
 
-/// Calls `visit` with the objects of one list, the nearest first, that the ray through a point may
-/// hit. Stops at the first object at or below `hidden`, which is set to what `visit` returns.
+/// Calls `visit` with the objects of one list that the ray through a point may hit, the nearest
+/// first. Stores in `hidden` the nearness that `visit` returns, and stops at the first object at or
+/// below it.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[BoundedObject],

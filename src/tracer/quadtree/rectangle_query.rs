@@ -1,27 +1,27 @@
 //! The rectangle query: the objects that rays through a rectangle may hit.
 //!
-//! In: a rectangle of the grid. Out: the objects whose bounds intersect it, in file order, except
-//! those behind an object that fills it.
+//! In: a rectangle of the grid. Out: the objects whose bounds intersect the rectangle, in file
+//! order, except those behind an object that fills it.
 
 use super::{
     grid::{BoundedObject, Nearness, Rectangle},
     tree::{CellSquare, Cells},
 };
 
-/// Maximum number of cells that list one object. The object is no longer than such a cell, so it
-/// intersects at most two of them along each axis.
+/// Maximum number of cells that list one object. An object is no longer than a cell that lists it,
+/// so that it intersects at most two such cells along each axis.
 const MAX_CELLS: usize = 4;
 
 /// A search for the objects that rays through a rectangle may hit.
 pub(super) struct Search<'a, F> {
     tree: &'a Cells,
     rectangle: &'a Rectangle,
-    /// Maximum number of entries found, in which an object may occur several times.
+    /// Maximum number of entries in `found`, where an object may occur several times.
     most: usize,
-    /// For an object that fills the rectangle, returns the nearness at and below which it hides
-    /// others.
+    /// Called with an object that fills the rectangle, returns a nearness; objects at or below it
+    /// are hidden.
     behind: F,
-    /// Nearness at and below which objects are hidden.
+    /// Nearness at and below which objects are hidden by the objects found so far.
     hidden: Nearness,
     found: Vec<BoundedObject>,
 }
@@ -38,20 +38,20 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         }
     }
 
-    /// Returns the objects in file order, each once. Returns `None` if more than `most` entries
-    /// were found.
+    /// Returns the objects in file order, each once. Returns `None` if more than `most` entries are
+    /// found.
     pub(super) fn run(mut self) -> Option<Vec<BoundedObject>> {
         self.below(0, CellSquare::ROOT)?;
         let mut items = self.found;
         items.retain(|item| item.nearest > self.hidden);
         items.sort_unstable_by_key(|item| item.object);
-        // Removes repetitions of objects that lie in several cells.
+        // An object that lies in several cells occurs several times.
         items.dedup_by_key(|item| item.object);
         Some(items)
     }
 
-    /// Adds the objects of a cell, and then those of its quarters, so that large objects, which may
-    /// hide others, come first. Returns `None` if more than `most` entries were found.
+    /// Adds the objects of a cell, and then those of its quarters. Large objects, which may hide
+    /// others, therefore come first. Returns `None` if more than `most` entries are found.
     fn below(&mut self, cell: u32, square: CellSquare) -> Option<()> {
         let cell = self.tree.cells[cell as usize];
         if cell.nearest <= self.hidden || !square.bounds().meets(self.rectangle) {

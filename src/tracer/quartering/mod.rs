@@ -1,16 +1,16 @@
 //! The picture divided into parts that certainly show one colour, pixels that may show several, and
 //! parts with too many candidates.
 //!
-//! In: the world, and an area of its picture. Out: the parts of that area, one after the other. The
+//! In: the world, and an area of its picture. Out: the parts of this area, one after the other. The
 //! method is Warnock's subdivision ("A hidden surface algorithm for computer generated halftone
-//! pictures", 1969): an area is quartered until it shows one colour, is a single pixel, or has more
-//! candidates than its samples are worth. The samples of a pixel are then tested only against its
-//! candidates. If there are too many candidates, each sample is tested against the objects nearby.
-//! Sampled and exact pictures share this method: what is certain for a part holds for every ray
-//! through it.
+//! pictures", 1969): an area is quartered until it shows one colour, is a single pixel, or has so
+//! many candidates (objects that may be seen in it) that finding them costs more than it saves its
+//! samples. The samples of a pixel are then tested only against its candidates. If there are too
+//! many candidates, each sample is tested against all objects near it. Sampled and exact pictures
+//! share this method, because what is certain for a part holds for every ray through it.
 //!
-//! Areas are those of one fixed grid over the whole picture, whatever part of it is wanted, so that
-//! a pixel's candidates do not depend on the part.
+//! Areas belong to one fixed grid over the whole picture, whatever part of it is wanted, so that a
+//! pixel's candidates do not depend on this part.
 
 #[cfg(test)]
 mod tests;
@@ -25,34 +25,35 @@ use super::{
 };
 use crate::area::Area;
 
-/// Side of the squares that quartering begins with, in pixels: a power of two, so that quarters are
-/// squares.
+/// Side of the squares with which quartering begins, in pixels. It is a power of two, so that the
+/// quarters are squares.
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
 /// Minimum number of samples per candidate in an area that is quartered further. Measured: with 8,
-/// the time for 10³ and 10⁵ spheres changes by less than a tenth, and 3000 slivers with one sample
-/// per pixel take twice as long. With 2, the time rises by up to a quarter.
+/// the time for 10³ and 10⁵ spheres changes by less than 10 %, but 3000 slivers with one sample per
+/// pixel take twice as long. With 2, the time rises by up to 25 %.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
-/// Cost of finding where one candidate is seen, from a square of the grid down. The unit is one
-/// object test of a sample that is traced one by one. Such a sample tests the objects whose bounds
-/// contain it; its search of the quadtree counts as one more test. Measured: with 80, 10⁴ spheres
-/// on 320×180 pixels take a tenth longer; with 200, on 640×360 pixels a fiftieth longer.
+/// Cost of finding where one candidate is seen within a square of the grid. The unit is the time to
+/// test one object for a sample that is traced on its own; such a sample tests the objects whose
+/// bounds contain it, and its search of the quadtree counts as one more test. Measured: with 80,
+/// 10⁴ spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on 640×360
+/// pixels.
 const ASKED_A_CANDIDATE: f64 = 120.0;
 
 /// Divides one picture into parts.
 #[derive(Debug)]
 pub struct Quartering<'a> {
     world: &'a World,
-    /// Mean number of samples per pixel; infinite for a picture that must be computed exactly at
-    /// any cost.
+    /// Mean number of samples per pixel; infinite for a picture that is computed exactly, where no
+    /// part may be [`Crowded`](PicturePart::Crowded).
     samples: f64,
 }
 
-/// A part of the picture, by what is seen in it.
+/// A part of the picture, classified by what may be seen in it.
 #[derive(Clone, Copy, Debug)]
 pub enum PicturePart<'a> {
-    /// One colour is seen in all of it.
+    /// All of the part certainly shows one colour.
     OneColor {
         /// The part's area.
         area: Area,
@@ -71,15 +72,15 @@ pub enum PicturePart<'a> {
         /// the squares are known.
         checks: Option<&'a CheckerPixel>,
     },
-    /// An area with more candidates than it is worth to tell apart. Its samples are traced one by
-    /// one.
+    /// An area with so many candidates that finding where each is seen costs more than it saves.
+    /// Its samples are traced one by one.
     Crowded {
         /// The part's area.
         area: Area,
     },
 }
 
-/// Buffers that are reused from area to area: the list of candidates at each depth of the
+/// Buffers that are reused from area to area: a list of candidates for each depth of the
 /// quartering.
 #[derive(Debug, Default)]
 pub struct Scratch {
@@ -98,8 +99,8 @@ impl<'a> Quartering<'a> {
         Self { world, samples }
     }
 
-    /// Calls `visit` with the parts of the area `wanted` until it breaks. The parts cover each
-    /// pixel of the area exactly once.
+    /// Calls `visit` with the parts of the area `wanted`, until `visit` breaks. The parts cover
+    /// each pixel of the area exactly once.
     pub fn parts(
         &self,
         wanted: Area,
@@ -128,16 +129,16 @@ impl<'a> Quartering<'a> {
         })
     }
 
-    /// Returns whether it costs less to tell the objects of an area apart than to trace the area's
-    /// samples one by one. `objects` is their number, and `asked` the mean number of objects that
-    /// one sample tests.
+    /// Returns whether quartering an area costs less than tracing its samples one by one. `objects`
+    /// is the number of objects that may be seen in the area, and `asked` the mean number of
+    /// objects that one sample would test.
     fn is_worth_cutting(&self, area: Area, objects: usize, asked: f64) -> bool {
         let samples = self.samples * area.pixels() as f64;
         objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64
     }
 
-    /// Returns the maximum number of candidates that are worth telling apart in an area. In a
-    /// single pixel, where quartering ends, it is one candidate per sample.
+    /// Returns the maximum number of candidates for which an area is quartered. In a single pixel,
+    /// where quartering ends, this is one candidate per sample.
     fn most(&self, area: Area) -> usize {
         let shared = area.pixels() as f64 / SAMPLES_A_CANDIDATE;
         (self.samples * shared.max(1.0)) as usize
@@ -155,7 +156,8 @@ struct Cut<'a, 'b, V> {
 }
 
 impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
-    /// Shows an area, or quarters it, depending on the candidates in it. Stops if `visit` breaks.
+    /// Calls `visit` with an area, or quarters the area, depending on the candidates in it. Stops
+    /// if `visit` breaks.
     fn cut(
         &mut self,
         area: Area,
@@ -181,7 +183,8 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
                             let slot = slots[usize::from(odd)];
                             return self.show(PicturePart::OneColor { area, slot });
                         }
-                        // Samples need certain squares; exact areas allow for uncertain ones.
+                        // Samples need certain squares; exact integration allows for uncertain
+                        // ones.
                         ShownSquares::Squares(checks) => {
                             let is_exact = self.quartering.samples.is_infinite();
                             (checks.is_certain || is_exact).then_some(checks)
@@ -202,8 +205,8 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
             _ => {}
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
-        // Up to as many candidates as a cell of the quadtree lists, testing the candidates is no
-        // slower, since each sample would otherwise test that list.
+        // With at most as many candidates as a cell of the quadtree lists, testing all candidates
+        // is no slower, because each sample would otherwise test the objects of such a list.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
             return self.show(PicturePart::Crowded { area });
         }
@@ -229,7 +232,7 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
         flow
     }
 
-    /// Calls `visit` with the wanted pixels of a part, if there are any.
+    /// Calls `visit` with the part of `part` that is wanted. Does nothing if none of it is wanted.
     #[inline]
     fn show(&mut self, part: PicturePart) -> ControlFlow<()> {
         if self.is_all_wanted {
@@ -255,7 +258,7 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
     }
 }
 
-/// Takes the list of a depth out of `scratch`. The caller puts it back after use.
+/// Takes the list of the depth `depth` out of `scratch`. The caller puts it back after use.
 fn take(scratch: &mut Scratch, depth: usize) -> Vec<VisibilityCandidate> {
     if scratch.candidates.len() <= depth {
         scratch.candidates.resize_with(depth + 1, Vec::new);

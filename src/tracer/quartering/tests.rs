@@ -16,7 +16,7 @@ fn world(shapes: &[Shape]) -> World {
     World::new(&scene(along(DVec3::ZERO, DVec3::NEG_Z), shapes))
 }
 
-/// A thousand spheres at one depth, all over the picture.
+/// Returns a thousand spheres at one depth, all over the picture.
 fn thousand_spheres(depth: f64) -> Vec<Shape> {
     let sphere = |index: i32| {
         let x = (f64::from(index % 40) - 19.5) * 0.02 * depth;
@@ -26,8 +26,8 @@ fn thousand_spheres(depth: f64) -> Vec<Shape> {
     (0..1000).map(sphere).collect()
 }
 
-/// Returns a world of large triangles in parallel planes, in arbitrary order. Each hides all
-/// triangles behind it.
+/// Returns a world of large triangles in parallel planes, in arbitrary order. Each triangle hides
+/// all triangles behind it.
 fn triangles_in_layers(count: usize) -> World {
     let layer = |index: usize| {
         let depth = 10.0 + (index * 37 % count) as f64 / 64.0;
@@ -37,8 +37,8 @@ fn triangles_in_layers(count: usize) -> World {
     world(&(0..count).map(layer).collect::<Vec<_>>())
 }
 
-/// Returns a world of single-coloured boards below and above each other, in arbitrary order. The
-/// horizon lies in the picture.
+/// Returns a world of single-coloured boards, some above the eye and some below, in arbitrary
+/// order. The horizon lies in the picture.
 fn boards_in_layers(count: usize) -> World {
     let layer = |index: usize| {
         let height = 1.0 + (index * 37 % count) as f64 / 64.0;
@@ -95,8 +95,7 @@ fn what_a_wall_hides_is_not_found() {
         assert!(all_within(whole, usize::MAX, &mut found));
         assert_eq!(found.len() == 1, behind);
         assert!(behind || found.len() == 1001, "{}", found.len());
-        // Behind the wall, nothing is found either in parts where several cells of the quadtree
-        // list the wall.
+        // Where several cells of the quadtree list the wall, nothing is found behind it, either.
         for part in whole.tiles(7) {
             assert!(all_within(part, usize::MAX, &mut found));
             assert!(found.len() == 1 || !behind, "{part:?}");
@@ -104,8 +103,8 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// Nearby objects are found around every square of a crowd, and some pixels are known to show only
-/// one colour. At all points, the nearby objects give the same colour as the quadtree.
+/// The objects nearby can be found around every square of a crowd. Some pixels are then known to
+/// show one colour. At all points, the objects nearby give the same colour as the quadtree.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

@@ -4,12 +4,12 @@
 //! seen.
 //!
 //! In a pixel, every boundary is a linear or a quadratic form of the offset from the pixel's
-//! centre, with one error bound for all its values there. The objects that may be seen in the pixel
-//! are therefore described by a few forms. Forms with one sign in the whole pixel are left out; the
-//! others are evaluated for all samples in plain arrays, which the compiler vectorizes. A form is
-//! divided by its error bound, so that its sign is certain where its value is above 1 or below −1.
-//! An uncertain sample is traced again on its own, exactly. This module therefore cannot change
-//! what is seen, but only find it faster.
+//! centre, with one error bound for all its values in the pixel. The objects that may be seen in
+//! the pixel are therefore described by a few forms. Forms with one sign in the whole pixel are
+//! left out. The others are evaluated for all samples in plain arrays, which the compiler
+//! vectorizes. A form is divided by its error bound, so that its sign is certain where its value is
+//! above 1 or below −1. An uncertain sample is traced again on its own, exactly. This module
+//! therefore never changes what is seen; it only finds it faster.
 
 mod pixel;
 mod prepare;
@@ -23,9 +23,10 @@ use crate::math::SimdWidth;
 
 pub use self::pixel::PreparedPixel;
 
-/// Prepares `pixel` for the pixel in column `x` and row `y`, from the objects that may be seen
-/// there, in file order. If a checkerboard is all that is seen there and its squares are known,
-/// they are given as `checks`. Sets `is_hard` if the samples must be traced one by one.
+/// Prepares `pixel` for the pixel in column `x` and row `y`. `candidates` are the objects that may
+/// be seen there, in file order. `checks` are the squares of a checkerboard, if nothing else is
+/// seen in the pixel and its squares are known. Sets `is_hard` if the samples must be traced one by
+/// one.
 pub fn prepare(
     world: &World,
     [x, y]: [u32; 2],
@@ -36,7 +37,7 @@ pub fn prepare(
     (pixel.x, pixel.y) = (x, y);
     pixel.candidates.clear();
     match candidates {
-        // The most frequent case, for which `push` avoids the call to copy a slice.
+        // This is the most frequent case. `push` avoids the call to copy a slice.
         [only] => pixel.candidates.push(*only),
         _ => pixel.candidates.extend_from_slice(candidates),
     }
@@ -47,9 +48,10 @@ pub fn prepare(
     pixel.is_hard = prepared.is_err();
 }
 
-/// Calls `count` with a palette slot and the number of samples that see it, for all colours that
-/// the samples of a pixel see; a slot may occur several times. `x` and `y` are the samples' offsets
-/// from the pixel's centre, padded to a multiple of eight; the first `samples` of them count.
+/// Calls `count` with the palette slot of every colour that the samples of a pixel see, and with
+/// the number of samples that see it. It may be called several times for a slot. `x` and `y` are
+/// the samples' offsets from the pixel's centre, padded to a multiple of eight; only the first
+/// `samples` of them count.
 pub fn count(
     world: &World,
     pixel: &mut PreparedPixel,
@@ -87,7 +89,7 @@ pub fn count(
     }
 }
 
-/// Lists the colours that may be seen in a pixel, each with its count set to 0.
+/// Replaces the pixel's list of colours by those that may be seen in it, each with the count 0.
 fn may_see(world: &World, pixel: &mut PreparedPixel) {
     let color = |code: f64, slot: usize| ColorCount {
         code,

@@ -1,4 +1,4 @@
-//! A prepared pixel: its surfaces as forms, and buffers for the samples of one chunk.
+//! A prepared pixel: its surfaces as forms, and buffers for one chunk of samples.
 
 use super::super::{
     candidates::VisibilityCandidate,
@@ -6,18 +6,18 @@ use super::super::{
     local_form::{LocalForm, LocalQuadratic, ScaledLine},
 };
 
-/// Maximum number of samples that are evaluated at a time. Their six [`Lanes`], 3 KiB, and their
-/// coordinates stay in the first-level cache.
+/// Maximum number of samples that are evaluated at a time, a chunk. The six arrays of [`Lanes`] for
+/// them, 3 KiB, and their coordinates stay in the first-level cache.
 pub(super) const CHUNK_SAMPLES: usize = 64;
 
-/// Code of a sample that hits no object. The first colour of the pixel's object i has the code 2i +
-/// 1, its second colour 2i + 2.
+/// Code of a sample that hits no object. The first colour of the object with the index i among the
+/// pixel's candidates has the code 2i + 1, its second colour 2i + 2.
 pub(super) const BACKGROUND: f64 = 0.0;
 /// Code of an uncertain sample, which is traced again on its own.
 pub(super) const DOUBT: f64 = -1.0;
 
-/// The objects of one pixel, prepared for many samples. The value is reused from pixel to pixel, to
-/// keep its allocations.
+/// The objects of one pixel, prepared for many samples. One value is reused for all pixels, to keep
+/// its allocations.
 #[derive(Debug, Default)]
 pub struct PreparedPixel {
     /// The objects that may be seen in the pixel.
@@ -25,16 +25,16 @@ pub struct PreparedPixel {
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) surfaces: Vec<PixelSurface>,
-    /// Boundary lines and pattern lines of all surfaces.
+    /// The lines of all surfaces' boundaries and patterns.
     pub(super) lines: Vec<ScaledLine>,
-    /// Minimum difference of inverse depths whose sign is certain. `None` if the surfaces are
-    /// sorted from back to front and need no comparison per sample.
+    /// Minimum difference of two inverse depths at which the order is certain. `None` if the
+    /// surfaces are sorted from back to front, so that samples compare no depths.
     pub(super) apart: Option<f64>,
     /// Inverse depths of all flat faces as forms; filled only if depths are compared per sample.
     pub(super) planes: Vec<LocalForm>,
     /// Whether all samples must be traced one by one.
     pub(super) is_hard: bool,
-    /// The colours that may be seen, if samples are not traced one by one.
+    /// The colours that samples may see, except samples that are traced one by one.
     pub(super) colors: Vec<ColorCount>,
     /// Number of uncertain samples in the last chunk.
     pub(super) doubts: u64,
@@ -57,10 +57,10 @@ pub(super) struct ColorCount {
 pub(super) struct PixelSurface {
     /// The object's index among the candidates.
     pub(super) index: usize,
-    /// Start and end of the object's boundaries among all lines. Each form is ≥ 0 where rays hit
-    /// the object.
+    /// Start and end of the object's boundaries in [`PreparedPixel::lines`]. Each form is ≥ 0 for
+    /// rays that hit the object.
     pub(super) edges: [usize; 2],
-    /// The silhouette of a sphere, if it may cross the pixel: the form is > 0 where rays hit the
+    /// The silhouette of a sphere, if it may cross the pixel. The form is > 0 for rays that hit the
     /// sphere.
     pub(super) conic: Option<LocalQuadratic>,
     pub(super) pattern: ColorPattern,
@@ -72,22 +72,23 @@ pub(super) struct PixelSurface {
 pub(super) enum ColorPattern {
     /// One colour, given by its code.
     Plain(f64),
-    /// Two colours, separated by lines: those from the end of the surface's edges up to `end`.
-    /// Where the product of the lines' forms is positive, the first colour is shown, or the second
-    /// one if `odd`.
+    /// Two colours, separated by the lines from the end of the surface's edges up to `end`, in
+    /// [`PreparedPixel::lines`]. A point shows the first colour if the product of the lines' forms
+    /// is positive, or the second colour if `odd`.
     Lines { end: usize, odd: bool },
-    /// The squares of a checkerboard, found for each sample by a division.
+    /// The squares of a checkerboard. A division finds the square of each sample.
     Squares(CheckerForms),
 }
 
-/// How the inverse depth of a surface is computed.
+/// Formula for the inverse depth of a surface.
 #[derive(Debug)]
 pub(super) enum Depth {
     /// The inverse depth is not needed.
     Unknown,
-    /// The least inverse depth of a range of `planes`, given by its start and end.
+    /// The least inverse depth of the planes from a start to an end in [`PreparedPixel::planes`].
     Least([usize; 2]),
-    /// The greatest inverse depth of a range of `planes`, given by its start and end.
+    /// The greatest inverse depth of the planes from a start to an end in
+    /// [`PreparedPixel::planes`].
     Greatest([usize; 2]),
     /// The near side of a sphere: (b + √q) · factor.
     Sphere {
@@ -97,20 +98,20 @@ pub(super) enum Depth {
     },
 }
 
-/// Values of the samples of a chunk, with one array per quantity.
+/// Values of the samples of a chunk, with one array for each quantity.
 #[derive(Debug)]
 pub(super) struct Lanes {
-    /// Code of the nearest surface so far.
+    /// Code of the colour of the nearest surface so far.
     pub(super) seen: [f64; CHUNK_SAMPLES],
     /// Inverse depth of the nearest surface so far.
     pub(super) nearest: [f64; CHUNK_SAMPLES],
-    /// Least value of the current surface's boundary forms, in units of their error bounds.
+    /// Least value of the current surface's boundary forms, each divided by its error bound.
     pub(super) margin: [f64; CHUNK_SAMPLES],
     /// Code of the colour that the current surface shows.
     pub(super) shown: [f64; CHUNK_SAMPLES],
     /// Inverse depth of the current surface.
     pub(super) depth: [f64; CHUNK_SAMPLES],
-    /// Product of the forms of the pattern's lines.
+    /// Product of the forms of the current pattern's lines.
     pub(super) sign: [f64; CHUNK_SAMPLES],
 }
 
@@ -129,8 +130,8 @@ impl Default for Lanes {
 }
 
 impl PixelSurface {
-    /// Returns a surface without boundaries. `index` is its object's index among the candidates,
-    /// and `start` the number of lines so far.
+    /// Returns a surface without boundaries. `index` is the object's index among the candidates,
+    /// and `start` is the current length of [`PreparedPixel::lines`].
     pub(super) fn new(index: usize, start: usize) -> Self {
         Self {
             index,
@@ -141,7 +142,7 @@ impl PixelSurface {
         }
     }
 
-    /// Returns the code of the object's first colour, or of the second one if `odd`.
+    /// Returns the code of the object's first colour, or of its second colour if `odd`.
     pub(super) fn code(&self, odd: bool) -> f64 {
         (2 * self.index + 1 + usize::from(odd)) as f64
     }

@@ -1,8 +1,8 @@
 //! The preparation of a pixel: what is seen of its candidates, described by forms.
 //!
 //! In: the pixel and its candidates. Out: surfaces with their boundary forms, patterns and depths,
-//! sorted from back to front if their depths do not overlap. A form is left out if its error bound
-//! proves that it has one sign in the whole pixel. In rare cases and after overflows, the world
+//! sorted from back to front if their depths do not overlap. A form is left out if it certainly has
+//! one sign in the whole pixel. In rare cases and after overflows, preparation fails, and the world
 //! traces the samples one by one.
 
 use super::{
@@ -22,16 +22,16 @@ use super::{
 use crate::{area::Area, math::UP};
 
 /// Maximum error bound of a checkerboard's form; above it, the pixel's samples are traced one by
-/// one. Products of a few such factors with numbers of squares, which are below 2^53, would be
-/// infinite.
+/// one. Otherwise, products of such factors with numbers of squares, which are below 2^53, might
+/// overflow.
 const MAX_ERROR: f64 = 1e250;
 
-/// Maximum number of lines between squares through a pixel for which colours are decided by the
-/// lines' forms. For more lines, each sample's square is found by a division. Measured: with 3 to
-/// 12, the render time is the same; with division alone, figure 9.9 takes a ninth longer.
+/// Maximum number of lines between squares through a pixel for which the signs of the lines' forms
+/// give the colours; with more lines, a division finds the square of each sample. Measured: from 3
+/// to 12, the render time does not change; with division alone, figure 9.9 takes 11 % longer.
 const MAX_LINES: usize = 6;
 
-/// Error of a preparation: the pixel is a case in which samples are better traced one by one.
+/// Error of a preparation: the samples of the pixel should be traced one by one.
 pub(super) struct Hard;
 
 impl PreparedPixel {
@@ -45,7 +45,7 @@ impl PreparedPixel {
         self.order(world, &pixel)
     }
 
-    /// Prepares a pixel that a checkerboard fills, where nothing else may be seen.
+    /// Prepares a pixel that shows only a checkerboard.
     pub(super) fn prepare_checks(&mut self, checks: &CheckerPixel) -> Result<(), Hard> {
         self.clear();
         let mut surface = PixelSurface::new(0, 0);
@@ -61,8 +61,8 @@ impl PreparedPixel {
         self.apart = None;
     }
 
-    /// Adds a candidate as a surface, with its boundaries and colours as forms, unless it is
-    /// certainly not seen in the pixel.
+    /// Adds a candidate as a surface, with its boundaries and colours as forms. Adds nothing if the
+    /// candidate is certainly not seen in the pixel.
     fn add_surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
         let candidate = self.candidates[index];
         let object = &*f64::object(&world.geometry, candidate.object);
@@ -89,9 +89,9 @@ impl PreparedPixel {
         Ok(())
     }
 
-    /// Adds forms that are all ≥ 0 where an object is hit to the pixel's lines, except those that
-    /// are positive in the whole pixel. Returns `false` if no ray through the pixel hits the
-    /// object. Fails if a form has overflowed.
+    /// Adds an object's boundary forms, which are all ≥ 0 for rays that hit it, to the pixel's
+    /// lines. Leaves out forms that are positive in the whole pixel. Returns `false` if no ray
+    /// through the pixel hits the object. Fails if a form has overflowed.
     fn add_boundaries(&mut self, forms: &[Form<f64>], pixel: &Patch) -> Result<bool, Hard> {
         for form in forms {
             if !self.add_boundary(form.local(pixel))? {
@@ -123,8 +123,8 @@ impl PreparedPixel {
         surface: &mut PixelSurface,
     ) -> Result<bool, Hard> {
         if !sphere.is_outside() {
-            // The eye is on the surface or inside. A part of such a sphere is too rarely seen to
-            // deserve a rule of its own.
+            // The eye is on the surface or inside. Parts of such spheres are too rare for a rule of
+            // their own.
             return Err(Hard);
         }
         let (q, b) = sphere.local(pixel);
@@ -137,9 +137,9 @@ impl PreparedPixel {
         self.add_boundary(b)
     }
 
-    /// Adds the near and the far plane as boundaries of an object. Returns `false` if the object is
-    /// certainly clipped in the whole pixel. Fails if a plane may cut an object that has more than
-    /// one surface, or if a form has overflowed.
+    /// Adds the near and the far plane as boundaries of an object. Returns `false` if a plane
+    /// certainly removes the object in the whole pixel. Fails if a plane may cut an object that has
+    /// more than one surface, or if a form has overflowed.
     fn add_clips(
         &mut self,
         world: &World,
@@ -174,8 +174,8 @@ impl PreparedPixel {
         Ok(met)
     }
 
-    /// Computes the pattern of a checkerboard in a pixel: by lines if the squares are known and
-    /// few, otherwise by division. Fails if an error bound is too large.
+    /// Returns the pattern of a checkerboard in a pixel: by lines if the squares in the pixel are
+    /// known and few, otherwise by division. Fails if an error bound exceeds [`MAX_ERROR`].
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
@@ -194,9 +194,9 @@ impl PreparedPixel {
         }
     }
 
-    /// Adds the lines between a board's squares that may cross the pixel. `x0` to `x1` and `z0` to
-    /// `z1` are the squares in the pixel. Returns the pattern; it is by division if there are too
-    /// many lines.
+    /// Adds the lines between a board's squares that may cross the pixel to the pixel's lines, and
+    /// returns the pattern. `x0` to `x1` and `z0` to `z1` are the ranges of the squares in the
+    /// pixel. With more than [`MAX_LINES`] lines, adds none and returns a pattern by division.
     fn lines(
         &mut self,
         squares: &CheckerForms,
@@ -212,16 +212,16 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // The form of line k has the sign of x/square − k (for the second family, z/square
-                // − k). If it is positive in the whole pixel, the pixel lies beyond the line, where
-                // the parity is the other one.
+                // The form of line k has the sign of x/square − k (or z/square − k for the second
+                // family). If it is positive in the whole pixel, the pixel lies beyond the line,
+                // where the parity changes.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // Patterns count parity from the side where a form is positive; a negative
-                        // form changes it back.
+                        // A pattern starts from the parity where all forms are positive. A negative
+                        // form changes the parity.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),
@@ -238,7 +238,7 @@ impl PreparedPixel {
     }
 
     /// Sorts the surfaces by depth, from back to front. If their depths overlap, also prepares the
-    /// forms of their depths for a comparison at every sample.
+    /// forms of their depths, which are then compared at every sample.
     fn order(&mut self, world: &World, pixel: &Patch) -> Result<(), Hard> {
         let candidates = &self.candidates;
         let range = |surface: &PixelSurface| candidates[surface.index].inverse_depth;
@@ -271,7 +271,7 @@ impl PreparedPixel {
                     let (q, b) = sphere.local(pixel);
                     let root = q.factors.iter().map(|factor| factor.abs()).sum::<f64>();
                     let size = root.sqrt() + b.factors[2].abs() + b.spread();
-                    // |√a − √b| ≤ √|a − b|.
+                    // The error of √q is at most √(error of q), because |√a − √b| ≤ √|a − b|.
                     let own = b.rad + q.rad.sqrt() + size * (LOCAL_ROUNDING + error);
                     rad = rad.max(own * factor * UP);
                     Depth::Sphere { q, b, factor }
@@ -281,8 +281,8 @@ impl PreparedPixel {
         for plane in &self.planes {
             rad = rad.max(plane.rad);
         }
-        // `apart` covers the errors of both sides of a comparison. The comparison's own rounding is
-        // included in these errors.
+        // `apart` covers the errors of both compared depths. These errors include the rounding of
+        // the comparison.
         let apart = 2.0 * rad * UP;
         if !apart.is_finite() {
             return Err(Hard);

@@ -3,8 +3,8 @@
 //!
 //! In: a prepared pixel, and a chunk of its samples. Out: what each sample sees, and how often each
 //! colour is seen. For each surface in turn, its boundary forms are evaluated at all samples, then
-//! its pattern and its depth. Errors: a sample is in doubt, and traced again by the world, if a
-//! form's value is within its error bound of 0, or if two depths differ by at most their errors.
+//! its pattern and its depth. A sample is in doubt if a form's value is within its error bound of
+//! 0, or if two depths differ by at most their errors. The world traces such a sample again.
 
 use multiversion::multiversion;
 
@@ -27,8 +27,8 @@ fn see_simd(pixel: &mut PreparedPixel, points: At, count: usize) {
     pixel.see(points, count);
 }
 
-/// Offsets of samples from the pixel's centre: one list for each coordinate, whose length is a
-/// multiple of eight, the number of lanes of the widest vectors.
+/// Offsets of samples from the pixel's centre, as one list for each coordinate. The length of a
+/// list is a multiple of eight, the number of lanes of the widest vectors.
 pub(super) type At<'a> = [&'a [f64]; 2];
 
 impl PreparedPixel {
@@ -46,7 +46,7 @@ impl PreparedPixel {
         let length = points[0].len();
         let lanes = &mut self.lanes;
         match self.surfaces.as_slice() {
-            // A single surface fills the pixel.
+            // A single surface that fills the pixel.
             [surface] if surface.edges[0] == surface.edges[1] && surface.conic.is_none() => {
                 surface.show(&self.lines, points, &mut lanes.sign, &mut lanes.seen);
             }
@@ -86,8 +86,8 @@ impl PreparedPixel {
 }
 
 impl PixelSurface {
-    /// Writes the code of the colour that each sample shows if it hits the surface, or that of
-    /// doubt, to `shown`.
+    /// Writes to `shown`, for each sample, the code of the colour that the sample sees if it hits
+    /// the surface, or [`DOUBT`].
     #[inline(always)]
     fn show(
         &self,
@@ -111,8 +111,9 @@ impl PixelSurface {
     }
 }
 
-/// Writes the code `even` for each sample on the positive side of an even number of negative forms,
-/// and `odd` otherwise. Writes the code of doubt if a form's sign is uncertain.
+/// Writes to `shown` the code `even` for each sample at which an even number of the lines' forms is
+/// negative, and the code `odd` for each other sample. Writes [`DOUBT`] if a form's sign is
+/// uncertain. `sign` is a buffer.
 #[inline(always)]
 fn between(
     lines: &[ScaledLine],
@@ -150,8 +151,7 @@ fn between(
     }
 }
 
-/// Writes the code of the colour of the square in which each sample lies, or that of doubt, to
-/// `shown`.
+/// Writes to `shown`, for each sample, the code of the colour of its square, or [`DOUBT`].
 #[inline(always)]
 fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
     const ONE: u64 = 1.0f64.to_bits();
@@ -175,8 +175,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let ((bits0, margin0), (bits1, margin1)) = (square(n0, rads[0]), square(n1, rads[1]));
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
-        // These comparisons also fail for NaN. A number too large for the rounding has a large
-        // error, so they fail for it, too.
+        // These comparisons also fail for NaN, and for numbers too large for the rounding, whose
+        // errors are large.
         let first = if margin0 > 0.0 { code } else { DOUBT };
         let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {
@@ -188,8 +188,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
 }
 
 impl Lanes {
-    /// Computes the least of the boundary forms at each sample, in units of the forms' error
-    /// bounds.
+    /// Computes the least of the boundary forms at each sample, where each form is divided by its
+    /// error bound.
     #[inline(always)]
     fn margin(&mut self, edges: &[ScaledLine], conic: Option<&LocalQuadratic>, [x, y]: At) {
         let margin = &mut self.margin[..x.len()];
@@ -209,8 +209,8 @@ impl Lanes {
         }
     }
 
-    /// Draws the current surface over everything seen so far. Samples near its boundary become
-    /// uncertain.
+    /// Draws the current surface over everything seen so far. Samples near the surface's boundary
+    /// become uncertain.
     #[inline(always)]
     fn cover(&mut self, length: usize) {
         let surface = self.margin[..length].iter().zip(&self.shown[..length]);
@@ -255,7 +255,8 @@ impl Lanes {
     }
 
     /// Merges the current surface with what is seen so far: the surface with the greater inverse
-    /// depth is seen. `apart` is the minimum difference of inverse depths whose sign is certain.
+    /// depth is seen. `apart` is the minimum difference of inverse depths at which the order is
+    /// certain.
     #[inline(always)]
     fn merge(&mut self, apart: f64, length: usize) {
         let surface = self.margin[..length]

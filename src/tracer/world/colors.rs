@@ -1,18 +1,18 @@
-//! The palette: the colours that can be seen, and which of them each object has.
+//! The palette: the colours that can be seen, and the colours of each object.
 //!
-//! In: the objects and the background. Out: the distinct colours, and each object's slots among
-//! them.
+//! In: the objects and the background. Out: the distinct colours, and for each object the slots
+//! (the indices) of its colours in the palette.
 
 use std::collections::HashMap;
 
 use crate::{color::Color, scene};
 
-/// The colours of the objects.
+/// The palette of a picture, and the palette slots of each object.
 #[derive(Debug)]
 pub(super) struct Colors {
     /// The distinct colours: those of the objects in file order, then the background.
     pub palette: Vec<Color>,
-    /// For each object, the slots of its colour and of a checkerboard's second colour.
+    /// For each object, the palette slots of its colour and of a checkerboard's second colour.
     pub of_objects: Vec<[u32; 2]>,
 }
 
@@ -25,8 +25,8 @@ impl Colors {
                 .entry(color.srgb.map(f64::to_bits))
                 .or_insert_with(|| {
                     palette.push(color);
-                    // A slot fits, since there are at most two per object, and 2^31 objects do not
-                    // fit into memory.
+                    // The slot fits, because there are at most two per object, and 2^31 objects do
+                    // not fit into memory.
                     (palette.len() - 1) as u32
                 })
         };
@@ -42,8 +42,8 @@ impl Colors {
         }
     }
 
-    /// Gives each object a slot of its own, with an arbitrary colour. A face of a box gets the
-    /// box's slot.
+    /// Gives each object a palette slot of its own, with an arbitrary colour. A face of a box gets
+    /// the box's slot.
     pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
         let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
         let count = of_objects

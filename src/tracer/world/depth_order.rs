@@ -1,10 +1,10 @@
 //! The depth order of two crossings, and whether they lie in one surface and are equal.
 //!
-//! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Computed depths
-//! of one surface would be in doubt at every sample point, and forms of higher precision take long
-//! to prepare. If depths are in doubt, the objects' planes are therefore compared by the numbers of
-//! the scene, without rounding. The near and the far plane, which are not given by such numbers,
-//! are compared by their forms.
+//! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Between two
+//! crossings in one surface, computed depths would leave doubt at every sample point, and forms of
+//! higher precision take long to prepare. If computed depths leave doubt, the objects' planes are
+//! therefore compared by the numbers of the scene, without rounding. The near and the far plane,
+//! which such numbers do not give, are compared by their forms.
 
 use std::cmp::Ordering;
 
@@ -18,8 +18,8 @@ use crate::{
     },
 };
 
-/// Compares the inverse depths of two crossings. Two crossings in one surface are equal even if
-/// their computed depths leave doubt.
+/// Compares the inverse depths of two crossings. Returns `Equal` for two crossings in one surface,
+/// where the computed depths leave doubt.
 #[inline]
 pub(in crate::tracer) fn order<T: Real>(
     geometry: &Geometry,
@@ -34,7 +34,7 @@ pub(in crate::tracer) fn order<T: Real>(
 }
 
 /// Compares the inverse depth of a crossing with that of `clip`, the near or the far plane. Returns
-/// `Equal` if the surface lies in that plane and the computed depths leave doubt.
+/// `Equal` if the surface lies in the clip plane and the computed depths leave doubt.
 #[inline]
 pub(super) fn order_to_clip<T: Real>(
     geometry: &Geometry,
@@ -47,11 +47,11 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // A surface that lies in one of the two planes can be in doubt about the other only if the
-    // planes are equal.
+    // A surface in the near or far plane leaves doubt about the other plane only if the two planes
+    // are equal.
     let at = (index, crossing.part);
-    // Planes may differ only after hundreds of bits. This needs the higher precision, which takes
-    // time to prepare and is therefore asked last.
+    // Planes may differ only after hundreds of bits. The highest precision finds this out, but
+    // takes long to prepare; it is therefore used last.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }
@@ -74,9 +74,9 @@ fn is_same_surface(
     }
 }
 
-/// Returns whether two flat parts of objects lie in one plane. This is decided by the numbers of
-/// the scene, without rounding and without preparing forms: if surfaces lie in one plane, the test
-/// is needed at every sample point.
+/// Returns whether two flat parts of objects lie in one plane. The decision compares the numbers of
+/// the scene, without rounding and without preparing forms. If surfaces lie in one plane, every
+/// sample point needs this test.
 pub(in crate::tracer) fn is_one_plane(
     geometry: &Geometry,
     (i, a): (usize, SurfacePart),
@@ -88,8 +88,8 @@ pub(in crate::tracer) fn is_one_plane(
     }
 }
 
-/// Returns whether a flat part of an object lies in the near or in the far plane, by the forms in
-/// one precision.
+/// Returns whether a flat part of an object lies in the near or in the far plane, according to the
+/// forms in the precision `T`.
 #[cold]
 fn is_in_clip<T: Precision>(geometry: &Geometry, (index, part): (usize, SurfacePart)) -> bool {
     let frame = T::frame(geometry);

@@ -1,9 +1,9 @@
-//! The scene prepared for one picture, and the nearest surface at a point of it.
+//! The scene prepared for one picture, and the nearest surface at a point of the picture.
 //!
 //! In: a scene, and then sample points. Out: the palette slot of the colour that is seen at a
-//! point. A ray is tested against the objects that the quadtree lists for it, or against those that
-//! are known to be nearby. If `f64` leaves doubt, double-double decides, and if that fails, big
-//! numbers.
+//! point. A ray is tested against the objects that the quadtree lists for it, or against given
+//! nearby objects. If `f64` leaves doubt, double-double decides; if this fails, the highest
+//! precision, big numbers, decides.
 
 mod colors;
 pub(super) mod depth_order;
@@ -37,8 +37,8 @@ use crate::{
     scene::Scene,
 };
 
-/// The scene prepared for one picture. It is built once and can then be queried at any sample
-/// point, from any thread.
+/// The scene prepared for one picture. It is built once and can then be queried at any sample point
+/// from any thread.
 #[derive(Debug)]
 pub struct World {
     basis: Basis,
@@ -104,15 +104,15 @@ impl World {
         cancel::unless_set(cancel, world)
     }
 
-    /// Prepares a scene as [`new`](Self::new) does, for [`ray`](super::ray()), which returns all crossings of a ray. Rays may
-    /// go through points of the picture plane at most `reach` pixels from the picture's centre in x
-    /// and y.
+    /// Prepares a scene as [`new`](Self::new) does, for [`ray`](super::ray()), which returns all
+    /// crossings of a ray. Rays may go through points of the picture plane at most `reach` pixels
+    /// from the picture's centre in x and y.
     pub fn for_rays(scene: &Scene, reach: DVec2) -> Self {
         Self::build(scene, Faces::All, reach, &cancel::NEVER)
     }
 
-    /// Prepares a scene as [`new`](Self::new) does, as if each object, checkerboards included, had one colour of its own. The
-    /// slot of that colour is the object's index in the file.
+    /// Prepares a scene as [`new`](Self::new) does, as if each object, even a checkerboard, had one
+    /// colour of its own. The palette slot of this colour is the object's index in the file.
     pub fn by_object(scene: &Scene) -> Self {
         let mut world = Self::new(scene);
         let pieces = 0..world.object_count();
@@ -159,8 +159,8 @@ impl World {
         self.slot_near(x, y, offset, None)
     }
 
-    /// Returns the same as [`slot_at`](World::slot_at), faster if the objects `nearby` (see
-    /// [`nearby`](super::nearby)) are given.
+    /// Returns the result of [`slot_at`](World::slot_at). It is faster if the objects `nearby` are
+    /// given, as [`nearby`](super::nearby) returns them.
     #[inline]
     pub(crate) fn slot_near(
         &self,
@@ -190,14 +190,14 @@ impl World {
         seen.map(|piece| self.owner(piece))
     }
 
-    /// Returns the index in the file of the object that a piece comes from: itself, or a face of a
-    /// box.
+    /// Returns the index in the file of the object from which a piece comes. The piece is this
+    /// object itself, or a face of a box.
     pub(super) fn owner(&self, piece: usize) -> usize {
         self.pieces.owner(piece)
     }
 
-    /// Returns the palette slot that is seen at a sample point, as [`slot_at`](World::slot_at)
-    /// does, if only the objects `among`, in file order, may be seen.
+    /// Returns the palette slot that is seen at a sample point if only the objects `among`, which
+    /// are in file order, may be seen. The parameters are those of [`slot_at`](World::slot_at).
     pub fn slot_among(
         &self,
         x: u32,
@@ -213,11 +213,11 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // Only the last precision gave an answer. In it, an object counts as hit if the ray
-            // cannot be told from one that hits it, even if the ray lies outside of the object's
-            // bounds in the quadtree. Some callers pass only objects whose bounds contain the ray,
-            // others pass all. The others are therefore left out here, so that all callers get the
-            // same answer.
+            // Only the highest precision has given an answer. It counts an object as hit if it
+            // cannot distinguish the ray from one that hits the object, even if the ray is outside
+            // of the object's bounds in the quadtree. Some callers pass only objects whose bounds
+            // contain the ray, and others pass all. Objects whose bounds do not contain the ray are
+            // therefore left out here, so that all callers get the same answer.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {
@@ -228,8 +228,9 @@ impl World {
         self.slot(seen)
     }
 
-    /// Returns which of the objects `among`, in file order, is seen at a point, and whether the
-    /// answer was found before the last precision.
+    /// Returns which of the objects `among`, which are in file order, is seen at a point (`None`
+    /// for the background), and whether the answer is certain. If not, the highest precision
+    /// decided.
     pub(super) fn object_among(
         &self,
         point: &PicturePoint,
@@ -253,13 +254,13 @@ impl World {
         self.palette().len() - 1
     }
 
-    /// Returns the number of objects, in which a box with coloured faces counts once for each face.
+    /// Returns the number of objects. A box with coloured faces counts once for each face.
     pub fn object_count(&self) -> usize {
         self.geometry.objects.len()
     }
 
-    /// Returns the crossing that is seen, among the objects `nearby` or those that the quadtree
-    /// lists for the ray. Fails if `f64` leaves doubt.
+    /// Returns the crossing that is seen. Tests the objects `nearby`, or if there are none given,
+    /// those that the quadtree lists for the ray. Fails if `f64` leaves doubt.
     #[inline]
     fn seen_fast(
         &self,
@@ -268,7 +269,7 @@ impl World {
     ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // Nearness at and below which objects are hidden.
+        // Objects at or below this nearness are hidden.
         let mut hidden = Nearness::NONE;
         let visit = |index| {
             if self.meet(&r, index, &mut nearest)?
@@ -306,8 +307,8 @@ impl World {
         candidates
     }
 
-    /// Returns the nearest crossing between the near and the far plane with the objects `among`, in
-    /// file order. Of equal crossings, that of the first object is returned.
+    /// Returns the nearest crossing between the near and the far plane with the objects `among`,
+    /// which are in file order. Of crossings at equal depths, returns that of the first object.
     #[inline]
     pub(super) fn seen<T: Precision>(
         &self,
@@ -318,8 +319,7 @@ impl World {
         self.with_color(r, nearest)
     }
 
-    /// Converts the nearest crossing to one that also tells which of the object's two colours is
-    /// seen.
+    /// Adds to the nearest crossing which of the object's two colours is seen.
     #[inline]
     fn with_color<T: Precision>(
         &self,
@@ -350,8 +350,9 @@ impl World {
         Ok(nearest)
     }
 
-    /// Tests an object. If its crossing is nearer than `nearest`, or equally near and of an object
-    /// earlier in the file, stores it in `nearest` and returns `true`. Otherwise returns `false`.
+    /// Tests an object. If its crossing is nearer than `nearest`, or is as near and belongs to an
+    /// object earlier in the file, stores the crossing in `nearest` and returns `true`. Otherwise
+    /// returns `false`.
     #[inline]
     fn meet<T: Precision>(
         &self,
@@ -385,8 +386,9 @@ impl World {
         Ok(true)
     }
 
-    /// Returns the first of an object's two crossings that lies between the near and the far plane,
-    /// and whether it is the second one. Returns `None` if neither lies there.
+    /// Returns the nearest crossing with an object between the near and the far plane, and whether
+    /// it is the object's second crossing. `first` is its first crossing. Returns `None` if neither
+    /// crossing lies between the planes.
     #[inline]
     fn clip<T: Precision>(
         &self,
@@ -429,7 +431,7 @@ impl World {
     }
 }
 
-/// Returns the distances from the picture's centre to its edges, in pixels.
+/// Returns half of the picture's width and height, in pixels.
 fn reach(scene: &Scene) -> DVec2 {
     DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0
 }

@@ -1,4 +1,5 @@
-//! The cache of objects in a higher precision.
+//! The cache of objects in a precision higher than `f64`.
+//!
 //! In: an object's index, and a function that prepares the object. Out: the object, either prepared
 //! now or cached from an earlier request.
 
@@ -9,17 +10,17 @@ use std::{
 
 use crate::{lock::lock, math::Real, tracer::object::Object};
 
-/// Maximum number of cached objects: no scene written by hand has more. It is a prime number:
-/// indices of objects in rows are often a power of two or of ten apart, and such objects must not
-/// evict each other.
+/// Maximum number of cached objects; with more, an object evicts the one in its slot. No scene
+/// written by hand has more. It is a prime number, because indices of objects in rows are often a
+/// power of two or of ten apart, and such objects must not evict each other.
 pub const CACHE_SLOTS: usize = 4093;
 
 /// A cache of objects in one precision. Each object is prepared when it is first requested, and
 /// kept until another object takes its slot.
 ///
-/// Preparing an object takes far longer than testing a ray against it. If one sample point is in
-/// doubt, its neighbours often are, too, about the same objects. The fixed number of slots bounds
-/// the memory, however many objects a scene has.
+/// Preparing an object takes far longer than testing a ray against it. If one sample point leaves
+/// doubt about an object, its neighbours often do, too. The fixed number of slots bounds the
+/// memory, however many objects a scene has.
 #[derive(Debug)]
 pub struct ObjectCache<T: Real>(Vec<Mutex<Option<Arc<CachedObject<T>>>>>);
 
@@ -51,13 +52,13 @@ impl<T: Real> Deref for ObjectRef<'_, T> {
 }
 
 impl<T: Real> ObjectCache<T> {
-    /// Prepares the slots for a scene with this number of objects.
+    /// Creates an empty cache for a scene with `objects` objects.
     pub fn new(objects: usize) -> Self {
         let slots = objects.min(CACHE_SLOTS);
         Self((0..slots).map(|_| Mutex::default()).collect())
     }
 
-    /// Returns the object with the given index. Calls `prepare` if the object is not cached.
+    /// Returns the object with the index `index`. Calls `prepare` if the object is not cached.
     pub fn object(&self, index: usize, prepare: impl FnOnce() -> Object<T>) -> ObjectRef<'_, T> {
         let slot = &self.0[index % self.0.len()];
         let cached = lock(slot).clone();
@@ -67,7 +68,7 @@ impl<T: Real> ObjectCache<T> {
             return ObjectRef::Shared(cached);
         }
         // The slot is not locked while the object is prepared, so that no thread waits. Two threads
-        // that need the same object may both prepare it.
+        // that need an object at the same time may both prepare it.
         let object = prepare();
         let prepared = Arc::new(CachedObject { index, object });
         *lock(slot) = Some(prepared.clone());

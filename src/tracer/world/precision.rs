@@ -1,9 +1,9 @@
-//! The camera and the objects in each precision: `f64`, double-double, and big numbers, which
-//! decide everything.
+//! The camera and the objects in each precision: `f64`, double-double, and big numbers, the highest
+//! precision, which decides everything.
 //!
-//! In: the numbers of the scene. Out: frames and objects in the requested precision. Beyond `f64`,
-//! objects are prepared when they are first requested. A decision that one precision leaves in
-//! doubt, by its error bounds, is made in the next precision.
+//! In: the numbers of the scene. Out: frames and objects in the requested precision. In precisions
+//! higher than `f64`, objects are prepared when they are first requested. A decision that one
+//! precision leaves in doubt, by its error bounds, is made in the next precision.
 
 use glam::{DVec2, DVec3};
 
@@ -21,10 +21,10 @@ use crate::{
     },
 };
 
-/// Evaluates `$answer` for a ray's direction `$r`, in one precision after the other until the
-/// answer is certain. Yields the answer, and whether it was found before the last precision. In the
-/// last precision, numbers that cannot be told apart count as equal, so that its answer is never in
-/// doubt.
+/// Evaluates `$answer` for a ray's direction `$r`, in one precision after the other, until the
+/// answer is certain. Yields the answer, and whether it was certain before the highest precision.
+/// In the highest precision, numbers that cannot be distinguished count as equal, so that there is
+/// always an answer.
 macro_rules! first_certain {
     ($geometry:expr, $point:expr, |$r:ident| $answer:expr) => {{
         let (geometry, point): (&Geometry, &PicturePoint) = ($geometry, $point);
@@ -51,7 +51,8 @@ pub(super) use first_certain;
 pub enum Numbers {
     /// A sphere's centre and radius.
     Sphere(DVec3, f64),
-    /// All numbers of any other shape; and the face, if the object is a single face of a box.
+    /// All numbers of any other shape. If the object is a single face of a box, also the face's
+    /// number.
     Other(Box<(Shape, Option<u8>)>),
 }
 
@@ -71,15 +72,16 @@ pub struct Geometry {
 #[derive(Debug)]
 pub struct SceneFrame<T: Real> {
     pub camera: Camera<T>,
-    /// Cached objects. It has no slots for `f64`, whose objects are all in [`Geometry::objects`].
+    /// Cached objects. The cache has no slots for `f64`, whose objects are all in
+    /// [`Geometry::objects`].
     pub(in crate::tracer) cache: ObjectCache<T>,
     pub near: Option<Form<T>>,
     pub far: Option<Form<T>>,
 }
 
 impl<T: Real> SceneFrame<T> {
-    /// Prepares the camera and the clip planes in one precision, with a cache of at most `slots`
-    /// objects.
+    /// Prepares the camera and the clip planes in the precision `T`. The cache has slots for at
+    /// most `slots` objects.
     pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, slots: usize) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
@@ -102,7 +104,8 @@ impl<T: Real> SceneFrame<T> {
 pub trait Precision: Real {
     fn frame(geometry: &Geometry) -> &SceneFrame<Self>;
 
-    /// Returns an object in this precision. Prepares the object if it is not cached.
+    /// Returns the object with the index `index` in this precision. Prepares it if it is not
+    /// cached.
     fn object(geometry: &Geometry, index: usize) -> ObjectRef<'_, Self> {
         let SceneFrame { camera, cache, .. } = Self::frame(geometry);
         let prepare = || geometry.numbers[index].object(camera);
@@ -118,7 +121,7 @@ impl Numbers {
         }
     }
 
-    /// Returns the exact plane of a flat part. Returns `None` for a part that is not flat.
+    /// Returns the exact plane of a flat surface part. Returns `None` for a part that is not flat.
     pub(super) fn plane(&self, part: SurfacePart) -> Option<Plane> {
         let (Self::Other(other), SurfacePart::Plane(index)) = (self, part) else {
             return None;
@@ -140,7 +143,7 @@ impl Numbers {
         })
     }
 
-    /// Prepares the object in one precision.
+    /// Prepares the object in the precision `T`.
     fn object<T: Real>(&self, camera: &Camera<T>) -> Object<T> {
         match self {
             Self::Sphere(center, radius) => Object::Sphere(Sphere::new(camera, *center, *radius)),

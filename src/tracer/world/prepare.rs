@@ -19,17 +19,17 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Minimum number of objects for which threads are started. To prepare fewer objects takes less
-/// than a millisecond, at 0.7 µs each (benches/README.md).
+/// Minimum number of objects that are prepared on several threads. To prepare fewer objects takes
+/// less than a millisecond, at 0.7 µs each (benches/README.md).
 const OBJECTS_WORTH_THREADS: usize = 1 << 10;
 
-/// Number of objects that are prepared between two checks for cancellation. A block takes at most 6
-/// ms.
+/// Number of objects that are prepared between two checks for cancellation. A block of so many
+/// takes at most 6 ms.
 const BLOCK: usize = 1 << 13;
 
-/// Prepares the geometry of a scene, and the quadtree over its objects, for points of the picture
-/// plane at most `reach` pixels from the picture's centre. If `cancel` is set meanwhile, the result
-/// is incomplete and must not be used.
+/// Prepares the geometry of a scene, and the quadtree over its objects, for rays through points of
+/// the picture plane at most `reach` pixels from the picture's centre. If `cancel` is set
+/// meanwhile, the result is incomplete and must not be used.
 pub fn prepare(
     scene: &Scene,
     pieces: &Pieces,
@@ -50,7 +50,7 @@ pub fn prepare(
         );
         (object, extent.and_then(|extent| grid.item(index, &extent)))
     };
-    // Also `None` if the system cannot start threads.
+    // There are no threads, either, if the system cannot start them.
     let threads = (count >= OBJECTS_WORTH_THREADS)
         .then(|| Threads::new(None).ok())
         .flatten();
@@ -72,8 +72,8 @@ pub fn prepare(
         objects.append(&mut more);
         items.extend(seen.drain(..).flatten());
     }
-    // The quadtree is built first, so that the rest reuses the memory of the lists that it has
-    // freed.
+    // The quadtree is built before the rest, which then reuses the memory of the lists that the
+    // quadtree has freed.
     let quadtree = Quadtree::new(grid, items, cancel);
     let rest = if cancel::is_set(cancel) {
         &[]

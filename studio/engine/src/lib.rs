@@ -14,11 +14,11 @@ use pinhole::{
 use serde_json::json;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// A conversation with one page.
+/// The engine for one page: a language server, and at most one download.
 #[wasm_bindgen]
 pub struct Engine {
     server: Server,
-    /// The picture's file that is being rendered.
+    /// The picture's file that is being rendered for a download.
     download: Option<Sliced>,
 }
 
@@ -33,13 +33,15 @@ impl Engine {
         }
     }
 
-    /// Returns the first message: there is no file, but a new scene.
+    /// Returns the first message of the protocol: `studio/file` with a new scene, which is in no
+    /// file.
     pub fn greeting(&self) -> String {
         let params = json!({ "name": "scene.scn", "text": SMALLEST, "saved": false });
         messages::to_text(&Notification::new("studio/file".to_owned(), params).into())
     }
 
-    /// Handles a message, and returns the messages that must be sent before any others.
+    /// Handles a message from the page. Returns the messages that must be sent to the page before
+    /// any others.
     pub fn handle(&mut self, text: &str) -> Vec<String> {
         match messages::read(text.as_bytes()) {
             Ok(Message::Request(request)) if download::is_asked_for(&request) => {
@@ -65,7 +67,8 @@ impl Engine {
         }
     }
 
-    /// Does a slice of the work, and returns the messages to send.
+    /// Does a slice of the work that is left, so that the worker can handle messages between
+    /// slices. Returns the messages to send to the page.
     pub fn advance(&mut self) -> Vec<String> {
         match &mut self.download {
             Some(download) if !self.server.is_busy() => {
@@ -77,7 +80,7 @@ impl Engine {
         }
     }
 
-    /// Whether any work is left.
+    /// Returns whether any work is left.
     #[wasm_bindgen(js_name = isBusy)]
     pub fn is_busy(&self) -> bool {
         self.server.is_busy() || self.download.is_some()
@@ -85,7 +88,8 @@ impl Engine {
 }
 
 impl Engine {
-    /// Drops the picture's file if the message cancels it, and returns the answer to its request.
+    /// Stops rendering the picture's file if the message cancels it. Returns the answer to the
+    /// request of the file; `None` if the message cancels something else.
     fn cancelled(&mut self, message: &Message) -> Option<Message> {
         let Message::Notification(Notification { method, params }) = message else {
             return None;

@@ -1,5 +1,5 @@
 // The fragment of the page's address: `key=value` pairs joined by `&`, which browsers never send.
-// Loaded before all other modules, so that none of them sees the token in the address.
+// This module is loaded before all others, so that none of them sees the token in the address.
 
 import { remember, remembered } from "./dom";
 

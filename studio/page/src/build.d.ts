@@ -1,4 +1,4 @@
-// Declarations for the build: the module that `npm run site` makes from studio/engine; constants.
+// Declarations for the build: the module that `npm run site` makes from studio/engine, and texts.
 
 declare module "pinhole-engine" {
   export class Engine {

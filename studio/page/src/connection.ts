@@ -23,7 +23,7 @@ type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
 
 /** Pauses before attempts to reconnect, in milliseconds; the last one repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
-/** Silence in ms before the server gets a test request, and the maximum wait for its reply. */
+/** Silence after which the server gets a test request, and maximum wait for its reply, in ms. */
 const QUIET = 700;
 const HANGING = 1200;
 
@@ -52,14 +52,14 @@ class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Number of attempts to connect; events of earlier attempts are ignored. */
   private current = 0;
-  /** Times of the last message and of the pending test request; whether its reply is overdue. */
+  /** Times of the last message and of the pending test request; whether its reply is late. */
   private heard = 0;
   private asked = 0;
   private hangs = false;
 
   constructor(private readonly connector: Connector) {
     setInterval(() => this.listen(), 250);
-    // Browsers stop the timers of hidden pages, so a test request pending then counts for nothing.
+    // Browsers stop the timers of hidden pages, so a test request that is pending then is ignored.
     document.addEventListener("visibilitychange", () => (this.asked = 0));
   }
 
@@ -157,7 +157,7 @@ class Connection implements Transport {
   }
 }
 
-/** Opens a WebSocket. The page first sends its token; the host first sends the next token. */
+/** Opens a WebSocket. The page sends its token; the host answers with the token to use next. */
 const webSocket: Connector = (opened, receive, closed) => {
   const { token } = session;
   if (token === null) return closed("keyless");
@@ -174,7 +174,7 @@ const webSocket: Connector = (opened, receive, closed) => {
     ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
 };
 
-/** Starts the engine in a web worker, which is open at its first message; replaced if it fails. */
+/** Starts the engine in a web worker. Its first message opens the wire, a failure closes it. */
 const worker: Connector = (opened, receive, closed) => {
   const engine = new Worker(new URL("engine.js", location.href), { type: "module" });
   let isOpen = false;

@@ -15,7 +15,7 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
-  // During a drag, each new text gets a list of diagnostics, which is mostly empty.
+  // During a drag, each new text gets a list of diagnostics, mostly an empty one.
   const isRight = published.diagnostics.length === 0;
   if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
@@ -62,7 +62,7 @@ function fix(action: CodeAction): Action {
     apply(view) {
       // The edits are for the checked text. If it has changed, new diagnostics are on the way.
       if (view.state.doc !== doc) return;
-      // Select a placeholder, so that typing replaces it. It is ASCII: all units are equal.
+      // Select a placeholder, so that typing replaces it. Its offsets are bytes of ASCII text.
       const at = edits[0] ? editor.offset(edits[0].range.start) : 0;
       const made = value && { selection: { anchor: at + value[0], head: at + value[1] } };
       const changes = editor.changes(edits);

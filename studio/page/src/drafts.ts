@@ -1,5 +1,5 @@
 // Drafts: unsaved texts, stored during typing and offered again after a reload, a crash, or loss of
-// the host. Each page has its own key; if it continues a draft without a host, the draft's key.
+// the host. Each page has its own key, or the key of the draft that it continues without a host.
 // The browser stores drafts until the host has stored them, or for good if there is no host.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
@@ -13,9 +13,9 @@ import { setText } from "./visible";
 
 /** Delay from the first unstored change to storing the text, in milliseconds. */
 const BEHIND = 500;
-/** Maximum number of drafts stored in the browser. */
+/** Maximum number of drafts stored in the browser. When there are more, the oldest are deleted. */
 const MOST = 10;
-/** Maximum number of drafts offered at once. */
+/** Maximum number of drafts offered at once; the next ones follow when these are answered. */
 const OFFERED = 3;
 
 const store = createStore("pinhole-drafts", "drafts");
@@ -106,7 +106,7 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // The host may have this draft under the same id; it gets the changes once connected.
+    // The host may have this draft. Once connected, it gets the changes under the same id.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }

@@ -1,5 +1,5 @@
-// A drag of an object's handle or of the camera. Its result depends on the text at the press, which
-// the server has under its own URI, and on the first and the latest point, not on the path.
+// A drag of an object's handle or of the camera. Its result depends on the first and the latest
+// point, not on the path, and on the text at the press, which the server gets under an extra URI.
 
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -10,12 +10,12 @@ import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
 import { tools } from "./tools";
 import { setText } from "./visible";
 
-/** Held handle and its point at the press. `object` is null for a handle of the camera. */
+/** A held handle, and its point at the press. `object` is null for a handle of the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
 const WAITING = "Waiting for Studio…";
-const SLOW = 400; // delay of an answer until a note says so, in milliseconds
+const SLOW = 400; // delay after which a note says that the answer is late, in ms
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
 // The note of a drag is shown beside the pointer while the drag lasts.
@@ -40,7 +40,7 @@ let count = 0;
 /** Settles when all earlier drags have finished. */
 let ended: Promise<unknown> = Promise.resolve();
 
-/** Drag that requests one edit at a time, always for the newest point of the pointer. */
+/** A drag, which requests one edit at a time, always for the pointer's newest point. */
 export class Drag {
   private readonly uri = `drag:${++count}`;
   /** Newest point of the pointer. */
@@ -57,7 +57,7 @@ export class Drag {
   private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
-  /** `hold` returns what is held, or a promise if that is only found out after the press. */
+  /** `hold` returns what is held, or a promise if this is known only after the press. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = press;
     frames.dragging = this;

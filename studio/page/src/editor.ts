@@ -20,7 +20,7 @@ import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-/** Maximum time for comparing two texts, in milliseconds. */
+/** Maximum time for comparing two texts, in milliseconds; after it, differences get coarser. */
 const DIFF_TIME = 100;
 
 /** Unpaired surrogates, which UTF-8, and so a file or a message, cannot represent. */
@@ -163,7 +163,7 @@ class SceneEditor {
     }
   }
 
-  /** Sends a request about the scene. Resolves to null also if the text changed meanwhile. */
+  /** Sends a request as `ask` does. Resolves to null also if the text changed meanwhile. */
   async askCurrent<Result>(method: string, params: object): Promise<Result | null> {
     const { doc } = this.view.state;
     const answer = await this.ask<Result>(method, params);

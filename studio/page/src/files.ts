@@ -26,7 +26,7 @@ class Scene {
   /** Whether the file was removed after it was read. */
   isGone = false;
   handle: FileSystemFileHandle | null = null;
-  copy: Scene | null = null; // the copy that has replaced it by Save as
+  copy: Scene | null = null; // the copy by which Save as has replaced this scene
   /** Whether the host has no file for this scene yet, so that Save asks for a name. */
   isNew = isServed;
   /** Initial text, which need not be saved; null if the scene comes from a file. */
@@ -126,7 +126,7 @@ class Files {
     this.show();
   }
 
-  /** Handles the host's message about its file: at first, on reconnection, naming, and change. */
+  /** Handles a message about the host's file: the first, or after a reconnection or a change. */
   hosted({ name, text, reason, saved }: HostedFile): void {
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });

@@ -21,11 +21,11 @@ export interface Shown {
 /** Maximum number of pixels of a coarse picture: a sixteenth of 1280 × 720. */
 const COARSE_PIXELS = 320 * 180;
 
-/** Maximum size of a canvas in every browser, in pixels. */
+/** Maximum size of a canvas that all browsers support: number of pixels, and side in pixels. */
 const MOST = { pixels: 16_000_000, side: 8192 };
 /** Time without a change after which a drag requests finer pictures, in milliseconds. */
 const HAND_RESTS = 20;
-/** Time of a final picture in milliseconds, below which the sharp picture is skipped. */
+/** Time of the last final picture, in milliseconds, below which the sharp picture is skipped. */
 const SOON = 200;
 
 /** Text that a requested picture shows, and the number of the request. */
@@ -50,7 +50,7 @@ class Frames {
   private isBroken = false;
   private lastTook = Infinity;
 
-  /** Ends a drag, unless another drag has begun. */
+  /** Ends the drag `dragged`, unless another drag has begun since. */
   released(dragged: object): void {
     if (this.dragging === dragged) this.dragging = null;
     this.onRest();

@@ -35,7 +35,7 @@ function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // Join all changes except isolated ones: their time is 0, longer ago than this delay.
+      // This delay joins all changes except isolated ones, whose time counts as 0.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -58,8 +58,8 @@ export function rewrite(view: EditorView, change: TransactionSpec, past: Extensi
   view.dispatch({ effects: kept.reconfigure(grouped(past)) });
 }
 
-/** The result depends on the text at the start and on the last change, not on those in between.
- *  After another change of the text, a gesture changes nothing more. */
+/** A gesture. Its result depends only on the text at its start and on its last change. After a
+ *  change of the text by something else, it changes nothing more. */
 export class Gesture {
   /** Text at the start, text now, and (`written`) the changes from one to the other. */
   readonly base: Text;

@@ -77,7 +77,7 @@ export const openSwatch: Command = view => {
   return swatch !== undefined;
 };
 
-/** Requests the hints and swatches of the current text, after a pause. */
+/** Requests the hints and swatches of the current text; called after a pause in changes. */
 export async function refreshHints(): Promise<void> {
   const { doc } = editor.view.state;
   const [hints, colors] = await Promise.all([
@@ -107,7 +107,7 @@ async function pick(offset: number, picked: string, gesture: Gesture): Promise<v
   const range = editor.range(offset, offset + length);
   const ways = await editor.askCurrent<ColorPresentation[]>(
     "textDocument/colorPresentation", { color, range });
-  // The server lists first the notation of the written colour.
+  // The first notation that the server lists is that of the written colour.
   const way = ways?.[0];
   if (way !== undefined) gesture.write({ from: offset, to: offset + written.length,
     insert: way.label });

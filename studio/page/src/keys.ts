@@ -19,7 +19,7 @@ const ARROWS: Record<string, Point> =
 
 /** Elements that use all keys (`TEXT`), or the arrow keys, Space and Escape (`CONTROL`). */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
-const SAVE = ["Control+s", "Control+Shift+s"]; // work there, too
+const SAVE = ["Control+s", "Control+Shift+s"]; // work in `TEXT`, too
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
 /** Returns the name of a pressed key in the notation of `data-key`. */
@@ -28,7 +28,7 @@ function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the control of a key, or undefined. The key of the active constraint releases it. */
+/** Returns the control of a key, or undefined. The active constraint's key belongs to `free`. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));

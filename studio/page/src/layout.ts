@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** Minimum and maximum share of the text in the width (on narrow screens, height), in per cent. */
+/** Minimum and maximum share of the text in the width (height on narrow screens), in per cent. */
 const LEAST = 20;
 const MOST = 80;
 

@@ -45,7 +45,7 @@ export class Turn {
 
   constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
 
-  /** Sets the number, rounded and clamped to its limits; `value` gets the step of the number. */
+  /** Sets the number, rounded and clamped to its limits, to what `value` returns for its step. */
   async set(value: (step: number) => number): Promise<void> {
     const { from, to } = this.literal;
     const limits = await this.limits;
@@ -162,7 +162,7 @@ function createSlider(): TooltipView {
   } };
 }
 
-/** Changes `literal` by the pointer's horizontal movement until release. Returns false for null. */
+/** Changes `literal` by the pointer's horizontal movement. Returns false if `literal` is null. */
 function scrub(event: PointerEvent, literal: Literal | null): boolean {
   if (literal === null) return false;
   event.preventDefault();

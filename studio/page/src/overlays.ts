@@ -10,7 +10,7 @@ export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "ne
 
 const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 
-/** Minimum zooms at which the pixel grid, and the samples of a pixel, are drawn. */
+/** Minimum zooms, in screen pixels per pixel, at which the grid and a pixel's samples are drawn. */
 const GRID_ZOOM = 6;
 const SAMPLES_ZOOM = 4;
 /** Distance of arrows from the stage's border, in screen pixels. */

@@ -1,4 +1,4 @@
-// A window for a projector, which shows only the picture. The page sends it; there is no server.
+// A window for a projector, which shows only the picture. It gets pictures from the page's tab.
 
 import { inAddress } from "./address";
 import { byId, remember, remembered } from "./dom";

@@ -30,7 +30,7 @@ class Selection {
   /** Counts selections, so that a late answer can detect a newer selection. */
   choices = 0;
   private placed: Placed[] = [];
-  /** Object chosen in a block that stands for many; null selects none until the cursor moves. */
+  /** Chosen object, one of those in its block; null selects nothing until the cursor moves. */
   private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");

@@ -8,7 +8,7 @@ import { files } from "./files";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** Maximum length of a scene in a link, in characters. */
+/** Maximum length of a scene in a link, in characters. A longer scene gets no link. */
 const LONGEST = 1_000_000;
 const KEY = "scene";
 const NO_COPY = "The browser does not let the page copy: copy the selected link yourself.";
@@ -36,7 +36,7 @@ async function unpacked(text: string): Promise<string> {
 /** Compressed scene that was last read from the address. */
 let known: string | null = null;
 
-/** Returns the scene in the page's address, or null if it has none or the same as before. */
+/** Returns the scene in the page's address, or null if it has none or was read before. */
 export async function sceneInAddress(): Promise<string | null> {
   const held = inAddress(KEY);
   if (held === null || held === known) return null;

@@ -55,7 +55,7 @@ try {
   await page.mouse.move(x + 20, y, { steps: 3 });
   console.log("drag:", await measure(i => page.mouse.move(x + 20 + (i % 2 === 0 ? 15 : 0), y)));
 
-  // A drag without pauses, at the pace of the browser's frames.
+  // A drag without pauses, which moves once per frame of the browser.
   const moving = steps =>
     page.evaluate(
       async ([x, y, steps]) => {
@@ -64,7 +64,7 @@ try {
         const begin = performance.now();
         for (let i = 0; i < steps; i++) {
           await new Promise(requestAnimationFrame);
-          // By two pixels each time, as nothing is drawn unless the numbers change.
+          // Each move is two pixels, since nothing is drawn unless the numbers in the text change.
           const at = { clientX: x + 2 * Math.abs((i % 80) - 40) - 40, clientY: y, pointerId: 1, pointerType: "mouse", isPrimary: true, buttons: 1, bubbles: true };
           stage.dispatchEvent(new PointerEvent("pointermove", at));
         }
@@ -82,7 +82,8 @@ try {
   const memory = async () => {
     await session.send("HeapProfiler.collectGarbage");
     const heap = await page.evaluate(() => performance.memory.usedJSHeapSize);
-    // Pictures kept by the browser are not in the heap.
+    // Pictures that the browser keeps are not in the heap, so the memory of the process is read,
+    // too.
     const { processInfo } = await all.send("SystemInfo.getProcessInfo");
     const whole = Math.max(...processInfo.filter(({ type }) => type === "renderer").map(({ id }) => resident(id)));
     return { heap: round(heap / 2 ** 20), host: host.pid ? round(resident(host.pid)) : NaN, whole: round(whole) };

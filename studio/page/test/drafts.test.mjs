@@ -12,7 +12,7 @@ const NEARER = FIGURE.replace("eye    (3, 3.5, 8)", "eye    (3, 3.5, 6)");
 
 const offered = page => page.waitForSelector("#draft-bar:not([hidden])");
 const choose = (page, name) => page.click(`#draft-choices >> text=${name}`);
-/** Time in which a draft is certainly stored, in milliseconds. */
+/** Waits until a draft is certainly stored. */
 const kept = page => page.waitForTimeout(900);
 
 /** Leaves a page as when the browser is closed. */
@@ -21,7 +21,7 @@ async function leave(page) {
   await page.context().close();
 }
 
-/** Returns the texts of a number of drafts, each restored and undone. */
+/** Restores `count` offered drafts in turn, each followed by Undo. Returns the drafts' texts. */
 async function restoredInTurn(page, count) {
   const texts = [];
   for (let i = 0; i < count; i++) {
@@ -68,7 +68,7 @@ test("restoring a draft keeps other offers and the text it replaces as drafts", 
   await kept(page);
   await started.stop("SIGKILL");
   await leave(page);
-  // The offer is not answered, and the text is changed.
+  // The offer is left unanswered, and the text is changed.
   const second = await serve(started.file);
   page = await open(browser, second);
   await offered(page);
@@ -89,7 +89,7 @@ test("restoring a draft keeps other offers and the text it replaces as drafts", 
   assert.equal((await offers(page)).length, 2);
   await andFinished(page, () => choose(page, "Restore"));
   assert.equal(await text(page), NEARER);
-  // Saving does not answer the remaining offers.
+  // Saving leaves the remaining offers as they are.
   await page.keyboard.press("Control+s");
   await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
   await page.reload();
@@ -106,7 +106,7 @@ for (const way of ["a reload of its tab, and its address there", "its address in
     const browser = await launch(t);
     const page = await open(browser, started);
     page.on("dialog", dialog => dialog.accept());
-    // One text that the host has, and a later one that it does not have.
+    // The first text is stored by the host; the second one, typed later, is not.
     await andFinished(page, () => type(page, LARGER));
     await kept(page);
     await started.stop("SIGKILL");
@@ -235,7 +235,7 @@ for (const [name, go] of [
     await andFinished(page, () => type(page, LARGER));
     await andFinished(page, () => go(page, started));
     await offered(page);
-    // The new scene is changed, too.
+    // The new scene is changed, so that it has a draft, too.
     await type(page, `${NEARER}// on\n`);
     await kept(page);
     await page.reload();
@@ -248,7 +248,7 @@ for (const [name, go] of [
       await andFinished(page, () => page.keyboard.press("Control+z"));
     }
     assert.deepEqual(texts.sort(), [LARGER, `${NEARER}// on\n`].sort());
-    // After restoring and undoing both drafts, both are still offered.
+    // Both drafts were restored and undone, so both are still offered.
     await kept(page);
     await page.reload();
     await finished(page);
@@ -391,7 +391,7 @@ test("a text saved while it is replaced, or restored by Undo, is not offered", a
   await andFinished(page, () => page.keyboard.press("Control+z"));
   assert.equal(await text(page), NEARER);
   await page.waitForFunction(() => document.querySelector("#draft-bar").hidden);
-  // It is still stored as a draft of its scene.
+  // The text is still stored as a draft of the scene that it belongs to.
   await kept(page);
   page.on("dialog", dialog => dialog.accept());
   await page.reload();

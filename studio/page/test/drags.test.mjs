@@ -127,13 +127,13 @@ test("Escape reverts a pointer's change of a slider, a number or the divider", a
   for (const [name, given] of Object.entries(ways)) {
     const { before, from, after } = { ...around, ...given };
     await before();
-    // A slider has its final ends when the server has tried them.
+    // A slider has its final ends only after the server has tried them.
     await rested(page);
     await hand(page, await from(), [40, 0], { hold: true });
     await rested(page);
     assert.notEqual(await text(page), scene, `${name} turns nothing`);
     await page.keyboard.press("Escape");
-    // The pointer moves on before its release.
+    // The pointer moves on before it is released.
     await page.mouse.move(500, 300, { steps: 4 });
     await page.mouse.up();
     await after();
@@ -165,7 +165,7 @@ test("a drag's note stands at the pointer while it lasts, and the footer shows n
   assert.equal(await page.textContent("#pointed"), "");
   await page.mouse.up();
   await page.waitForSelector("#drag-note", { state: "hidden" });
-  // The pointer has not moved since: the footer names the object that is there now.
+  // The pointer has not moved since, but the footer names the object that is now under it.
   await page.waitForFunction(() => /^Ball at /.test(document.querySelector("#pointed").textContent));
   await page.keyboard.press("Control+z");
   await page.waitForFunction(() => !/^Ball at /.test(document.querySelector("#pointed").textContent));
@@ -199,7 +199,7 @@ test("handles at the same point are placed side by side, and each can be dragged
     assert.ok(a.width >= 24 && a.height >= 24);
     for (const [, b] of places.slice(0, i)) assert.ok(Math.max(Math.abs(a.x - b.x), Math.abs(a.y - b.y)) >= 24);
   }
-  // The camera looks along z, so a move along z is not seen in the picture.
+  // The camera looks along z, so moving a face along z would not be visible.
   for (const label of ["min x", "max x", "min y", "max y"]) {
     const before = await text(page);
     await hand(page, await handle(page, `Crate: ${label}`), [label.endsWith("x") ? 12 : 0, label.endsWith("y") ? 12 : 0]);
@@ -270,9 +270,9 @@ test("at every window size selecting moves nothing, and objects follow the point
     assert.equal(await where(), before, `${width} × ${height}`);
     const [x, y] = await handle(page, "Ball: center");
     const begin = await onPage(page, middle);
-    // A step is at most 8 pixels.
+    // A drag ends at most a step of 8 pixels from the pointer.
     assert.ok(Math.hypot(x - begin[0] - dx, y - begin[1] - dy) < 12, `${width} × ${height}: ${x - begin[0]}, ${y - begin[1]}`);
-    // No draft is left for the next page.
+    // No draft remains that would be offered to the next page.
     await page.keyboard.press("Control+z");
     await rested(page);
     await page.waitForTimeout(600);

@@ -25,7 +25,7 @@ before(async () => {
 
 let requests = 0;
 
-/** Returns the response to a request after all its slices. */
+/** Returns the response to a request, after all slices of the work for it. */
 function ask(engine, method, params) {
   const id = ++requests;
   const said = engine.handle(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -54,7 +54,7 @@ function rendered(text, ending = "png", ...args) {
   }
 }
 
-/** Returns a PNG from its pixel chunks on; the chunks before hold the scene's text. */
+/** Returns a PNG from its pixel chunks on; the chunks before contain the scene's text. */
 const pixels = png => png.subarray(png.indexOf("IDAT"));
 
 test("a frame has the pixels that the program renders", { skip }, () => {

@@ -1,4 +1,4 @@
-// Files of the served host: saving, outside changes, and conflicts.
+// Tests of the host's file: saving it, changes by other programs, and conflicts.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
@@ -157,7 +157,7 @@ test("a late answer to Save belongs to the scene that was saved", async t => {
   assert.equal(await page.textContent("#file-state"), "not saved");
   await page.keyboard.press("Control+s");
   await page.waitForSelector("#name-dialog[open]");
-  // The name of the host's scene is in use.
+  // This is the name of the host's scene, which already exists.
   await page.fill("#name-field", "scene.scn");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => /is there already/.test(document.querySelector("#name-problem").textContent));
@@ -201,7 +201,7 @@ test("a scene beside the host's can be saved after the host restarts", async t =
 test("New reports that Studio is not ready before the scene arrives", async t => {
   const started = await host(t);
   const context = await (await launch(t)).newContext();
-  // The host's notification is delayed.
+  // Each message of the host arrives 1.5 seconds late.
   await context.addInitScript(() => {
     window.WebSocket = class extends WebSocket {
       addEventListener(type, hear) {
@@ -253,7 +253,7 @@ test("Save as writes another file beside the host's and continues with it", asyn
   const page = await open(await launch(t), started);
   await andFinished(page, () => type(page, LARGER));
   await menu(page, "File", "#save-as");
-  // No existing file is overwritten.
+  // The name of an existing file is refused.
   await page.waitForSelector("#name-dialog[open]");
   assert.equal(await page.inputValue("#name-field"), "scene.scn");
   await page.keyboard.press("Enter");
@@ -275,7 +275,7 @@ test("Save as writes another file beside the host's and continues with it", asyn
   assert.equal(readFileSync(path.join(started.folder, "third.scn"), "utf8"), NEARER);
   assert.equal(readFileSync(path.join(started.folder, "second.scn"), "utf8"), LARGER);
   assert.equal(started.text(), FIGURE);
-  // Undo changes only the text, and no draft of the saved text is left.
+  // Undo changes only the text; the file's name stays. No draft of the saved text remains.
   await page.click("#undo");
   assert.equal(await text(page), LARGER);
   assert.equal(await page.textContent("#file-name"), "third.scn");
@@ -395,7 +395,7 @@ test("an outside save during a drag is shown when the drag ends", async t => {
     started.write(before.replace("8)", "6)"));
     await page.waitForTimeout(1000);
     assert.ok(await page.isHidden("#conflict-dialog"));
-    // The drag continues.
+    // The drag is not interrupted by the outside save.
     const [x, y] = await from();
     await page.mouse.move(x + 90, y, { steps: 6 });
     await rested(page);
@@ -410,7 +410,7 @@ test("an outside save during a drag is shown when the drag ends", async t => {
     await rested(page);
     assert.equal(await text(page), before);
   }
-  // If nothing was changed, the page follows the file.
+  // If a drag has changed nothing, the page follows the file.
   await page.mouse.move(...(await onPage(page, [455, 320])));
   await page.mouse.down();
   await page.waitForTimeout(200);
@@ -436,7 +436,7 @@ test("a long rendering shows its progress, and Cancel ends it at once", async t 
     await choose();
     await page.waitForSelector("#rendering:not([hidden])");
     await page.waitForFunction(() => parseFloat(document.querySelector("#percent").textContent) > 0, null, { timeout: 120_000 });
-    // The page still responds, and a second rendering is refused.
+    // The page still responds while a picture is rendered, and refuses to render another one.
     await choose();
     assert.match(await page.textContent("#said"), /Another picture is being made/);
     const took = await page.evaluate(async () => {
@@ -448,7 +448,7 @@ test("a long rendering shows its progress, and Cancel ends it at once", async t 
     assert.ok(took < 100, `${took} ms`);
     assert.match(await page.textContent("#said"), /scene\.png was cancelled/);
   }
-  // The next rendering is not blocked.
+  // After a cancelled rendering, the next one works.
   await type(page, FIGURE);
   const download = page.waitForEvent("download");
   await choose();

@@ -43,7 +43,7 @@ test("the grading page sorts by keyboard, opens pictures, fits a phone and print
   assert.match(await page.textContent(".mistakes"), /2 students: background/);
   assert.match(await page.textContent("tr:has-text('ben')"), /the same in every pixel as that of cy/);
 
-  // By keyboard alone: the last column, with empty cells last in both orders.
+  // The table is sorted by keyboard alone. Empty cells of the last column are last in both orders.
   await page.focus("thead th:last-child button");
   await page.keyboard.press("Enter");
   assert.deepEqual(await sorted(), ["none", "none", "none", "none", "ascending"]);
@@ -63,7 +63,7 @@ test("the grading page sorts by keyboard, opens pictures, fits a phone and print
 
   await page.click("tr:has-text('ben') .comment summary");
   await page.click("tr:has-text('ben') .copy");
-  // The clipboard may answer late.
+  // Copying may take a while, so the test waits for it.
   await page.waitForSelector("tr:has-text('ben') .copy:text-is('copied')");
 
   await page.setViewportSize({ width: 400, height: 800 });

@@ -68,7 +68,7 @@ test("a click selects the clicked object of a repetition, and the cursor the fir
       const [hx, hy] = await handle(page, await page.locator(".handle").first().getAttribute("aria-label"));
       assert.ok(Math.hypot(hx - x, hy - y) < 3, `${i}: ${hx - x} ${hy - y}`);
     }
-    // The dragged object stays selected, also when a block is inserted before it.
+    // The dragged object stays selected, even if a block is inserted before it.
     const before = await text(page);
     await hand(page, await onPage(page, at(3)), [0, 40]);
     await rested(page);
@@ -115,7 +115,7 @@ test("a press beside a handle drags the object", async t => {
   }));
   for (const [label, x, y] of places) {
     const isFace = !label.endsWith("center");
-    // Towards the centre of the box, where the box is under the pointer.
+    // The drag goes towards the centre of the box, so that the pointer stays over the box.
     const [, mx, my] = places.find(([label]) => label.endsWith("center"));
     const far = Math.hypot(mx - x, my - y);
     const part = isFace ? 11 / far : 0;
@@ -155,13 +155,13 @@ test("the camera orbits about its lookat point", async t => {
   const distance = ([x, y, z]) => Math.hypot(x - 0.2, y - 0.8, z);
   assert.deepEqual(vector(moved, "lookat"), [0.2, 0.8, 0]);
   assert.notDeepEqual(eye, [3, 3.5, 8]);
-  // The eye keeps its distance, except for omitted digits.
+  // The eye keeps its distance from the centre, except for rounding to the digits in the text.
   assert.ok(Math.abs(distance(eye) / distance([3, 3.5, 8]) - 1) < 0.01, String(eye));
 });
 
 test("objects and camera can be moved by keyboard alone", async t => {
   const page = await open(await launch(t), await host(t));
-  // From the top of the page to the picture by the Tab key alone.
+  // The Tab key alone leads from the top of the page to the picture.
   for (let i = 0; i < 60; i++) {
     await page.keyboard.press("Tab");
     if (await page.evaluate(() => document.activeElement.id === "objects")) break;
@@ -169,7 +169,7 @@ test("objects and camera can be moved by keyboard alone", async t => {
   assert.equal(await page.evaluate(() => document.activeElement.id), "objects");
   await page.keyboard.press("ArrowDown");
   await page.waitForSelector('.handle[aria-label="Ball: center"]');
-  // The picture comes before its tools.
+  // In the order of the Tab key, the picture comes before its tools.
   for (let i = 0; i < 20; i++) {
     await page.keyboard.press("Shift+Tab");
     if (await page.evaluate(() => document.activeElement.ariaLabel === "Ball: center")) break;
@@ -209,7 +209,7 @@ test("repeated taps of a key are one drag, and every tap counts", async t => {
   await page.waitForTimeout(800);
   await finished(page);
   const [now, level] = await place();
-  // Half a unit of the last digit of each number.
+  // Each number is rounded to half a unit of its last digit, which limits the precision.
   assert.ok(Math.abs(now - x - 60) <= 8 && Math.abs(level - y) <= 8, `${now - x}`);
   await andFinished(page, () => page.keyboard.press("Control+z"));
   assert.equal(await text(page), FIGURE);
@@ -231,7 +231,7 @@ test("every handle moves only its object, and every tool only the camera", async
     assert.deepEqual(await page.locator(".handle").evaluateAll(all => all.map(handle => handle.dataset.handle)), names);
     for (const name of names) {
       await page.focus(`.handle[data-handle=${name}]`);
-      // Every handle can move either up or to the right.
+      // Every handle can be moved upwards or to the right.
       for (const key of ["ArrowUp", "ArrowRight"]) await page.keyboard.press(key);
       await page.waitForFunction(() => document.querySelector("#file-state").textContent === "not saved", null, { timeout: 5000 }).catch(() => assert.fail(`${object}: ${name} does nothing`));
       await finished(page);
@@ -263,7 +263,7 @@ test("one finger drags, and two fingers zoom without changing the text", async t
   const start = await place();
   const before = start.width;
   const [x, y] = await onPage(page, BALL);
-  // A touch selects the object, which moves nothing.
+  // A tap selects the object and does not move it.
   await page.touchscreen.tap(x, y);
   await page.waitForSelector(".handle");
   assert.deepEqual(await place(), start);
@@ -329,7 +329,7 @@ test("a selected board is not outlined across objects in front of it", async t =
   await page.mouse.move(...(await onPage(page, [100, -30])));
   await page.waitForTimeout(300);
   assert.equal(await page.locator(".line.selected").count(), 0);
-  // Beside the box the whole cell is visible.
+  // The ball is made a comment; without it, the outline of the square is visible.
   await page.locator(".cm-line").last().click();
   await page.keyboard.type("// ", { delay: 30 });
   await page.keyboard.press("ArrowUp");
@@ -359,7 +359,7 @@ test("the selection stays when another program inserts text before it", async t 
     await rested(page);
     const line = Number(/\d+(?=\)$)/.exec(selected)[0]) + 2;
     assert.deepEqual(await shown(), [selected.replace(/\d+\)$/, `${line})`), label]);
-    // The same when the text is removed again.
+    // A removal of the text is a minimal difference, too.
     started.write(lines.join("\n"));
     await page.waitForFunction(() => document.querySelector("#objects").options.length === 6);
     await rested(page);
@@ -367,7 +367,7 @@ test("the selection stays when another program inserts text before it", async t 
     started.write([...lines.slice(0, at), added, added.replace("3", "2.5"), ...lines.slice(at)].join("\n"));
     await page.waitForFunction(() => document.querySelector("#objects").options.length === 8);
     await rested(page);
-    // The handle belongs to the selected object.
+    // The handle that is dragged belongs to the selected object.
     await hand(page, await handle(page, label), [40, 0]);
     await rested(page);
     const now = (await text(page)).split("\n");

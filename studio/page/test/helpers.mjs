@@ -40,7 +40,7 @@ export async function launch(context) {
   return browser;
 }
 
-/** Starts a host of a file with a text in a new folder. Both are removed when the test ends. */
+/** Starts a host of a new file with the text `text`. Host and folder are removed after the test. */
 export async function host(context, text = FIGURE, name = "scene.scn") {
   const folder = mkdtempSync(path.join(tmpdir(), "pinhole-studio-"));
   const file = path.join(folder, name);
@@ -53,7 +53,7 @@ export async function host(context, text = FIGURE, name = "scene.scn") {
   return started;
 }
 
-/** Starts a host of a file, or of a new scene in a folder, at a given or any free port. */
+/** Starts a host of `file`, or of a new scene in `folder`, at the port `port` or any free one. */
 export async function serve(file, { port, folder, browser } = {}) {
   const scene = file === null ? [] : [file];
   const options = [...(browser === undefined ? ["--no-open"] : []), ...(port === undefined ? [] : ["--port", port])];
@@ -105,7 +105,7 @@ export async function open(browser, { address }, { late, ...options } = {}) {
   return page;
 }
 
-/** Delays answers, by the milliseconds that `late` has for their method. */
+/** Delays each answer by as many milliseconds as `late` has for its method. */
 async function delayed(page, late) {
   await page.routeWebSocket("**/socket", socket => {
     const server = socket.connectToServer();
@@ -171,10 +171,10 @@ export async function tab(page, name) {
   if (await button.isVisible()) await button.click();
 }
 
-/** Replaces the text in the editor, as pasting does. */
+/** Replaces the whole text in the editor, as pasting does. */
 export async function type(page, text) {
   await tab(page, "text");
-  // Clicks at the corner, as a click on a colour would open its picker.
+  // The click is in the corner, since a click on a colour would open the colour's picker.
   await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("Control+a");
   await page.keyboard.insertText(text);
@@ -207,7 +207,7 @@ export async function hold(page, along) {
 export async function drag(page, from, to) {
   await page.mouse.move(...(await onPage(page, from)));
   await page.mouse.down();
-  // The page asks what is under the pointer before it moves the object.
+  // The page first asks the server for the object under the pointer.
   await page.waitForTimeout(300);
   const [x, y] = await onPage(page, to);
   await page.mouse.move(x, y, { steps: 5 });
@@ -239,7 +239,7 @@ export async function hand(page, [x, y], [dx, dy], { steps = 12, back = false, h
   if (!hold) await page.mouse.up();
 }
 
-/** Waits until the text and its picture no longer change. */
+/** Waits until the text and its picture have stopped changing. */
 export async function rested(page) {
   let before = null;
   for (let same = 0; same < 4; ) {
@@ -277,7 +277,7 @@ export async function decoded(page, png) {
   }, png.toString("base64"));
 }
 
-/** Adds a function to the page that reads pixels. */
+/** Adds a function to the page that returns the pixels of a picture, for comparisons. */
 export async function comparing(page) {
   await page.evaluate(() => {
     window.bytesOf = async ({ data, width, height }) => {
@@ -287,7 +287,7 @@ export async function comparing(page) {
   });
 }
 
-/** Returns the bytes of a scene's picture by `pinhole render`. */
+/** Renders a scene's text with `pinhole render`, and returns the bytes of the picture's file. */
 export function rendered(folder, text, kind = "png") {
   const scene = path.join(folder, "rendered.scn");
   const picture = path.join(folder, `rendered.${kind}`);

@@ -1,5 +1,5 @@
-// First use of the page: scenes from the menu, new objects, the first problem, the projector
-// window.
+// Tests of the first use of the page: scenes from the menu, new objects, the first problem, and the
+// projector's window.
 
 import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -28,7 +28,7 @@ for (const [name, start] of HOSTS) {
       await page.keyboard.press("Enter");
       await page.waitForFunction(() => /mine\.scn is saved/.test(document.querySelector("#said").textContent));
       assert.equal(readFileSync(path.join(started.folder, "mine.scn"), "utf8"), example);
-      // Only the new scene can be saved again, and no earlier file.
+      // Save writes only the new scene, and leaves the earlier file as it is.
       await type(page, "camera { eye (0, 1, 9)  lookat (0, 1, 0) }\nsphere { center (0, 1, 0) }\n");
       await page.keyboard.press("Control+s");
       await page.waitForFunction(() => document.querySelector("#file-state").textContent === "");
@@ -122,7 +122,7 @@ test("an opened local file is a new scene, also with a host", async t => {
   await page.click("#save");
   await page.waitForSelector("#name-dialog[open]");
   await page.keyboard.press("Enter");
-  // A file of this name exists and is not overwritten.
+  // A file of this name exists, so the name is refused.
   await page.waitForFunction(() => document.querySelector("#name-problem").textContent !== "");
   await page.fill("#name-field", "third");
   await page.keyboard.press("Enter");
@@ -246,7 +246,7 @@ test("vanishing points outside the page are arrows, and an empty layer gives a r
     assert.ok(x >= stage.x && y >= stage.y && x + width <= stage.x + stage.width && y + height <= stage.y + stage.height, label);
   }
   assert.match(await page.textContent("#unseen"), /pixel grid/);
-  // With a smaller zoom, the point itself is visible.
+  // At a smaller zoom, the point itself is visible, so no arrow points to it.
   for (let i = 0; i < 4; i++) await page.click("#zoom-out");
   assert.equal(await page.locator("path.line.axis-y[transform^=translate]").count(), 0);
 });
@@ -268,7 +268,7 @@ test("the tools fit one row at 1280, and the projector window needs no server", 
   await type(page, FIGURE.replace("let ball = (-1.6, 1, 0)", "let ball = (0.2, 1, 2)"));
   await rested(page);
   await popup.waitForFunction(before => [...document.querySelector("canvas").getContext("2d").getImageData(640, 360, 1, 1).data].join() !== before, before);
-  // A reloaded page continues to use the window.
+  // A reloaded page still sends its pictures to the projector window.
   page.on("dialog", dialog => dialog.accept());
   await page.reload();
   await finished(page);

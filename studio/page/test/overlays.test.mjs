@@ -1,4 +1,4 @@
-// Overlays on the picture.
+// Tests of the drawings over the picture: outlines, vanishing points and other layers.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,4 +1,4 @@
-// Sessions: reloading, reconnecting, another host, an address used twice, and other servers.
+// Tests of sessions: reloading, reconnecting, a new host, an address used twice, and other servers.
 
 import assert from "node:assert/strict";
 import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -171,7 +171,7 @@ test("the opened address works once, and a second use ends both pages' sessions"
   for (const page of [first, second]) await says(page, /opened twice.* has ended.*printed in its terminal/);
   await keeps(first, LARGER);
   assert.equal(readFileSync(scene, "utf8"), FIGURE);
-  // The printed address still works.
+  // The address that the host has printed still works.
   await first.goto(started.address);
   await connected(first);
   assert.equal(await text(first), LARGER);
@@ -190,7 +190,7 @@ test("a page of another local server gets no access", async t => {
   t.after(() => server.close());
   const theirs = `http://127.0.0.1:${server.address().port}/`;
   const page = await open(await launch(t), started);
-  // From Studio's own tab, and from another one of the same browser.
+  // The request is made from Studio's own tab, and from another tab of the same browser.
   const other = await page.context().newPage();
   await other.goto(theirs);
   const found = await other.evaluate(

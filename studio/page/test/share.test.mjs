@@ -1,4 +1,4 @@
-// Links and downloads.
+// Tests of links that contain a scene, and of downloads.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,4 +1,4 @@
-// Sliders of definitions and of numbers, playing, and their behaviour at errors.
+// Tests of sliders for definitions and numbers: their limits, playing them, and errors in the text.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -6,7 +6,7 @@ import { FIGURE, finished, hand, handle, host, launch, open, rested, tab, text, 
 
 const number = (text, pattern) => Number(new RegExp(`${pattern}\\s*(-?[\\d.e-]+)`).exec(text)[1]);
 
-/** Returns the figure with a definition before it, and one field replaced. */
+/** Returns the figure's text with a definition before it and one field replaced. */
 const scene = (definition, field, other) => `${definition}\n${FIGURE.replace(field, other)}`;
 
 /** Returns the position of a slider's thumb on the page. */
@@ -113,7 +113,7 @@ test("a slider stays under the pointer while its value is an error, below the pr
     await page.mouse.move(0, y, { steps: 5 });
     await page.mouse.up();
     await page.waitForSelector("#problem-list:not([hidden])");
-    // The slider is fully visible, and the problem above it.
+    // The slider is wholly visible, and the problem is above it.
     await page.waitForTimeout(400);
     const [row, problem, footer] = await Promise.all([".slider-row", "#problem-list", "footer"].map(it => page.locator(it).boundingBox()));
     assert.ok(problem.y + problem.height <= row.y + 1 && row.y + row.height <= footer.y + 1, `${width} × ${height}`);
@@ -131,7 +131,7 @@ test("sliders never reach values that are errors, and counts have whole steps", 
   await rested(page);
   assert.equal(number(await text(page), "let r ="), 0.1);
   assert.equal(await page.textContent("#problems"), "No problems");
-  // The same for a drag in the text.
+  // A drag of the number in the text ends at the limit, too.
   await page.click("#undo");
   const box = await page.locator(".cm-line").first().getByText("1", { exact: true }).boundingBox();
   await page.keyboard.down("Alt");
@@ -149,7 +149,7 @@ test("sliders never reach values that are errors, and counts have whole steps", 
     await rested(page);
     assert.equal(number(await text(page), "let n ="), 5);
     assert.doesNotMatch(await page.textContent("#problems"), /^\d+ problem/);
-    // The same for the slider in the text, and its keys.
+    // The slider in the text, and its keys, have the same limits.
     await page.locator(".cm-line").first().getByText("5", { exact: true }).click();
     await page.waitForSelector(".slider");
     assert.equal(await page.getAttribute(".slider input", "step"), "1");

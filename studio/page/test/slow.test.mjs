@@ -6,11 +6,14 @@ import { test } from "node:test";
 import { comparing, decoded, FIGURE, hand, handle, host, launch, onPage, open, pixels, rendered, rested, text } from "./helpers.mjs";
 
 const LATE = 1500;
-/** Maximum number of edits behind the pointer: the one requested, and the last one. */
+/**
+ * Maximum time until the text has followed the pointer, in milliseconds: an answer to the edit that
+ * is under way, an answer to the last one, and some time for the page.
+ */
 const BEHIND = 2 * LATE + 1200;
 const BALL = [455, 320];
 
-/** Drags: the tool or handle, the start, and the distance. */
+/** Drags: each has the tool or the handle, the start, and the distance. */
 const DRAGS = {
   object: { from: page => onPage(page, BALL), way: [90, -40] },
   handle: { from: page => handle(page, "Ball: center"), way: [70, 30] },
@@ -39,10 +42,10 @@ test("a handle arrives where it was released, however late the host answers", as
     await rested(page);
   }
   for (const [name, drag] of Object.entries(DRAGS)) for (const slow of ["pinhole/drag", "pinhole/frame", "pinhole/pick"]) {
-    // An object dragged by its body is not selected before.
+    // An object that is dragged without a handle must not be selected before the drag.
     await page.selectOption("#objects", { label: name === "object" ? "Crate (box)" : "Ball (sphere)" });
     await rested(page);
-    // The time of a picture does not matter.
+    // Only the edits must be in time, so a picture may take much longer.
     late[slow] = slow === "pinhole/frame" ? 4 * BEHIND : LATE;
     await dragged(page, drag);
     const begin = Date.now();
@@ -73,7 +76,7 @@ test("a drag waits for earlier ones, and Escape cancels a waiting one", async t 
   await rested(page);
   assert.equal(await text(page), FIGURE);
   late["pinhole/drag"] = LATE;
-  // One drag is released, the next one is cancelled, and a third one follows.
+  // One drag is released, the next one is cancelled, and a third one follows at once.
   await dragged(page, DRAGS.handle);
   const given = await onPage(page, BALL);
   await hand(page, given, [50, 20], { hold: true });
@@ -101,7 +104,7 @@ test("the last good picture of a text with errors is finished", async t => {
   const page = await open(await launch(t), started);
   await comparing(page);
   const expected = await decoded(page, rendered(started.folder, scene));
-  // After the coarse picture, the text has an error.
+  // After the coarse picture has arrived, the text gets an error.
   await page.evaluate(() => addEventListener("pinhole-frame", () => (window.isBegun = true), { once: true }));
   await page.click(".cm-content", { position: { x: 2, y: 5 } });
   await page.keyboard.press("Control+a");
@@ -110,7 +113,7 @@ test("the last good picture of a text with errors is finished", async t => {
   await page.keyboard.type("x");
   await page.waitForFunction(() => /errors/.test(document.querySelector("#stale").textContent));
   assert.notEqual(await page.evaluate(() => document.querySelector("canvas").dataset.fineness), "final");
-  // Further errors neither restart nor prevent it.
+  // Further errors neither restart nor prevent the final picture of the last good text.
   await page.keyboard.type("y z", { delay: 100 });
   await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 60_000 });
   assert.equal(await pixels(page), expected);

@@ -1,4 +1,5 @@
-// The static page: the engine in a web worker, without host or file. SITE is its folder.
+// Tests of the static page: its engine runs in a web worker, without host or file. SITE is its
+// folder.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
@@ -39,7 +40,7 @@ test("the static page renders, drags, downloads and links without a request", { 
 
 test("the static page opens a local file", { skip }, async t => {
   const page = await open(await launch(t), await site(t, process.env.SITE));
-  // As in browsers without file pickers.
+  // Without this function, the page acts as in a browser without file pickers.
   await page.evaluate(() => (window.showOpenFilePicker = undefined));
   const scene = FIGURE.replace("radius 1", "radius 1.5");
   const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.click("summary:text('File')").then(() => page.click("#open"))]);
@@ -47,7 +48,7 @@ test("the static page opens a local file", { skip }, async t => {
   assert.equal(await text(page), scene);
   assert.equal(await page.textContent("#file-name"), "other.scn");
   assert.equal(await page.textContent("#file-state"), "");
-  // Undo restores the earlier text with its own file.
+  // Undo restores the earlier text together with its file.
   await page.click(".cm-content");
   await page.keyboard.press("Control+z");
   assert.equal(await text(page), FIGURE);
@@ -87,11 +88,11 @@ test("the static page stores drafts in the browser and offers them after a reloa
   assert.equal(await text(page), FIGURE);
   await andFinished(page, () => page.click("#draft-choices >> text=Restore"));
   assert.equal(await text(page), scene);
-  // It continues as the same draft.
+  // The continued draft keeps its key, so only one draft is offered.
   await page.waitForTimeout(900);
   await page.reload();
   await page.waitForSelector("#draft-bar:not([hidden])");
-  // Text changed before the answer is stored beside it.
+  // A text that is changed before the answer to the offer is stored beside the offered draft.
   const other = FIGURE.replace("radius 1", "radius 0.5");
   await andFinished(page, () => type(page, other));
   await page.waitForTimeout(900);
@@ -106,7 +107,7 @@ test("the static page stores drafts in the browser and offers them after a reloa
   await page.waitForTimeout(900);
   await page.reload();
   await finished(page);
-  // After restoring and undoing both, both are still offered, until they are deleted.
+  // Both drafts were restored and undone, so both are still offered, until they are deleted.
   await page.waitForSelector("#draft-bar:not([hidden])");
   for (let left = 2; left > 0; left--) {
     assert.equal(await page.locator("#draft-choices li").count(), left);

@@ -1,4 +1,4 @@
-// The text: problems and their fixes, completion, hints and sliders, and safe display.
+// Tests of the text editor: problems and fixes, completion, hints, sliders, and unsafe texts.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
@@ -35,7 +35,7 @@ test("a fix is applied by mouse and by key", async t => {
   await type(page, slip);
   await page.waitForSelector(".cm-lintRange-error");
   assert.equal(await page.textContent("#problems"), "1 problem");
-  // The hints appear a little later, and may move the line.
+  // Hints appear a little later and may move the line, so the test waits for them.
   await page.waitForTimeout(500);
   await page.hover(".cm-lintRange-error");
   await andFinished(page, () => page.click(".cm-tooltip-lint .cm-diagnosticAction"));
@@ -89,7 +89,7 @@ test("completion, hints, swatches and format come from the server", async t => {
   assert.equal(await text(page), FIGURE);
   await type(page, "camera { eye (0, 1, 5) lookat (0, 0, 0) }\nsphere { center (0, 0, 0) ra");
   await page.waitForSelector(".cm-tooltip-autocomplete");
-  // Completion ignores keys shortly after it has opened.
+  // Completion ignores keys for a short time after it has opened.
   await page.waitForTimeout(200);
   await page.keyboard.press("Enter");
   assert.match(await text(page), /center \(0, 0, 0\) radius 1$/);
@@ -137,7 +137,7 @@ test("a slider, a key and a drag keep a number within its limits", async t => {
     const slider = page.locator(".slider input");
     await page.waitForFunction(least => document.querySelector(".slider input")?.min === least, least);
     const { x, y, width, height } = await slider.boundingBox();
-    // Beyond the left end.
+    // The thumb is dragged beyond the left end of the slider.
     await hand(page, [x + width / 2, y + height / 2], [-width, 0]);
     await rested(page);
     assert.ok(await page.isHidden("#stale"), await text(page));
@@ -198,10 +198,11 @@ test("a key press requests its picture first, also if it selects another object"
   await page.goto(started.address);
   await finished(page);
   await page.locator(".cm-line").filter({ hasText: /^sphere/ }).click();
-  // The first key goes to the end of the wrapped line.
+  // The line is wrapped: the first press goes to the end of the row, the second to that of the
+  // line.
   for (let i = 0; i < 2; i++) await page.keyboard.press("End");
   await rested(page);
-  // Behind its block the object is no longer selected, and before the space it is.
+  // Behind a space after the block, the object is no longer selected. Without the space, it is.
   for (const key of ["Space", "Backspace"]) {
     asked.length = 0;
     await andFinished(page, () => page.keyboard.press(key));
@@ -226,7 +227,7 @@ test("a tooltip of a word never covers the tools above the text", async t => {
       await tooltip.waitFor();
       const [said, edge] = [await tooltip.boundingBox(), (await page.locator("#editor").boundingBox()).y];
       assert.ok(said.y >= edge && said.y + said.height <= height, `${word} at ${width} × ${height}: ${said.y}, ${said.height}`);
-      // The whole tooltip can be read.
+      // The tooltip shows its whole text, or scrolls.
       assert.ok(await tooltip.evaluate(it => it.scrollHeight <= it.clientHeight + 1 || getComputedStyle(it).overflowY === "auto"));
     }
     await page.context().close();

@@ -36,7 +36,7 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
     async slider() {
       await rested(page);
       const before = await text(page);
-      // Without the definition, there is no slider.
+      // If the definition was removed, there is no slider.
       if (await page.isHidden(".slider-row input")) return;
       const { x, y, width, height } = await page.locator(".slider-row input").boundingBox();
       const isTaken = random() < 0.5;
@@ -66,11 +66,11 @@ test(`a random walk of ${STEPS} steps from ${SEED}`, async t => {
   for (let i = 0; i < STEPS; i++) {
     done.push(one(names));
     await steps[done.at(-1)]();
-    // Some actions begin before the previous one has ended.
+    // Some actions begin before the picture of the previous one is finished.
     if (random() < 0.6) await rested(page);
     else await page.waitForTimeout(150);
   }
-  // A drag by keys ends a little later.
+  // A drag by keys ends only after a pause.
   await page.waitForTimeout(800);
   await rested(page);
   const end = await text(page);

@@ -36,11 +36,11 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
         let (w, h) = picture.dimensions();
         let part = image::imageops::crop_imm(&sheet, x, y, w, h).to_image();
         assert!(part == *picture, "at {x}, {y}");
-        // The name is printed below the picture, so there are dark pixels.
+        // The picture's name is printed below it, so there are dark pixels.
         let name = image::imageops::crop_imm(&sheet, x, y + h, 20, 20).to_image();
         assert!(name.pixels().any(|pixel| pixel.0[0] < 99), "at {x}, {y}");
     }
-    // A warning is printed once, however often the scene is read.
+    // The scene's warning is printed once, although a sweep reads the scene several times.
     folder.write(
         "w.scn",
         "camera { eye (0, 0, 5) lookat (0, 0, 0) } sphere Far { center (99, 0, 0) } sphere for i < 1 { center (0, 0, 0) }",
@@ -51,16 +51,16 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
         .matches("warning[pinhole::unused_index]")
         .count();
     assert_eq!((said.status, told), (0, 1), "{}", said.errors);
-    // Only `check` reports objects outside the picture: in a sweep of a camera past objects, the
-    // warning would appear for every scene.
+    // Only `check` reports objects outside of the picture. In a sweep of a camera past objects, the
+    // warning would be printed for every scene.
     for (command, told) in [("check", 1), ("render", 0), ("inspect", 0), ("probe", 0)] {
         let rest = if command == "probe" { " 1 1" } else { "" };
         let said = folder.run(&format!("{command} w.scn{rest}"));
         let found = said.errors.matches("pinhole::outside_picture").count();
         assert_eq!(found.min(1), told, "{command}: {}", said.errors);
     }
-    // If rows belong to two scenes, they show the scenes' names: here the pictures are equal, but
-    // the labels differ.
+    // In a sheet of sweeps of two scenes, captions show the scenes' names. The pictures of both
+    // rows are equal here, but their captions differ.
     folder.write("other.scn", folder.read("b.scn"));
     folder.done("sheet b.scn other.scn --columns 2 --sweep S.radius=1..2/2 -o rows.png");
     let rows = open("rows.png");

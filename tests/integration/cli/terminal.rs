@@ -42,7 +42,7 @@ fn messages_escape_control_characters_of_texts_names_and_pictures() {
         assert_ne!(said.status, 0, "{line:?}");
         assert_escaped(&said.errors, line);
     }
-    // The same holds for the recipe that is stored in a picture.
+    // The recipe that is stored in a picture is printed in the same way.
     let recipe = Recipe {
         scene: SCENE.to_owned(),
         overrides: vec![format!("Ball.radius={CONTROLS}")],
@@ -77,7 +77,7 @@ fn a_full_device_is_an_error_and_a_closed_pipe_is_not() {
         let said = to(full.unwrap().into());
         assert_eq!(said.status, 2, "{line}");
         assert!(said.errors.contains("cannot write to standard output"));
-        // Now the reader closes the pipe, as `head` does.
+        // The reader closes the pipe, as `head` does.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let said = to(writer.into());

@@ -11,8 +11,8 @@ use crate::{program::Folder, table::rows};
 
 const RANDOM: &str = "--set sampler.method=random --set sampler.per_pixel=16";
 
-/// Rows of the arguments of `render`, the arguments of `diff`, the exit status, and the start of
-/// the first line of the output.
+/// Rows of four columns: the arguments of `render`, the arguments of `diff`, the exit status, and
+/// the start of the first line of the output.
 const VERDICTS: &str = "
     -> -> 0 -> right: equal to the exact picture
     -> --strict -> 0 -> right: no pixel differs by more than 0.5 steps
@@ -35,8 +35,7 @@ fn diff_prints_the_verdict_first() {
             render(&folder, &format!("-o {name} {rendered}"));
             let compared = format!("diff {name} a.scn {compared}");
             let text = folder.told(&compared, status.parse().unwrap());
-            // Floats are not rounded to 8-bit steps, so the verdict on them does not mention half a
-            // step.
+            // Floats are not rounded to 8-bit steps, so their verdict does not mention half a step.
             let first = first.strip_suffix(" than 0.5 steps").unwrap_or(first);
             assert!(text.starts_with(first), "{rendered} {compared}: {text}");
         }
@@ -133,7 +132,7 @@ fn objects_are_judged_by_their_own_pixels() {
     let found = json(&folder, "b.png a.scn");
     assert_eq!(found["mistakes"][0]["id"], "mirrored", "{found:#}");
     all_are(&found, false);
-    // Change a few pixels of the background.
+    // A few pixels of the background are changed.
     let mut picture = open(&folder, "a.png").to_rgb8();
     for (x, y) in [(3, 3), (5, 3), (9, 4), (4, 7)] {
         picture.put_pixel(x, y, Rgb([(20 * x) as u8, 255, 7]));
@@ -162,7 +161,7 @@ fn a_scribbled_picture_is_wrong_and_not_noise() {
 /// Function that returns the new value of a pixel, given its value and its row.
 type Change = fn(Rgba<u8>, u32) -> Rgba<u8>;
 
-/// Identifiers of obvious defects, each with the change of every pixel that causes it.
+/// Ids of obvious mistakes, each with the change of every pixel that causes it.
 const PLAIN: [(&str, Change); 7] = [
     ("black", |_, _| Rgba([0, 0, 0, 255])),
     ("one_colour", |_, _| Rgba([90, 120, 30, 255])),
@@ -193,7 +192,7 @@ fn an_obvious_defect_is_the_only_mistake_reported() {
         let ids: Vec<_> = mistakes.iter().map(|mistake| &mistake["id"]).collect();
         assert_eq!(ids, [id], "{found:#}");
     }
-    // If the picture shows only background, the reported mistake is the camera.
+    // In a picture that shows only background, the reported mistake is the camera.
     render(
         &folder,
         "-o b.png --set 'camera.lookat=(3, 30, 8)' --set image.background=navy",

@@ -25,7 +25,7 @@ const LEVEL: &str =
 /// Start of a text in which the camera is dragged.
 const SEEN: &str = "image { width 400 height 200 }\nsphere { center (0, 1, 0) }\ncheckerboard {}\n";
 
-/// Returns the labels of `all` completions, grouped by their kind.
+/// Returns the labels of all completions in `all`, grouped by their kind.
 fn offered(all: &[Completion]) -> String {
     let kind = |completion: &Completion| {
         let kind = format!("{:?}", completion.kind);
@@ -99,8 +99,9 @@ pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
 }
 
-/// Applies a drag to `start` followed by `text`, and returns what then follows `start`. `words`
-/// are the handle, the coordinates of one or two points, and the axis or plane of the movement.
+/// Applies a drag to `start` followed by `text`, and returns the part of the result after `start`.
+/// `words` are the handle, the coordinates of one or two points, and the axis or plane of the
+/// movement.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());
@@ -123,7 +124,7 @@ fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> St
 }
 
 /// Returns the answer to the query `question` about `text`. Brackets in `text` mark the span that
-/// the query is about, such as that of a [`Color`] to be replaced.
+/// the query is about; for example, that of a [`Color`] to be replaced.
 fn answer(question: &str, text: &str, other: &str) -> String {
     let at = text.find(['$', '[']).unwrap_or_default();
     let end = text.find(']').map_or(at, |end| end - 1);

@@ -38,7 +38,7 @@ fn any_scene() -> impl Strategy<Value = String> {
     })
 }
 
-/// Generates a point in, near or very far from the picture, in fractions of the picture's size.
+/// Generates a point in, near, or very far from the picture, in fractions of the picture's size.
 fn any_point() -> impl Strategy<Value = (f64, f64)> {
     let part = || prop_oneof![8 => -0.5..1.5, 1 => Just(1e300), 1 => Just(-1e12)];
     (part(), part())
@@ -61,10 +61,10 @@ fn camera_of(scene: &Scene) -> CameraFacts {
     inspect(scene, &sources("").file).camera
 }
 
-/// Returns the position in the world of a handle of the first object. If the position of a handle
-/// depends on the picture, returns that of the handle's object. For a board, returns the point at
-/// the board's height that is above or below the intersection of the view axis with the board of
-/// `held`.
+/// Returns the position in the world of a handle of the first object. If the handle's position
+/// depends on the picture, returns that of the object itself. For a board, the handle is at the
+/// point above or below the intersection of the view axis with the board of `held`, the scene
+/// before the drag; returns this point at the board's new height.
 fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -89,18 +89,18 @@ fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     }
 }
 
-/// Returns the unit direction in the picture in which `point` is seen to move if it moves along an
-/// axis of the world.
+/// Returns the direction, a unit vector in the picture, in which `point` is seen to move if it
+/// moves along the world's axis `axis`.
 fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     let camera = camera_of(scene);
     let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
     let (at, by) = (turned(point - camera.eye), turned(DVec3::AXES[axis]));
-    // This is the derivative of (x/z, y/z), multiplied by z².
+    // This is z² times the derivative of the projection (x/z, y/z).
     (by.truncate() * at.z - at.truncate() * by.z).normalize()
 }
 
-/// Returns the axis along which a handle moves, or `None` if it moves in a plane or has its own
-/// rule.
+/// Returns the axis along which a handle moves. Returns `None` if it moves in a plane or by a rule
+/// of its own.
 fn axis_of(handle: &str, word: &str) -> Option<usize> {
     let axis = match handle {
         "y" => "y",
@@ -111,7 +111,7 @@ fn axis_of(handle: &str, word: &str) -> Option<usize> {
 }
 
 /// Returns whether the tip of a triangle's normal is seen within half a pixel of the point `to`. If
-/// the tip cannot reach the ray through `to`, it has to be seen where it is nearest to that ray.
+/// the tip cannot reach the ray through `to`, the tip must be at the position nearest to that ray.
 fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let camera = camera_of(scene);
     let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
@@ -133,8 +133,9 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
     project(scene, tip).distance(goal) <= 0.5 + 1e-6
 }
 
-/// Returns whether the apex is seen from the centroid in the direction of the point `to`. Returns
-/// `true` also if the apex or `to` is less than a pixel from the centroid.
+/// Returns whether the apex is seen from the centroid in the direction of the point `to`. Also
+/// returns `true` if the apex or `to` is less than a pixel from the centroid, since the direction
+/// is then uncertain.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let middle = project(scene, triangle.centroid);
     let shown = overlays(scene, &ShownObjects::First(None));
@@ -146,7 +147,8 @@ fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> b
         || (across.abs() <= 0.5 + 1e-6 && wanted.dot(found) > 0.0)
 }
 
-/// Projects a point of the world to the picture, using the camera data of `pinhole inspect`.
+/// Projects a point of the world to the picture, with the camera data that `pinhole inspect`
+/// reports.
 fn project(scene: &Scene, point: DVec3) -> DVec2 {
     let camera = inspect(scene, &sources("").file).camera;
     let from_eye = point - camera.eye;
@@ -165,7 +167,7 @@ fn assert_near(a: DVec2, b: DVec2, text: &str) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
-    /// A drag moves the handle to the pointer, or is refused with a reason.
+    /// A drag either moves the handle to the pointer, or is refused with a reason.
     #[test]
     fn a_dragged_handle_appears_at_the_pointer(
         text in any_scene(), to in any_point(), which in 0..7usize, word in prop_oneof![Just(""), Just("x"), Just("y"), Just("z"), Just("floor")],
@@ -179,16 +181,17 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The camera may share a name with the moved value, and so have changed as well.
+        // The drag may also have changed the camera, if the moved value has a name that the camera
+        // uses.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // Three quarters of a pixel inside the silhouette, a ray hits the sphere; at the
-                // same distance outside, it does not. If the centre is behind the eye, "inside" is
-                // the side away from the centre's projection.
+                // A ray three quarters of a pixel inside of the silhouette hits the sphere, and one
+                // as far outside does not. If the centre is behind the eye, "inside" is the side
+                // away from the centre's projection.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);
@@ -207,8 +210,8 @@ proptest! {
             }
             _ => match axis_of(handle, word) {
                 None => assert_near(found, to, &message),
-                // The handle comes as near to the pointer as its axis allows: the remaining offset
-                // is perpendicular to the handle's movement in the picture.
+                // The handle comes as near to the pointer as its axis allows. The remaining offset
+                // is therefore perpendicular to the handle's movement in the picture.
                 Some(axis) => {
                     let left = (to - found).dot(direction_seen(&after, place, axis));
                     prop_assert!(left.abs() <= 0.5 + 1e-6, "{}: {} left", message, left);
@@ -268,7 +271,7 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
             along: None,
             step,
         };
-        // If the drag is refused, the text stays: a face cannot pass the opposite face.
+        // A drag is refused if a face would pass the opposite face. Then the text stays as it is.
         text = dragged(&text, &moved).unwrap_or(text);
         shapes.push(read(&text).objects[0].shape);
     }
@@ -292,7 +295,7 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
             .iter()
             .flat_map(move |face| steps.map(|step| (text, face, step)))
     }) {
-        // In this case, the centre and the size share a name, so a drag along y changes both.
+        // Here, the centre and the size share a name, so a drag along y changes both.
         if text.starts_with("let") && handle.ends_with('y') {
             continue;
         }

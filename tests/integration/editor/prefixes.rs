@@ -17,7 +17,7 @@ use pinhole::{
     source::{SourceId, Span},
 };
 
-/// Returns whether both ends of a span lie in the text and between characters.
+/// Returns whether both ends of a span lie within the text and not inside of a character.
 fn is_place(text: &str, span: Span) -> bool {
     text.get(span.range()).is_some()
 }
@@ -84,9 +84,9 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Queries each prefix of an example at its end; the whole example at every offset; and the example
-/// without a byte or a piece, as while a user rewrites a line. Examples have much in common, so
-/// each is queried only at every other offset, even and odd ones in turn.
+/// Queries each prefix of an example at its end, and the whole example at every offset. Also
+/// queries the example without a byte or a piece, as while a user rewrites a line. Examples have
+/// much in common, so in turn only the even or only the odd offsets of each are queried.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);

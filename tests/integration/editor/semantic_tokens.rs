@@ -48,7 +48,7 @@ fn tree_kinds(text: &str) -> Option<BTreeMap<Span, SemanticKind>> {
 
 fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span, SemanticKind>) {
     match &value.kind {
-        // A name with a hyphen or a space is a mistake, and has no kind.
+        // A name that contains a hyphen or a space is a mistake and has no kind.
         ValueKind::Name(name) if name.contains(['-', ' ']) => {}
         ValueKind::Name(name) => {
             let kind = match schema::predefined(name) {
@@ -72,14 +72,14 @@ fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span,
     }
 }
 
-/// Semantic tokens, which are derived from the positions of words, agree with the syntax tree
+/// The editor derives semantic tokens from the positions of words. They agree with the syntax tree
 /// wherever the tree is certain.
 #[test]
 fn semantic_tokens_agree_with_the_syntax_tree() {
     let mut files = 0;
     let folders = ["examples", "tests/diagnostics", "tests/syntax/ok"];
     for path in folders.into_iter().flat_map(scenes) {
-        // Skip fixtures that are not UTF-8: their text counts as empty.
+        // Fixtures that are not UTF-8 are skipped, since their text is read as empty.
         let text = fs::read_to_string(&path).unwrap_or_default();
         let Some(words) = tree_kinds(&text).filter(|words| !words.is_empty()) else {
             continue;

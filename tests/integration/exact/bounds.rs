@@ -21,7 +21,7 @@ fn bounds_stay_below_1e_9_and_certify_nearly_all_bytes() {
     }
 }
 
-/// The spheres intersect one another within one pixel, and most of their silhouettes are hidden.
+/// Within one pixel, the spheres intersect one another, and most of their silhouettes are hidden.
 #[test]
 fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {
     let heap = spheres(&mut Random::new(7), 40, 20.0, [2.0, 22.0]);
@@ -61,7 +61,7 @@ fn ten_thousand_objects_are_known_within_1e_9() {
     ));
 }
 
-/// Nearly coincident silhouettes of spheres are told apart as closely as rounding allows.
+/// Silhouettes of spheres that nearly coincide are distinguished as closely as rounding allows.
 #[test]
 fn nearly_coincident_outlines_are_known_and_add_up() {
     for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {
@@ -118,8 +118,8 @@ fn memory(scene: &str, crop: &str) -> u64 {
 }
 
 /// In the first scene, nearly everything is seen at one point of a pixel, so the number of
-/// unfinished pieces grows: without a limit, they take 20 GB. The second scene has 65 536 objects,
-/// which need memory themselves; a neighbouring pixel measures how much.
+/// unfinished parts of the pixel grows. Without a limit, they took 20 GB. In the second scene, 65
+/// 536 objects need memory themselves. A neighbouring pixel measures how much.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pixel_takes_bounded_memory() {
@@ -154,8 +154,8 @@ fn a_pixel_takes_bounded_memory() {
 }
 
 /// Two hundred objects pass through the same few points of a pixel that covers half of all
-/// directions. Many of their curves can be told apart only with the highest precision. In a release
-/// build, a pixel takes at most a second; the limit here is longer, because tests are less
+/// directions. Many of their curves are distinguished only in the highest precision. In a release
+/// build, a pixel takes at most a second. The limit here is longer, because tests are less
 /// optimised and run in parallel.
 #[test]
 fn a_pixel_takes_bounded_time() {

@@ -100,8 +100,8 @@ fn assert_agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
     let sampled = sampled(&scene);
     // For a channel from 0 to 1 with mean m, the variance of the mean of n samples is at most
     //     m·(1 − m)/n.
-    // By Bernstein's inequality, the mean of n independent samples is farther off than this limit
-    // with a probability of at most 10⁻¹⁰.
+    // By Bernstein's inequality, the mean of n independent samples differs from m by more than
+    // `most` of this variance with a probability of at most 10⁻¹⁰.
     let log = libm::log(2e10);
     let most = |variance: f64| (2.0 * variance * log).sqrt() + log / (1.5 * samples as f64);
     let pixels = computed.film.pixels().iter().zip(sampled.pixels());

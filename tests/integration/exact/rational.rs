@@ -20,15 +20,16 @@ type Linear = [RBig; 3];
 type Polygon = Vec<[RBig; 2]>;
 
 impl RationalView {
-    /// Returns the component along an axis of the world of the ray through (X, Y), as a linear form
-    /// of the point (X, Y) of the view plane.
+    /// Returns one component (`axis` of the world) of the ray through the point (X, Y) of the view
+    /// plane, as a linear form of (X, Y).
     fn ray(&self, axis: usize) -> Linear {
         let [right, top, back] = [0, 1, 2].map(|of| self.axes[of][axis].clone());
         [right, top, -(back * &self.d)]
     }
 
-    /// Returns linear forms N and L: the ray through a point hits the board at the coordinate N/L
-    /// along `axis`, which is 0 for x or 2 for z. L is positive below the horizon.
+    /// Returns linear forms N and L. The ray through a point of the view plane hits the board at
+    /// the coordinate N/L along `axis`, which is 0 for x or 2 for z. L is positive below the
+    /// horizon.
     fn place(&self, axis: usize) -> [Linear; 2] {
         let below = self.ray(1).map(|factor| -factor);
         let along = self.ray(axis);
@@ -70,8 +71,8 @@ fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> 
     successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
 }
 
-/// Returns the part of a polygon whose board coordinate is from `n` to `n + 1`: its part in one row
-/// or column of squares.
+/// Returns the part of a polygon where the board coordinate N/L is from `n` to `n + 1`, which is
+/// the polygon's part in one row or column of squares.
 fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     let line = |n: IBig| -> Linear {
         let n = RBig::from(n);

@@ -1,4 +1,4 @@
-//! Exact pixels compared with closed forms.
+//! Compares exact pixels with values from closed formulas.
 
 use std::f64::consts::PI;
 
@@ -22,15 +22,16 @@ fn assert_coverage(camera: &str, object: &str, expected: f64) {
 
 #[test]
 fn half_plane_coverage_matches_the_closed_form() {
-    // The pixel is 2 wide at distance 1. The box's right edge is seen at edge/4, or at edge/5 if
-    // the right face is visible.
+    // At distance 1, the pixel is 2 wide. The box's right edge is seen at edge/4, or at edge/5 if
+    // the right face is not visible.
     for edge in [-3.5f64, -0.25, 0.0, 1.0, 3.0] {
         let object = format!("box {{ min (-100, -100, -5) max ({edge}, 100, -4) color white }}");
         let expected = 0.5 + edge / if edge < 0.0 { 10.0 } else { 8.0 };
         assert_coverage(AHEAD, &object, expected);
         assert_coverage(&format!("{AHEAD} roll 90deg"), &object, expected);
     }
-    // A plane whose edge passes through the pixel's centre covers half of it, at any roll.
+    // A plane surface whose edge passes through the pixel's centre covers half of the pixel, at any
+    // roll.
     for object in list(
         "
         box { min (-100, -100, -5) max (0, 100, -4) color white }
@@ -44,8 +45,8 @@ fn half_plane_coverage_matches_the_closed_form() {
     }
 }
 
-/// The silhouette of a sphere is an ellipse of area πR²√C/(z² − R²)^(3/2) with C = c·c − R² and the
-/// centre's depth z. On the axis, it is a circle.
+/// The silhouette of a sphere is an ellipse of the area πR²√C/(z² − R²)^(3/2), where C = c·c − R²,
+/// c is the centre and z its depth. If the centre is on the view axis, the ellipse is a circle.
 #[test]
 fn sphere_coverage_matches_the_area_of_an_ellipse() {
     for (x, y, z, radius) in [
@@ -67,15 +68,16 @@ fn sphere_coverage_matches_the_area_of_an_ellipse() {
 
 #[test]
 fn board_coverage_from_above_matches_the_closed_form() {
-    // From height 1 the pixel shows [−1, 1]²: 2 × 2 squares of side 1, or smaller squares.
+    // From height 1, the pixel shows the area [−1, 1]² of the board: 2 × 2 squares of side 1, or
+    // more of smaller squares.
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),
-        // The colour is given by the sign s(x)·s(z). x is from −3/4 to 5/4, z from −1/2 to 3/2:
-        // two squares along each axis, so the integral of each sign is 0.
+        // The colour is given by the sign s(x)·s(z). The pixel shows x from −3/4 to 5/4 and z from
+        // −1/2 to 3/2. That is two squares along each axis, so the integrals of both signs are 0.
         ("(0.25, 1, 0.5)", 1.0, 0.5),
-        // x is from −1/2 to 1, with the integral 1 − 1/2. z is from −1/4 to 5/4, with the integral
-        // −1/4 + 1 − 1/4. The area is (3/2)².
+        // The pixel shows x from −1/2 to 1, where the integral of s is 1 − 1/2, and z from −1/4 to
+        // 5/4, where it is −1/4 + 1 − 1/4. The area is (3/2)².
         ("(0.25, 0.75, 0.5)", 1.0, 0.5 + 0.5 * (0.5 * 0.5) / 2.25),
     ] {
         let camera = format!("eye {eye} direction (0, -1, 0) up (0, 0, -1) d 1");
@@ -92,7 +94,7 @@ fn nearly_vertical_lines_are_known_and_add_up() {
         eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3 -> sphere { center (-1, 2, -1.5) radius 1.5 color white } box { min (1, -2, -1) max (2, -1.5, 0) color white }
         eye (1, 3.5, 7.5) lookat (-1.5, 1, 1) d 1 -> box { min (-1.5, 0, -1) max (-0.5, 3, 1) color white } sphere { center (-1, 1, 1) radius 1.5 color black }
     ") {
-        // With an odd number of columns, the edge is in the middle of pixels.
+        // If the number of columns is odd, the edge runs through the middle of pixels.
         for (width, height) in [(4, 3), (12, 9), (64, 36), (13, 7)] {
             let text = format!("image {{ width {width} height {height} }} camera {{ {camera} }} {objects}");
             let bound = assert_part_adds_up(&read(&text), Area::whole(width, height)).bound();

@@ -6,7 +6,8 @@ use std::fs;
 use super::{SCENE, folder, hostile::run_with_deadline};
 use crate::program::Folder;
 
-/// `script`, if it is installed, provides the terminal. A pipe receives the text unchanged.
+/// The program `script` provides the terminal, if it is installed. A pipe receives the text
+/// unchanged.
 #[test]
 fn scene_text_is_escaped_on_a_terminal_and_unchanged_in_a_pipe() {
     let hostile = "sphere  {} // \u{1b}]0;x\u{7} \u{9b}2J \u{202e}\n";
@@ -99,7 +100,7 @@ fn file_names_cannot_forge_lines_or_table_cells() {
             assert_eq!(said.errors.lines().count(), 1, "{:?}", said.errors);
             assert!(!said.errors.contains(forged), "{:?}", said.errors);
         }
-        // If a name could forge a line, the message would have one line more than usual.
+        // If a name could forge a line, the message would have an additional line.
         for arguments in [
             &["rendr", name][..],
             &["render", "a.scn", name],
@@ -129,7 +130,7 @@ fn file_names_cannot_forge_lines_or_table_cells() {
             assert!(!said.errors.contains(forged), "{:?}", said.errors);
             assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
         }
-        // Tables and pages of `diff`, `grade` and `report`.
+        // The names also appear in tables and pages of `diff`, `grade` and `report`.
         let said = run_with_deadline(&folder, &["diff", &picture, "a.scn"]);
         assert!(!said.errors.contains("\nerror: b"), "{:?}", said.errors);
         let said = run_with_deadline(&folder, &["grade", &scene, &picture, &other, "-o", "out"]);
@@ -165,7 +166,7 @@ fn csv_cells_never_start_a_spreadsheet_formula() {
         let mut table = csv::Reader::from_reader(csv.as_bytes());
         let cells = table.records().next().unwrap().unwrap();
         assert!(cells[2].parse::<f64>().is_ok(), "{row}");
-        // The column of the student has the name of the file.
+        // The table's column of students contains the file's name.
         assert_eq!(cells[0], cells[6], "{row}");
     }
 }

@@ -14,7 +14,7 @@ use std::{
 use super::{SCENE, folder};
 use crate::program::{Folder, Outcome, command};
 
-/// Kinds of special files, each with the message of a command that reads such a file.
+/// Kinds of special files, each with the error message of a command that reads such a file.
 const HOSTILE: [(&str, &str); 9] = [
     ("pipe", "it is a pipe, not a file"),
     ("link to a pipe", "it is a pipe, not a file"),
@@ -202,7 +202,8 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
                 "link to a folder outside" => symlink(outside.path("deep"), &path).unwrap(),
                 _ => create_special_file(what, name, &folder),
             }
-            // A folder is in the way only of a file, and a missing path never is.
+            // A folder is in the way only if the path names a file; a missing path is never in the
+            // way.
             if what == "nothing" || (what, name) == ("folder", "out/b") {
                 continue;
             }

@@ -26,7 +26,7 @@ fn a_concurrent_save_of_another_program_is_never_overwritten() {
     let theirs = pinhole::scene::SMALLEST;
     for command in ["fmt a.scn", "check --fix a.scn"] {
         let mut left = 0;
-        // With some of these delays, the program has read the file but not written it yet.
+        // With some of these delays, the program has read the file but has not written it yet.
         for delay in 0..40 {
             let folder = Folder::with([("a.scn", &*long), ("theirs", theirs)]);
             let child = spawned(&folder, command);
@@ -135,7 +135,7 @@ fn a_killed_new_command_leaves_a_complete_file_or_none() {
     assert!(absent > 0 && present > 0, "{absent} {present}");
 }
 
-/// Kills the process at various times, from before it writes until it has answered.
+/// The process is killed at various times, from before it writes until it has answered.
 #[cfg(feature = "studio")]
 #[test]
 fn a_killed_first_save_leaves_a_complete_file_or_none() {
@@ -208,7 +208,8 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
         let is_whole = text == old || text == new || copies.iter().any(is_copied);
         assert!(is_whole, "{delay}");
         left += copies.len();
-        // The next run mentions the copy that was left, but not for another file of this name.
+        // The next run mentions the copy that was left of this file, but not when it formats
+        // another file of the same name.
         for (line, is_named) in [
             ("fmt closed/a.scn", true),
             ("fmt --check other/a.scn", false),
@@ -222,8 +223,8 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
     assert!(left > 0, "no try was in time");
 }
 
-/// A user may be allowed to write to a file but not to restore its group. Then no other group gets
-/// the rights of the old group.
+/// A user may be allowed to write to a file but not to restore its group. The new group then does
+/// not get the rights of the old one.
 #[test]
 fn rewriting_a_file_grants_no_rights_to_another_group() {
     use std::os::unix::fs::MetadataExt;

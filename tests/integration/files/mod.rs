@@ -117,7 +117,7 @@ fn a_new_file_appears_complete_and_replaces_nothing() {
     assert_eq!(folder.read("a"), b"new");
     let error = new("there").unwrap_err();
     assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
-    // It also fails if the other file appears while this one is being written.
+    // Writing also fails if the other file appears while this one is being written.
     let path = folder.path("b");
     let late = files::write(&path, Purpose::New, &AtomicBool::new(false), |out| {
         folder.write("b", "theirs");
@@ -163,7 +163,7 @@ fn a_file_changed_since_it_was_read_is_not_overwritten() {
         for (number, purpose) in [Purpose::Change(&original), again].into_iter().enumerate() {
             let changed = || {
                 files::write(&path, purpose, &AtomicBool::new(false), |out| {
-                    // For the second purpose, the other program's change has already happened.
+                    // For the second purpose, the other program has changed the file before.
                     if number == 0 {
                         meanwhile();
                     }
@@ -198,7 +198,8 @@ fn a_folder_replaced_by_an_outward_link_is_not_followed() {
                 original: &original,
             };
             let purpose = [Purpose::Within(within), Purpose::Private(within), again][number];
-            // Here the folder is moved, with the unfinished file in it, and a link takes its place.
+            // While the file is written, its folder is moved, with the unfinished file in it, and a
+            // link takes its place.
             let (inner, moved) = (folder.path("out/b"), outside.path("b"));
             let written = files::write(&path, purpose, &AtomicBool::new(false), |out| {
                 fs::rename(&inner, &moved)?;
@@ -230,7 +231,7 @@ fn drafts_are_readable_only_by_their_user() {
     files::keep(&path, "old").unwrap();
     let modes = || ["state", "state/drafts", "state/drafts/a.json"].map(mode);
     assert_eq!(modes(), [0o700, 0o700, 0o600]);
-    // This holds also if everybody can read the folder and the file that is replaced.
+    // The file becomes private even if everybody can read the folder and the file that is replaced.
     set("state/drafts", 0o755);
     set("state/drafts/a.json", 0o644);
     files::keep(&path, "new").unwrap();

@@ -62,7 +62,7 @@ fn foreign_or_changed_output_files_are_refused_before_anything_is_written() {
             fs::remove_dir_all(folder.path("out")).unwrap();
             folder.told(command, 0);
             folder.write(&path, "changed");
-            // The file is made huge: the program does not read a changed file to its end.
+            // The changed file is huge, which shows that the program does not read it to its end.
             let huge = fs::OpenOptions::new().write(true).open(folder.path(&path));
             huge.unwrap().set_len(1 << 40).unwrap();
             assert!(folder.told(command, 2).contains("was changed since"));
@@ -90,7 +90,7 @@ fn concurrent_runs_both_list_their_files() {
     assert!(list.contains("  a\n") && list.contains("  b/c\n"), "{list}");
 }
 
-/// If every file is written again with the same content, the list of files stays the same.
+/// If every file is written again with the same content, the list of files is not written.
 #[cfg(unix)]
 #[test]
 fn an_unchanged_file_list_is_not_rewritten() {
@@ -104,7 +104,7 @@ fn an_unchanged_file_list_is_not_rewritten() {
         out.write(&[("a".to_owned(), "text".to_owned())]).unwrap();
     };
     write();
-    // The hard link keeps the inode's number from being reused.
+    // The hard link keeps the old file's inode in use, so a new file would have another number.
     fs::hard_link(folder.path("out/.pinhole"), folder.path("first")).unwrap();
     let before = inode();
     write();

@@ -1,4 +1,4 @@
-//! Tests of the comparison of two pictures that the tests of `diff` do not cover.
+//! Tests of the comparison of two pictures, besides those of `diff`.
 
 use pinhole::{
     color::srgb_to_linear,
@@ -33,7 +33,7 @@ fn pixels_within_the_tolerance_plus_the_bound_compare_equal() {
     for (other, bound, is_equal, undecided) in [
         (&bright, None, false, 0),
         (&bright, Some([1e-3]), true, 1),
-        // The same holds if only the error bound covers the difference.
+        // A pixel without a difference is undecided if its error bound exceeds the tolerance.
         (&dark, Some([1e-3]), true, 1),
         (&dark, Some([1e-6]), true, 0),
     ] {

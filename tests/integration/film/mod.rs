@@ -73,7 +73,8 @@ fn a_png_is_truecolour_with_no_unexpected_chunks() {
     let mut kinds: Vec<_> = chunks.iter().map(|(kind, _)| *kind).collect();
     kinds.dedup();
     assert_eq!(kinds, ["IHDR", "sRGB", "iTXt", "IDAT", "IEND"]);
-    // The header has width, height, 8 bits per channel, truecolour, and no interlacing.
+    // The header contains the width, the height, 8 bits per channel, truecolour, and no
+    // interlacing.
     assert_eq!(chunks[0].1, [0, 0, 0, 31, 0, 0, 0, 17, 8, 2, 0, 0, 0]);
     let read = image::load_from_memory(&png).unwrap().into_rgb8();
     for (x, y, pixel) in read.enumerate_pixels() {
@@ -123,7 +124,7 @@ fn a_recipe_beyond_the_text_limit_is_left_out() {
     assert!(!many.fits());
 }
 
-/// A decoder's message may quote a part of the file, which can have any length.
+/// The message of a decoder may quote a part of the file, which can have any length.
 #[test]
 fn picture_errors_are_at_most_300_characters_long() {
     let long = "x".repeat(5000);
@@ -140,7 +141,7 @@ fn picture_errors_are_at_most_300_characters_long() {
         "\u{89}PNG\r\n\u{1a}\nLONG",
     ];
     for head in heads {
-        // Encode the head in Latin-1: each character becomes one byte.
+        // The head is encoded in Latin-1, where each character is one byte.
         let bytes: Vec<u8> = head
             .replace("LONG", &long)
             .chars()
@@ -158,8 +159,8 @@ fn a_damaged_png_never_yields_a_changed_recipe() {
     for length in 0..idat {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
-    // No wrong bit causes a panic. The checksum reveals a wrong bit in the header. Nothing that
-    // follows the scene is read.
+    // No wrong bit causes a panic. In the header, the checksum reveals a wrong bit. After the
+    // scene, nothing is read, so a wrong bit there has no effect.
     for bit in 0..8 * png.len() {
         let mut flipped = png.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
@@ -204,7 +205,7 @@ fn recipes_with_too_many_or_non_utf8_overrides_are_refused() {
     assert!(read_recipe(&carrying([foreign, scene].into_iter())).is_ok());
 }
 
-/// The tests of `diff` cover the other formats.
+/// The tests of `diff` cover all formats except these two.
 #[test]
 fn a_lossy_webp_and_a_plain_pnm_are_read() {
     let webp = b"RIFF\x22\0\0\0WEBPVP8 \x16\0\0\0\x30\x01\0\x9d\x01\x2a\x01\0\x01\0\x0e\xc0\xfe\x25\xa4\0\x03\x70\0\0\0\0";
@@ -230,8 +231,8 @@ fn every_8_and_16_bit_srgb_value_decodes_to_its_linear_light() {
     }
 }
 
-/// The rounding of the colours is detected without regard to channels that are not read, such as
-/// opacity or another layer. One file has 16-bit opacity, the other a 16-bit green channel.
+/// The rounding of an EXR's colours does not depend on channels that are not read, such as opacity
+/// or another layer. One file has 16-bit opacity, the other a 16-bit green channel.
 #[test]
 fn unused_exr_channels_do_not_affect_the_detected_rounding() {
     for (file, rounding) in [
@@ -252,7 +253,7 @@ fn a_small_file_of_a_huge_picture_is_refused() {
     assert!(bytes.len() < 1 << 20);
     let large = "it has 20000 × 20000 pixels, which are decoded to more than the 268435456 bytes that are read";
     assert_eq!(read_picture(&bytes).unwrap_err().to_string(), large);
-    // The limit counts four channels per pixel, each of the size of the file's channels.
+    // The limit counts four channels per pixel. Each has the size of the file's channels.
     for (depth, size) in [(BitDepth::One, 4 * 6), (BitDepth::Sixteen, 8 * 6)] {
         let bytes = png(
             [3, 2],

@@ -5,8 +5,8 @@ use pinhole::{diagnostic::apply, source::SourceId};
 use super::{Trial, diagnostics};
 use crate::{diagnostics::codes, scenes::sources, snapshot::assert_answers};
 
-/// Applies the first fix repeatedly, because each fix moves later ones, until no problem has a fix.
-/// Returns the text then, or `None` if the text had no fix.
+/// Applies the first fix repeatedly until no problem has a fix, because each fix may move later
+/// ones. Returns the text then, or `None` if the text had no fix.
 fn mended(text: &str) -> Option<String> {
     let mut trial = Trial::default();
     trial.apply_fixes(&sources(text), |_, _| true);

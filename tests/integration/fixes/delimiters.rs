@@ -8,7 +8,7 @@ use pinhole::{diagnostic::Applicability, scene};
 use super::diagnostics;
 use crate::scenes::{scenes, sources};
 
-/// Scenes that also have other mistakes, most of them in the heads of blocks.
+/// Scenes with other mistakes besides a missing delimiter, most of them in the heads of blocks.
 const WITH_MISTAKES: [&str; 3] = [
     "\
 camera { eye (0, 3, 8)  lookat (0, 1, 0) }
@@ -38,7 +38,7 @@ cube for i < 3 and j < 3 { center (i, j, 0) }
 ",
 ];
 
-/// Codes that may be reported first if a delimiter is missing, without `pinhole::`.
+/// Codes, without `pinhole::`, of which one must be reported first if a delimiter is missing.
 const OF_DELIMITERS: [&str; 7] = [
     "unclosed_block",
     "unopened_block",

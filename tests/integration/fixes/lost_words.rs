@@ -1,6 +1,6 @@
-//! Checks what safe fixes keep: every number and every name. A name may be replaced by a similar
-//! known name. Only keywords, units and punctuation may be new. A separate scanner reads the words
-//! of a text, also those in comments, so that losses there are found too.
+//! Checks that safe fixes keep every number and every name. A name may be replaced by a similar
+//! known name. Only keywords, units and punctuation may be added. A separate scanner reads the
+//! words of a text, including those in comments, so that lost comments are noticed.
 
 use pinhole::{
     diagnostic::Applicability,
@@ -34,7 +34,8 @@ struct Words {
 
 impl Words {
     /// Reads the words of `text`. A field's name may be joined with its value, as in `radius2`, or
-    /// in `centerball` if `all` has the word `ball`. If `is_two`, such a word is read as two words.
+    /// as in `centerball` if `all` contains the word `ball`. If `is_two`, a joined word is read as
+    /// two words.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
         // Zero-width characters are not part of a number.
@@ -57,7 +58,7 @@ impl Words {
                         .find(|c: char| !(is_letter(c) || c.is_ascii_digit()))
                         .unwrap_or(rest.len()),
                 };
-                // Skip an `x` that multiplies, as in `0.5x1.5x2`.
+                // The `x` in `0.5x1.5x2` multiplies and is skipped.
                 let is_times = rest.starts_with(['x', 'X'])
                     && starts_number(&rest[1..])
                     && text[..text.len() - rest.len()].ends_with(|c: char| c.is_ascii_digit());
@@ -89,8 +90,8 @@ impl Words {
     }
 }
 
-/// If a word is a field's name joined with a value, as in `radius2`, returns the length of the
-/// name. Returns `None` if the word is itself a field's name or does not start with one.
+/// Returns the length of a field's name that is joined with a value, as in `radius2`. Returns
+/// `None` if `word` is itself a field's name or does not start with one.
 fn joined_field(word: &str, all: &str) -> Option<usize> {
     if BLOCKS.iter().any(|block| block.field(word).is_some()) {
         return None;
@@ -154,7 +155,8 @@ fn is_near(new: &str, old: &str) -> bool {
     suggest::nearest(old, [new]).is_some() || suggest::is_among(old, new)
 }
 
-/// Returns whether `new` is the language's word for `old`, a word of another notation.
+/// Returns whether `new` is the language's word for `old`, which is a word of another language or
+/// notation.
 fn is_known_for(new: &str, old: &str) -> bool {
     let is_tried = |block: &schema::BlockRow| {
         let field = block.field_tried(old);
@@ -169,7 +171,7 @@ fn is_known_for(new: &str, old: &str) -> bool {
 }
 
 /// Applies the safe fixes to `text`. Returns the new text, and a complaint about each number or
-/// name that is lost or new.
+/// name that was lost or added.
 pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     let sources = Sources::new(Source::from_text("a.scn", text));
     let fixed = scene::fix_all(&sources, Applicability::Safe);
@@ -198,8 +200,8 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // It is ambiguous whether a fix joined two words, split a word, or replaced one. So every
-    // reading is tried, in which each of the last four pairs has been joined or not. The reading
+    // From the words alone, it is not known whether a fix joined two words, split a word, or
+    // replaced one. Therefore, each of the last four pairs is tried both joined and apart. The way
     // with the fewest differences counts.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
@@ -235,16 +237,16 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     (fixed.text, complaints)
 }
 
-/// Returns the lost names and the new names. Each bit of `joins` says whether a pair of words that
-/// may have been joined counts as joined, the last pair first. The sign of `joins` applies to all
-/// further pairs.
+/// Returns the lost names and the added names. Each bit of `joins` says whether a pair of words
+/// that may have been joined counts as joined, from the last pair on. The sign of `joins` says it
+/// for all further pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],
     mut joins: i32,
 ) -> (Vec<String>, Vec<String>) {
     let (mut names, mut new) = (before.to_vec(), after.to_vec());
-    // The two words `look at` stand for the field `lookat`.
+    // The field `lookat` may be written as two words, `look at`.
     let is_known = |word: &String| {
         BLOCKS.iter().any(|block| block.field(word).is_some())
             || schema::css::color(word).is_some()
@@ -274,7 +276,7 @@ fn unmatched_names(
             at.map(|at| new.remove(at)).is_none()
         });
     }
-    // The fix of `let Ball = sphere {` removes `let`, because the text becomes a block.
+    // The fix of `let Ball = sphere {` makes it a block, so it removes the word `let`.
     names.retain(|name| name != "let");
     new.retain(|name| !keywords().any(|word| word == name));
     (names, new)

@@ -7,7 +7,7 @@ use pinhole::syntax::tokens::{Lexer, TokenKind};
 use super::{Trial, diagnostics};
 use crate::scenes::{examples, sources};
 
-/// Scene with those parts of the language that the examples lack.
+/// Scene with the parts of the language that the examples do not use.
 const SCENE: &str = "\
 camera { eye (0, 2, 8)  lookat (0, 1, 0)  hfov 60deg  near 1  far 100 }
 sampler { method sobol  total 1_000_000 }
@@ -30,7 +30,7 @@ fn tokens(text: &str) -> Vec<Range<usize>> {
     tokens.map(|token| token.start..token.end).collect()
 }
 
-/// Each text lacks one token, has it twice, or has another token in its place or after it.
+/// In each text, one token is missing, doubled, or replaced or followed by another token.
 #[test]
 fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     let others = "radius 2 , = ( ) { } let red - * deg # \" ;".split(' ');
@@ -44,7 +44,7 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // A field without a value is found only when the tree is lowered to a scene.
+                // A missing value of a field is found only when the tree is lowered to a scene.
                 trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });
@@ -54,7 +54,7 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     trial.finish_with_more_than(500);
 }
 
-/// In each text, a word, a number or an innermost list is replaced by another one.
+/// In each text, one word, number or innermost list is replaced by another one.
 #[test]
 fn fixes_of_semantic_slips_remove_their_problem_and_add_no_error() {
     let mut trial = Trial::default();

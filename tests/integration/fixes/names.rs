@@ -1,5 +1,5 @@
-//! A suggested name is valid where it is suggested. Tested with every name of the language and of
-//! the text, with every kind of misspelling, in every place.
+//! A suggested name is valid in the place where it is suggested. The tests misspell every name of
+//! the language and of the text in every way, in every place.
 
 use pinhole::schema::{BLOCKS, CONSTANTS, FUNCTIONS, css, method_names};
 
@@ -75,7 +75,7 @@ fn suggested_names_are_valid_where_they_are_suggested() {
     names.extend(CONSTANTS.iter().flat_map(|(name, ..)| mistyped(name)));
     names.extend(method_names().step_by(3).flat_map(mistyped));
     names.extend(["line", "in", "ff0000", "po", "sin"].map(str::to_owned));
-    // Add calls with arguments of each type, and of each number of arguments.
+    // These are calls with arguments of each type, and with each number of arguments.
     for function in FUNCTIONS {
         let arguments = [
             "",
@@ -174,7 +174,7 @@ fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
         "k2",
         "negativ",
     ] {
-        // This test is not about values that contradict one another in a block.
+        // The test leaves out values that contradict other values of a block.
         let values = values
             .into_iter()
             .filter(|value| !value.starts_with('(') || *value == "(1, 1, 9)");

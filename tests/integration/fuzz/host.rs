@@ -37,7 +37,7 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
                 params[key] = random.one_of(&any).clone();
             }
         }
-        // No message states the file's content as its base, so no save may overwrite the file.
+        // No message contains the file's content as its base, so no save may overwrite the file.
         assert_ne!(params["base"], json!(before));
         let method = *random.one_of(&METHODS);
         let message = json!({ "jsonrpc": "2.0", "id": "fuzz", "method": method, "params": params });
@@ -47,13 +47,14 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
         page.transport.0.send(Message::text(text)).unwrap();
-        // The host still answers. Messages before this answer belong to the random message.
+        // The host still answers. Everything that it sends before this answer belongs to the random
+        // message.
         let last = json!({ "jsonrpc": "2.0", "id": "last", "method": "studio/x", "params": {} });
         page.transport.write(&last.to_string());
         while page.read()["id"] != "last" {}
     });
     assert_eq!(folder.text("a.scn"), before);
-    // Texts saved under another name are new scenes beside the file.
+    // A text that is saved under another name becomes a new scene beside the file.
     let names = folder.names();
     assert!(names.iter().all(|name| name.ends_with(".scn")), "{names:?}");
     let _: Value = page.respond("studio/x", json!({}));

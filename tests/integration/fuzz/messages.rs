@@ -1,4 +1,4 @@
-//! Random valid and invalid messages of editors and pages. Each request is answered once, and the
+//! Random valid and invalid messages from editors and pages. Each request gets one answer, and the
 //! server's text stays equal to the client's.
 
 use std::collections::BTreeMap;
@@ -70,8 +70,7 @@ fn position(random: &mut Random) -> Value {
     json!({ "line": line, "character": character })
 }
 
-/// Returns parameters that suit most requests. Some of them are removed, or replaced by random
-/// values.
+/// Returns parameters that fit most requests, some of them removed or replaced by random values.
 fn params(random: &mut Random, depth: usize) -> Value {
     let [start, end] = [0; 2].map(|_| position(random));
     let mut params = json!({
@@ -126,8 +125,8 @@ fn each_request_is_answered_once_and_the_server_keeps_the_clients_text() {
             };
             let new = String::from_utf8_lossy(&super::scene(random)).into_owned();
             let new: String = new.chars().take(random.below(30)).collect();
-            // A CR at the end of an edit may combine with a following LF, which changes the number
-            // of lines.
+            // A CR at the end of an edit may form one line end with an LF after it, which changes
+            // the number of lines. Such edits are left out.
             if !new.contains('\r') && !text.contains('\r') {
                 text.replace_range(from..to, &new);
                 let change = json!({ "range": { "start": start, "end": end }, "text": new });
@@ -152,7 +151,7 @@ fn each_request_is_answered_once_and_the_server_keeps_the_clients_text() {
         for id in asked {
             assert_eq!(answers.get(&id.into()), Some(&1), "request {id}");
         }
-        // The edited text has the same tokens and diagnostics as if it had been opened as a whole.
+        // The edited text has the same tokens and diagnostics as a text that is opened as a whole.
         let mut again = LocalClient::with(&text);
         while again.transport.step() {}
         let ask =
@@ -181,7 +180,7 @@ fn the_server_still_answers_after_any_message() {
             if random.below(2) == 0 {
                 flip(random, &mut bytes);
             }
-            // The transport panics if a malformed message gets no answer.
+            // If a malformed message gets no answer, the transport panics.
             let text = String::from_utf8_lossy(&bytes);
             if text.contains("method") && !text.contains("exit") {
                 client.transport.write(&text);

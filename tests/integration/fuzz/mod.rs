@@ -25,7 +25,8 @@ use std::{
 
 use crate::{diagnostics::fixtures, format::all_scenes, random::Random};
 
-/// Maximum time for an input. An input takes milliseconds, but a busy machine may pause for longer.
+/// Maximum time for an input; after it, the input counts as a hang. An input takes milliseconds,
+/// but a busy machine may pause for longer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Calls `run` and returns its result. If it takes longer than [`PATIENCE`], prints `what()` and
@@ -36,7 +37,8 @@ pub fn ends_soon<T>(what: impl Fn() -> String + Sync, run: impl FnOnce() -> T) -
     thread::scope(|scope| {
         scope.spawn(move || {
             if is_done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                // The harness prints a test's output at its end, which is never reached here.
+                // The harness prints a test's output only at the test's end, which is not reached
+                // here.
                 let _ = writeln!(io::stderr(), "this does not end: {}", what());
                 process::abort();
             }
@@ -53,8 +55,8 @@ const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740
     let|for i < 3|for|<|i|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
     colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
 
-/// Calls `is_tried` with `usual` random generators; `PINHOLE_FUZZ` overrides the number. If a call
-/// panics or hangs, prints the number of the input.
+/// Calls `is_tried` with `usual` random generators, or with as many as `PINHOLE_FUZZ` says. If a
+/// call panics or hangs, prints how to repeat it alone.
 pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     struct Number(u64);
     impl Number {
@@ -93,8 +95,8 @@ fn any_text(random: &mut Random) -> &'static str {
     random.one_of::<String>(scenes())
 }
 
-/// Returns a random scene in which a few tokens are removed, doubled, moved or replaced, or whose
-/// end is cut off.
+/// Returns a random scene of the repository with a few mistakes: tokens are removed, doubled, moved
+/// or replaced, or the end is cut off.
 fn scene(random: &mut Random) -> Vec<u8> {
     let text = any_text(random);
     let mut tokens = tokens(text);
@@ -166,7 +168,8 @@ fn tokens(text: &str) -> Vec<&str> {
     tokens
 }
 
-/// Changes single bytes and 32-bit numbers, and removes or doubles parts of `bytes`.
+/// Makes one to eight random changes to `bytes`: overwrites single bytes and 32-bit numbers, and
+/// removes or doubles parts.
 fn flip(random: &mut Random, bytes: &mut Vec<u8>) {
     for _ in 0..=random.below(8) {
         let at = random.below(bytes.len());

@@ -8,8 +8,8 @@ use pinhole::film::read_picture_up_to;
 use super::{each, flip};
 use crate::program::Folder;
 
-/// Maximum number of decoded bytes: enough for the small pictures here, so that a header with a
-/// wrong size exceeds it.
+/// Maximum number of decoded bytes. It is enough for the small pictures here. A header with a wrong
+/// size exceeds it, so the picture is refused.
 const LIMIT: u64 = 1 << 20;
 
 /// Returns a small picture in each format and several colour types.
@@ -61,7 +61,7 @@ fn random_picture_bytes_are_read_or_refused_within_the_limit() {
     each(300, |random| {
         let mut bytes = random.one_of(pictures()).clone();
         match random.below(16) {
-            // Join the start of one file and the rest of another.
+            // The start of one file is joined with the rest of another.
             0 => {
                 let other = random.one_of(pictures());
                 let at = random.below(bytes.len());
@@ -72,7 +72,8 @@ fn random_picture_bytes_are_read_or_refused_within_the_limit() {
         }
         if let Ok(picture) = read_picture_up_to(&bytes, LIMIT) {
             let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
-            // A pixel is decoded to at least four bytes.
+            // A pixel takes at least four bytes, so a decoded picture has at most a quarter of the
+            // limit in pixels.
             assert!((1..=LIMIT / 4).contains(&pixels), "{pixels}");
         }
     });

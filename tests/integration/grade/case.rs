@@ -1,5 +1,6 @@
-//! A picture for testing the grading, described by its title: the scene, the size, samples per
-//! pixel, the sampling, and the mistakes. 256 samples stand for the exact mean.
+//! A picture for testing the grading. Its title says everything about it: the scene, the size,
+//! samples per pixel, the sampling, and the mistakes. A picture with 256 samples per pixel counts
+//! as exact.
 
 use image::RgbImage;
 use serde_json::Value;
@@ -9,10 +10,10 @@ use super::{
     textbook::{Program, SAMPLINGS},
 };
 
-/// A picture with known mistakes.
+/// A picture of a program with known mistakes.
 pub struct Case {
     pub title: String,
-    /// The correct program, and its scene's text.
+    /// The program without the mistakes. `text` is its scene.
     right: Program,
     pub text: String,
     pub mistakes: Vec<&'static Mistake>,
@@ -47,14 +48,15 @@ impl Case {
         }
     }
 
-    /// Renders the picture.
+    /// Renders the picture of the program with the mistakes.
     pub fn picture(&self) -> RgbImage {
         let mut program = self.right.clone();
         self.mistakes.iter().for_each(|one| one.make(&mut program));
         program.render()
     }
 
-    /// Returns whether an answer of `diff --format json` names all mistakes and no others.
+    /// Returns whether `answer`, the output of `diff --format json`, names all mistakes and no
+    /// others.
     pub fn is_judged_correctly(&self, answer: &Value) -> bool {
         let named = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
         if self.mistakes.is_empty() {
@@ -66,7 +68,8 @@ impl Case {
     }
 }
 
-/// Returns whether a mistake is among the named ones.
+/// Returns whether one of the accepted answers for `mistake` is in `named`, a list from the output
+/// of `diff`.
 fn is_named(mistake: &Mistake, named: &[Value]) -> bool {
     mistake.name.split('|').any(|name| {
         let (id, words) = name.split_once(' ').unwrap_or((name, ""));

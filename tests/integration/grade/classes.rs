@@ -1,5 +1,5 @@
-//! Classes as they are handed in: folders of Gradescope, GitHub Classroom and Moodle, with whatever
-//! else is in them.
+//! Classes as they are handed in: exports of Gradescope, GitHub Classroom and Moodle, with
+//! unrelated files in them.
 
 use std::{
     fs::File,
@@ -17,7 +17,7 @@ sphere Ball { center (-1, 1, 0) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// Pictures and the arguments that render them.
+/// Names of pictures, and the arguments of `render` that make them.
 const PICTURES: &str = "
     right.png -> --set sampler.method=exact
     red.png -> --set sampler.method=exact --set image.background=red
@@ -25,7 +25,7 @@ const PICTURES: &str = "
     noise.png -> --set sampler.method=random --set sampler.per_pixel=4
 ";
 
-/// Creates a folder with the scene and the pictures.
+/// Creates a folder with the scene in `a.scn` and the pictures in [`PICTURES`].
 pub fn folder() -> Folder {
     let folder = Folder::with([("a.scn", SCENE)]);
     for [name, arguments] in rows(PICTURES) {
@@ -34,7 +34,7 @@ pub fn folder() -> Folder {
     folder
 }
 
-/// Writes files into a folder, each a path and a name of a picture to copy or a text.
+/// Writes files into a folder. Each has a path, and either a text or the name of a picture to copy.
 pub fn put(folder: &Folder, files: &[(&str, &str)]) {
     for (path, content) in files {
         if content.ends_with(".png") {
@@ -45,14 +45,14 @@ pub fn put(folder: &Folder, files: &[(&str, &str)]) {
     }
 }
 
-/// Makes a file older by some hours.
+/// Sets a file's modification time to `hours` hours ago.
 fn age(folder: &Folder, path: &str, hours: u64) {
     let file = File::options().write(true).open(folder.path(path)).unwrap();
     let time = SystemTime::now() - Duration::from_secs(3600 * hours);
     file.set_modified(time).unwrap();
 }
 
-/// Grades a class. Returns its JSON lines.
+/// Grades a class with `arguments`. Returns the JSON object of each student.
 pub fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
     let said = folder.run(&format!("grade a.scn {arguments} --format json"));
     assert_eq!(
@@ -66,7 +66,8 @@ pub fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
         .collect()
 }
 
-/// Compares lines by student, file, verdict, and the files that were not compared.
+/// Compares the JSON objects of students by student, file, verdict, and the files that were not
+/// compared.
 #[track_caller]
 pub fn assert_lines(found: &[Value], expected: &[(&str, &str, &str, &[&str])]) {
     let said = |line: &Value| {
@@ -136,7 +137,7 @@ fn an_export_of_gradescope_is_a_class() {
             "wrong",
             &["photo.heic", LOGO],
         ),
-        // The template is in every folder and belongs to nobody.
+        // The template's logo is in every folder, so it is nobody's picture.
         ("Dora", "export/submission_3", "error", &[LOGO]),
         ("eve@example.org", "export/submission_4", "error", &[]),
     ];
@@ -160,7 +161,7 @@ fn clones_of_github_classroom_are_a_class() {
             put(&folder, &[(&path, content)]);
         }
     }
-    // An older file within a clone means nothing.
+    // In a clone, the times of files have no meaning, so an older file is no worse.
     age(&folder, "hw1-submissions/hw1-anna/render.png", 5);
     put(
         &folder,
@@ -218,7 +219,7 @@ fn clones_of_github_classroom_are_a_class() {
             ),
         ],
     );
-    // Two students have the same wrong picture.
+    // The students ben and cy handed in the same wrong picture.
     let equal: Vec<_> = chosen.iter().map(|line| &line["equal_to"]).collect();
     assert_eq!(equal, [&Value::Null, &json!(["cy"]), &json!(["ben"])]);
 }
@@ -283,7 +284,7 @@ fn an_export_of_moodle_is_a_class() {
     );
     let numbers: Vec<_> = found.iter().map(|line| &line["number"]).collect();
     assert_eq!(numbers, ["14", "11", "12", "13", "15"]);
-    // A name cannot inject control characters into a terminal or formulas into a table.
+    // Control characters in a name are escaped in a terminal, and formulas in a table.
     let table = folder.told("grade a.scn 'handed in' -o out", 1);
     assert!(table.contains("=1+1\\u{202e}  "), "{table}");
     assert!(folder.text("out/grade.csv").contains("\"'=1+1\\u{202e}\""));
@@ -320,7 +321,7 @@ fn loose_files_belong_to_students_and_the_output_folder_does_not() {
     }
 }
 
-/// Files that all students have are no template if nobody has anything else.
+/// A file that is in every folder is a template only if somebody has another file.
 #[test]
 fn a_picture_in_every_folder_is_a_template_only_beside_others() {
     let folder = folder();
@@ -338,7 +339,8 @@ fn a_picture_in_every_folder_is_a_template_only_beside_others() {
             ("ben", "class/ben/render.png", "wrong", &[]),
         ],
     );
-    // A second picture makes the common one a template, unless `--picture` names it.
+    // If one student has a second picture, the common one becomes a template, unless `--picture`
+    // names it.
     put(&folder, &[("class/ben/test.png", "size.png")]);
     let given = ["render.png (equal in every folder: --picture chooses it)"];
     let others: &[(&str, &str, &str, &[&str])] = &[
@@ -358,7 +360,7 @@ fn a_picture_in_every_folder_is_a_template_only_beside_others() {
     assert_eq!(none.matches(words).count(), 2, "{none}");
 }
 
-/// A folder around an exported class is graded as the class, not as one student.
+/// A folder that contains an exported class is graded as the class, not as one student.
 #[test]
 fn a_folder_around_an_export_is_graded_as_the_export() {
     let folder = folder();
@@ -372,7 +374,8 @@ fn a_folder_around_an_export_is_graded_as_the_export() {
         ("h/hw-submissions/hw-anna/x.png", "right.png"),
         ("h/hw-submissions/hw-anna/.git/HEAD", "ref"),
         ("h/hw-submissions/hw-ben/.git/HEAD", "ref"),
-        // Two students, who have a clone or another student's file in their folders.
+        // These are two students: one has a clone in the folder, the other a file with another
+        // student's name.
         ("s/anna/tracer/x.png", "right.png"),
         ("s/anna/tracer/.git/HEAD", "ref"),
         ("s/ben/Li_3_assignsubmission_file_x.png", "red.png"),
@@ -422,7 +425,7 @@ fn a_folder_around_an_export_is_graded_as_the_export() {
     }
 }
 
-/// A shell's expansion of `class/*` is graded as the class.
+/// The arguments into which a shell expands `class/*` are graded as the class.
 #[test]
 fn the_folders_of_a_class_may_be_listed() {
     let folder = folder();
@@ -442,7 +445,7 @@ fn the_folders_of_a_class_may_be_listed() {
         ("class/ben/render.png", "red.png"),
         ("class/cy/out/x.png", "red.png"),
         ("class/dora.png", "right.png"),
-        // Two classes.
+        // These are two classes.
         ("one/anna/x.png", "right.png"),
         ("two/anna/x.png", "red.png"),
         ("two/ben.png", "red.png"),

@@ -21,7 +21,7 @@ fn class() -> Folder {
         ),
     ];
     put(&folder, &files);
-    // A picture that no mistake explains.
+    // This picture differs from the scene in a way that no mistake explains.
     let mut stripes = image::open(folder.path("right.png")).unwrap().to_rgb8();
     for (x, y, pixel) in stripes.enumerate_pixels_mut() {
         if (x + 2 * y) % 5 < 2 {
@@ -212,7 +212,8 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         ]
     );
     assert!(new[1][6].contains("<br>- the image has a wrong colour"));
-    // Without points grades are kept; in another language columns have other names.
+    // Without a scheme of points, the grades are kept. In another language, the columns have other
+    // names.
     let german = WORKSHEET
         .replace("Grade,", "Bewertung,")
         .replace("Feedback comments", "Feedback als Kommentar");
@@ -236,7 +237,7 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         told.contains("its grades go up to 10, and the points to 20"),
         "{told}"
     );
-    // As spreadsheets save it.
+    // Spreadsheets save a worksheet with semicolons or in UTF-16.
     for bytes in [
         WORKSHEET.replace(',', ";").into_bytes(),
         WORKSHEET
@@ -289,7 +290,7 @@ fn a_crop_is_compared_with_the_part_that_is_named() {
         "render a.scn -o part.png --crop 4,3,10,12 --set sampler.method=exact",
         0,
     );
-    // Without Pinhole's metadata.
+    // Saving the picture anew removes the crop that it carries.
     let path = folder.path("part.png");
     image::open(&path).unwrap().to_rgb8().save(&path).unwrap();
     for command in ["grade a.scn part.png", "diff part.png a.scn"] {

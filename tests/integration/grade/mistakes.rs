@@ -1,4 +1,5 @@
-//! The mistakes that a class makes, as changes of a correct program, and the scenes that show them.
+//! Mistakes that a class makes, as changes of a correct program; and scenes in which they are
+//! visible.
 
 use glam::{DVec3, dvec3};
 use image::{RgbImage, imageops};
@@ -7,26 +8,26 @@ use super::textbook::{
     Axes, Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible, light, sharpened,
 };
 
-/// A mistake.
+/// A mistake that a program of the class may have.
 pub struct Mistake {
-    /// Accepted answers of `diff`, separated by bars: an id, optionally followed by a part of its
+    /// Accepted answers of `diff`, separated by bars. Each is an id, or an id and a part of its
     /// message, or the target of its `--set`.
     pub name: &'static str,
     change: Change,
 }
 
-/// What a mistake changes.
+/// The change that makes a mistake.
 enum Change {
-    /// The program; nothing in a scene without what the mistake is about.
+    /// Changes the program. A scene that lacks the object of the mistake stays unchanged.
     Program(fn(&mut Program)),
-    /// Each pixel's bytes, at the end.
+    /// Changes each pixel's bytes, after rendering.
     Pixels(fn([u8; 3]) -> [u8; 3]),
-    /// The whole picture, after that.
+    /// Changes the whole picture, after the pixels' bytes.
     Picture(fn(&RgbImage) -> RgbImage),
 }
 
 impl Mistake {
-    /// Returns its name in a picture's title.
+    /// Returns the mistake's name in the title of a picture.
     pub fn title(&self) -> &'static str {
         self.name.split('|').next().unwrap_or_default()
     }
@@ -65,7 +66,7 @@ pub const GROUPS: [&[Mistake]; 5] = [
     OTHERS,
 ];
 
-/// Mistakes of the whole picture.
+/// Mistakes that affect the whole picture.
 const OF_THE_PICTURE: &[Mistake] = &[
     picture("mirrored", imageops::flip_horizontal),
     picture("upside_down", imageops::flip_vertical),
@@ -96,7 +97,8 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("up_not_orthogonal", |p| p.axes = Axes::UpAsV),
     row("w_not_normalised", |p| p.axes = Axes::LongW),
     row("parallel_rays", |p| p.axes = Axes::Parallel),
-    // If nothing of the scene is visible, this is all that can be said.
+    // Without the eye, the picture may show nothing of the scene. Then, `nothing_seen` is all that
+    // can be found.
     row("eye_not_subtracted|nothing_seen", |p| {
         p.axes = Axes::WithoutEye
     }),
@@ -114,7 +116,7 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("camera.lookat", |p| p.lookat += dvec3(0.3, 0.2, -0.1)),
 ];
 
-/// Mistakes of the board.
+/// Mistakes in the board.
 const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
     row("board_truncated", |p| p.squares = Squares::Truncated),
@@ -130,7 +132,7 @@ const OF_THE_BOARD: &[Mistake] = &[
     }),
 ];
 
-/// Mistakes of the other objects.
+/// Mistakes of the sphere, the triangle and the box.
 pub const OF_THE_OBJECTS: &[Mistake] = &[
     row("object_missing Ball", |p| {
         p.objects.retain(|object| object.name != "Ball")
@@ -188,7 +190,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
     }),
 ];
 
-/// Other mistakes, some of which are visible in few scenes.
+/// Other mistakes. Some of them are visible only in few scenes.
 const OTHERS: &[Mistake] = &[
     picture("transposed", |picture| {
         imageops::flip_horizontal(&imageops::rotate90(picture))
@@ -243,7 +245,7 @@ const OTHERS: &[Mistake] = &[
     row("eye_lookat_exchanged", |p| {
         (p.eye, p.lookat) = (p.lookat, p.eye)
     }),
-    // The scene's 40 degrees, half of which are taken for 20 radians.
+    // The scene's lens has 40 degrees, and half of them are taken for 20 radians.
     row("fov_unit", |p| p.distance = 1.0 / libm::tan(20.0)),
     row("colors_exchanged", |p| {
         let colors = ["Ball", "Crate"].map(|name| p.object(name).map(|object| object.color));
@@ -281,10 +283,11 @@ const OTHERS: &[Mistake] = &[
     }),
 ];
 
-/// Returns a scene: the assignment's picture, turned a little; another one with the same names, a
-/// closer camera, a far plane and more objects; or a variant for mistakes that need one: a near
-/// plane that clips objects, a low window, a box with colours for its faces, or the floor as the
-/// first object.
+/// Returns the scene `name`, as a correct program and as text. `figure` is the assignment's
+/// picture, turned a little. `street` has the same names, a closer camera, a far plane and more
+/// objects. The other scenes are variants of the figure for mistakes that need one: a near plane
+/// that clips objects, another lens, a low window, a box with colours for its faces, or the floor
+/// as the first object.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),
@@ -339,7 +342,8 @@ box House { center (-2.25, 1, -3)  size (1.5, 2, 2)  color #8b4513 }
 ";
 
 fn figure() -> Program {
-    // The assignment's sail, whose corners are given: the ends of its base and the apex.
+    // This is the assignment's triangle, given by its vertices: the two ends of the base and the
+    // apex.
     let (base, height) = (1.0, 15_f64.sqrt() / 2.0);
     let normal = dvec3(0.3, 0.0, 1.0).normalize();
     let right = DVec3::Y.cross(normal);
@@ -436,7 +440,7 @@ fn street() -> Program {
     street
 }
 
-/// Encodes the light of an sRGB byte with a power instead.
+/// Decodes an sRGB byte to light, and encodes the light with a power instead of the sRGB curve.
 fn power(byte: u8, power: f64) -> u8 {
     (255.0 * libm::pow(light(f64::from(byte) / 255.0), 1.0 / power)).round() as u8
 }
@@ -445,7 +449,7 @@ fn decoded_twice(byte: u8) -> u8 {
     (255.0 * light(light(f64::from(byte) / 255.0))).round() as u8
 }
 
-/// Averages encoded values.
+/// Returns the weighted mean of a colour's encoded channels, as a gray.
 fn gray(color: [u8; 3], weights: [f64; 3]) -> [u8; 3] {
     let sum: f64 = weights.iter().sum();
     let parts = color.iter().zip(weights);
@@ -469,7 +473,7 @@ fn shift(program: &mut Program, name: &str, by: DVec3) {
     }
 }
 
-/// Moves the crate's corners, each by a multiple of its size.
+/// Moves the box's least and greatest corner, each by a multiple of the box's size.
 fn stretch(program: &mut Program, by: [f64; 2]) {
     if let Some(Shape::Box(least, greatest)) = program.shape("Crate") {
         let size = *greatest - *least;
@@ -477,7 +481,7 @@ fn stretch(program: &mut Program, by: [f64; 2]) {
     }
 }
 
-/// Turns the sail about its centroid.
+/// Turns the triangle about its centroid.
 fn turn(program: &mut Program, turned: impl Fn(DVec3) -> DVec3) {
     if let Some(Shape::Triangle(corners)) = program.shape("Sail") {
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;

@@ -28,9 +28,10 @@ use crate::{
     images,
 };
 
-/// Titles of pictures, one in each line: right ones by every sampling, and the mistakes that a
-/// class makes. Each has as many samples as the mistake needs: 16 in a pixel make more noise at
-/// edges than decoding with the power 2.2 instead of sRGB does.
+/// Titles of pictures, one per line: right pictures by every sampling, and the mistakes that a
+/// class makes. Each picture has as many samples as its mistake needs to be visible. For example,
+/// decoding with the power 2.2 instead of sRGB is a smaller difference than the noise at edges with
+/// 16 samples per pixel.
 const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);
@@ -47,7 +48,7 @@ fn the_mistakes_of_a_class_are_named(effort: Effort) {
     assert!(judged.is_empty(), "{}", judged.join("\n"));
 }
 
-/// The benchmark makes each mistake in each scene, and leaves out those that change nothing.
+/// The benchmark makes each mistake in each scene, and leaves out pictures that do not change.
 #[test]
 fn every_mistake_can_be_made_in_every_scene() {
     for name in [
@@ -71,19 +72,20 @@ fn every_mistake_can_be_made_in_every_scene() {
     }
 }
 
-/// Returns the title and the answer if a picture is judged wrongly.
+/// Judges the case's picture. If the verdict is wrong, returns the case's title and the verdict.
 fn wrongly_judged(case: &Case) -> Option<String> {
     let picture = case.picture();
     let size = picture.dimensions().into();
     let file = images::png(size, ColorType::Rgb, BitDepth::Eight, picture.as_raw());
     let answer = answer(&case.text, &[], &file);
-    // Half a pixel shows only at edges, of whose differences it explains most.
+    // A shift by half a pixel is visible only at edges. If the picture has it, it explains most of
+    // the difference.
     let is_half = |one: &Value| one["id"] == "half_pixel" && one["explains"].as_f64() < Some(0.5);
     let mut mistakes = answer["mistakes"].as_array().unwrap().iter();
     if !case.is_judged_correctly(&answer) || mistakes.any(is_half) {
         return Some(format!("{}: {}", case.title, answer["line"]));
     }
-    // The scene with the named `--set` arguments explains the picture.
+    // With the reported `--set` arguments, the scene's picture must equal the judged picture.
     let sets = answer["mistakes"].as_array().unwrap().iter();
     let sets: Vec<Vec<&str>> = sets
         .map(|one| {
@@ -99,7 +101,7 @@ fn wrongly_judged(case: &Case) -> Option<String> {
     (!is_right).then(|| format!("{}: with {sets:?}: {}", case.title, told["line"]))
 }
 
-/// Judges a file against a scene with `--set` arguments.
+/// Judges the picture in `file` against the scene `text` with the `--set` arguments `sets`.
 fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     let mut sources = Sources::new(Source::from_text("a.scn", text));
     sets.iter().for_each(|set| sources.push_set(set));
@@ -118,7 +120,7 @@ fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     Value::Object(verdict.unwrap().to_json())
 }
 
-/// A part beside the middle of a mirrored picture shows what lies on the other side.
+/// A part at one side of a mirrored picture shows what lies on the other side of the scene.
 #[test]
 fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
     let scene = |sets: &[&str]| {

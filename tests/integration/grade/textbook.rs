@@ -1,9 +1,10 @@
-//! A ray tracer as a class writes it, from the formulas of a textbook (Suffern 2007, "Ray Tracing
-//! from the Ground Up", chapters 3, 4, 9 and 19), in plain `f64`. It shares nothing with Pinhole,
-//! so that its pictures are independent evidence.
+//! A ray tracer as a class writes it, in plain `f64`, from the formulas of a textbook (Suffern
+//! 2007, "Ray Tracing from the Ground Up", chapters 3, 4, 9 and 19). It shares no code with
+//! Pinhole, so its pictures are independent evidence.
 //!
-//! In: a [`Program`], that is a scene and what the program does with it. Out: a picture in bytes.
-//! The fields of a program include what it may do wrong; `mistakes` lists the mistakes of a class.
+//! In: a [`Program`], which is a scene and the way in which the program treats it. Out: a picture
+//! in bytes. Many fields of a program select a mistake; the module `mistakes` lists the mistakes of
+//! a class.
 
 use std::array;
 
@@ -14,103 +15,104 @@ use rand::{RngExt, SeedableRng, rngs::SmallRng};
 /// A shape of a scene. Colours are in sRGB bytes.
 #[derive(Clone, Debug)]
 pub enum Shape {
-    /// Center and radius.
+    /// A sphere: its centre and radius.
     Sphere(DVec3, f64),
-    /// The left and the right end of the base, and the apex.
+    /// A triangle: the left and the right end of its base, and its apex.
     Triangle([DVec3; 3]),
-    /// The least and the greatest corner.
+    /// A box: its least and its greatest corner.
     Box(DVec3, DVec3),
-    /// A plane's height, the side of its squares, and their second colour.
+    /// A checkerboard: its height, the side of its squares, and their second colour.
     Board(f64, f64, [u8; 3]),
 }
 
-/// A shape with its name and colour.
+/// An object of a scene: a shape with a name and a colour.
 #[derive(Clone, Debug)]
 pub struct Object {
     /// Name in the scene's text.
     pub name: &'static str,
-    /// The shape.
+    /// Shape of the object.
     pub shape: Shape,
-    /// Colour; a board's first one.
+    /// Colour of the object; of a board, its first colour.
     pub color: [u8; 3],
 }
 
-/// How light becomes a byte.
+/// How the program converts light to a byte.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
-    /// By the curve of sRGB.
+    /// Encodes by the curve of sRGB.
     Srgb,
-    /// Not at all.
+    /// Does not encode: the byte is proportional to the light.
     None,
-    /// By sRGB's curve twice.
+    /// Encodes twice by the curve of sRGB.
     Twice,
-    /// By the reciprocal of a power.
+    /// Encodes by the reciprocal of a power.
     Power(f64),
 }
 
-/// Which of the surfaces that a ray hits is seen.
+/// Which of the surfaces that a ray hits the program shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
-    /// The nearest.
+    /// The nearest surface.
     Nearest,
-    /// That of the first object.
+    /// The surface of the first object in the scene.
     First,
-    /// That of the last object.
+    /// The surface of the last object in the scene.
     Last,
-    /// The farthest.
+    /// The farthest surface.
     Farthest,
 }
 
-/// How surfaces behind the eye are treated.
+/// How the program treats surfaces behind the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Behind {
-    /// They are not seen.
+    /// They are not visible.
     Unseen,
-    /// They count by their distance.
+    /// They are compared by their distance, as if they were before the eye.
     ByDistance,
-    /// They count as nearest.
+    /// They count as nearer than all surfaces before the eye.
     First,
 }
 
-/// Rule for the number of a board's square, which is odd for its second colour.
+/// How the program computes the number of a board's square. Squares of odd number have the second
+/// colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Squares {
-    /// The sum of the coordinates, rounded down.
+    /// Adds the two coordinates, each rounded down.
     Floored,
-    /// The sum of the truncated coordinates.
+    /// Adds the two coordinates, each truncated.
     Truncated,
-    /// The remainder of the sum, which is −1 for a negative odd one.
+    /// Takes the remainder of the sum by 2, which is −1 for negative odd sums.
     Remainder,
-    /// Whether the remainders differ.
+    /// Compares the remainders of the two coordinates by 2; the number is odd if they differ.
     Remainders,
-    /// The sum of the coordinates, rounded to the nearest.
+    /// Adds the two coordinates, each rounded to the nearest integer.
     Rounded,
-    /// The sum of the coordinates, the first rounded to the nearest, the other down.
+    /// Adds the first coordinate, rounded to the nearest integer, and the second, rounded down.
     Moved,
-    /// The coordinates' sum, rounded down.
+    /// Adds the two coordinates and rounds the sum down.
     Sum,
-    /// The first coordinate, rounded down.
+    /// Takes the first coordinate, rounded down, so that the board has stripes.
     Stripes,
-    /// Whether one of the coordinates, rounded down, is odd.
+    /// The number is odd if one of the two coordinates, rounded down, is odd.
     BothEven,
-    /// The sign of the product of their sines.
+    /// Takes the sign of the product of the sines of the two coordinates.
     Sines,
 }
 
-/// Fault of the camera's axes and rays.
+/// Mistake in the camera's axes or rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axes {
-    /// None.
+    /// No mistake.
     Right,
-    /// The roll uses the new u in place of the old one.
+    /// The roll computes v from the new u instead of the old one.
     NewU,
-    /// The up vector is taken for v.
+    /// The up vector is used as v.
     UpAsV,
-    /// w is not normalised.
+    /// The vector w is not normalised.
     LongW,
-    /// w is computed from lookat alone.
+    /// w is computed from `lookat` without subtracting the eye.
     WithoutEye,
-    /// Only u is rolled.
+    /// Only the vector u is rolled.
     RolledU,
     /// A ray's angle grows linearly with the distance from the picture's middle.
     Fisheye,
@@ -120,16 +122,16 @@ pub enum Axes {
     Parallel,
 }
 
-/// Places of the samples in a pixel.
+/// How the program places the samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {
     /// On a regular grid.
     Regular,
-    /// Independent and uniform.
+    /// At independent, uniform points.
     Random,
-    /// One in each cell of a grid.
+    /// At a random point in each cell of a grid.
     Jittered,
-    /// The points (i/n, φ₂(i)), the same in each pixel.
+    /// At the points (i/n, φ₂(i)), the same in every pixel.
     Hammersley,
 }
 
@@ -140,7 +142,7 @@ pub const SAMPLINGS: [Sampling; 4] = [
     Sampling::Hammersley,
 ];
 
-/// A scene, and what the program does with it.
+/// A scene, and the way in which the program treats it.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// Width and height of the picture, in pixels.
@@ -151,63 +153,64 @@ pub struct Program {
     pub up: DVec3,
     /// Roll in radians.
     pub roll: f64,
-    /// Distance of the view plane.
+    /// Distance of the view plane from the eye.
     pub distance: f64,
     pub view_height: f64,
     pub near: f64,
     pub far: f64,
-    /// The objects, in the order of the text.
+    /// Objects of the scene, in the order of the text.
     pub objects: Vec<Object>,
     pub sampling: Sampling,
-    /// Number of samples in each pixel, a square.
+    /// Number of samples per pixel, a square.
     pub samples: u32,
-    /// Whether the window's height is taken for its width.
+    /// Whether the window's height is used as its width.
     pub is_wide: bool,
-    /// Whether the window is as wide as it is tall.
+    /// Whether the window is as wide as it is high.
     pub is_squeezed: bool,
     /// Ratio of the window's width to its correct width.
     pub aspect: f64,
     pub axes: Axes,
-    /// Factor of the light.
+    /// Factor by which all light is multiplied.
     pub gain: f64,
-    /// Whether near and far are compared with distances, not with depths.
+    /// Whether the near and far depths are compared with distances instead of depths.
     pub clips_distances: bool,
-    /// Whether one test of a triangle is missing: of one edge's side.
+    /// Whether the test of one of a triangle's edges is missing.
     pub misses_edge: bool,
     pub is_parallelogram: bool,
-    /// Whether the greater root of a sphere is not tried.
+    /// Whether the greater root of a sphere's equation is not tried.
     pub misses_root: bool,
-    /// Whether boxes have no sides across z.
+    /// Whether boxes have no faces perpendicular to z.
     pub misses_axis: bool,
-    /// Colours of the boxes' faces across x, y and z, if not the box's own colour.
+    /// Colours of the boxes' faces perpendicular to x, y and z; `None` if faces have the box's
+    /// colour.
     pub faces: Option<[[u8; 3]; 3]>,
-    /// Side of the square in which samples lie, in pixels.
+    /// Side of the square in which a pixel's samples lie, in pixels; 1 is correct.
     pub pixel: f64,
-    /// Shift of the samples to the right and down, in pixels.
+    /// Shift of the samples to the right and down, in pixels; 0 is correct.
     pub offset: f64,
     pub behind: Behind,
     pub visible: Visible,
     pub squares: Squares,
-    /// Added to the number of a square.
+    /// Number that is added to the number of a square; 0 is correct.
     pub parity: i64,
     pub encoding: Encoding,
-    /// Whether encoded colours are averaged.
+    /// Whether the program averages encoded colours instead of light.
     pub averages_encoded: bool,
-    /// Whether bytes are truncated, not rounded.
+    /// Whether bytes are truncated instead of rounded.
     pub cuts_bytes: bool,
-    /// Applied to each pixel's bytes.
+    /// Change that is applied to each pixel's bytes.
     pub change: fn([u8; 3]) -> [u8; 3],
-    /// Applied to the picture at the end.
+    /// Change that is applied to the whole picture at the end.
     pub afterwards: Option<fn(&RgbImage) -> RgbImage>,
 }
 
 impl Program {
-    /// Returns an object by its name, if the scene has it.
+    /// Returns the object with the name `name`, or `None` if the scene lacks it.
     pub fn object(&mut self, name: &str) -> Option<&mut Object> {
         self.objects.iter_mut().find(|object| object.name == name)
     }
 
-    /// Returns the shape of an object, if the scene has it.
+    /// Returns the shape of the object with the name `name`, or `None` if the scene lacks it.
     pub fn shape(&mut self, name: &str) -> Option<&mut Shape> {
         self.object(name).map(|object| &mut object.shape)
     }
@@ -287,8 +290,8 @@ impl Program {
         }
     }
 
-    /// Decodes a colour. Flat colours come out unchanged, unless light is not encoded or encoded
-    /// twice.
+    /// Decodes a channel of a colour to light. A colour that is not averaged is encoded to the same
+    /// byte again, unless the program does not encode light or encodes it twice.
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),
@@ -327,9 +330,11 @@ impl Program {
         }
     }
 
-    /// Returns the colour that a ray sees.
+    /// Returns the colour that a ray sees. The ray starts at `from`, and `view` is the view
+    /// direction.
     fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> [u8; 3] {
-        // Surfaces behind the eye count as nearest, or by their distance.
+        // With a mistake, surfaces behind the eye count as nearest, or are compared by their
+        // distance.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t
@@ -405,7 +410,7 @@ impl Program {
         if is_second { second } else { object.color }
     }
 
-    /// Returns the parameters at which a ray meets a shape.
+    /// Returns the ray parameters at which a ray hits a shape.
     fn hits(&self, shape: &Shape, eye: DVec3, ray: DVec3) -> [Option<f64>; 2] {
         match *shape {
             Shape::Sphere(center, radius) => {
@@ -449,7 +454,8 @@ impl Program {
     }
 }
 
-/// Adds to each pixel its difference from the mean of the 3 × 3 around it.
+/// Sharpens a picture: adds to each pixel its difference from the mean of the 3 × 3 pixels around
+/// it.
 pub fn sharpened(picture: &RgbImage) -> RgbImage {
     let around = imageops::filter3x3(picture, &[1.0; 9]);
     let [columns, rows] = [picture.width(), picture.height()].map(|side| 1..side - 1);
@@ -466,7 +472,7 @@ pub fn sharpened(picture: &RgbImage) -> RgbImage {
     })
 }
 
-/// Decodes sRGB from 0 to 1.
+/// Decodes a channel of sRGB, from 0 to 1, to linear light.
 pub fn light(part: f64) -> f64 {
     if part <= 0.04045 {
         part / 12.92

@@ -19,8 +19,8 @@ fn code(found: &Diagnostic) -> String {
     found.code.replace("pinhole::", "")
 }
 
-/// Returns the code of a diagnostic, the number of the argument that it is about (counted from 1; 0
-/// is the file), the text under its first label, and its help.
+/// Returns the code of a diagnostic, the number of the argument that it is about, the text under
+/// its first label, and its help. Arguments are numbered from 1; the file is 0.
 fn place(sources: &Sources, found: &Diagnostic) -> String {
     let span = found.labels[0].span;
     let argument = sources.sets().position(|(id, _)| id == span.source);

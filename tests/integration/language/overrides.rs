@@ -25,7 +25,8 @@ pub fn meaning(sources: &Sources) -> [String; 2] {
     [format!("{settings:?}"), format!("{shapes:?}")]
 }
 
-/// An override has the same effect as replacing the second cell of a row by the third in the text.
+/// In each row, the override has the same effect as replacing the second cell by the third in the
+/// text.
 #[test]
 fn a_set_argument_equals_the_edited_text() {
     let table = "

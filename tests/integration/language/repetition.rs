@@ -9,7 +9,8 @@ use crate::{
     table::rows,
 };
 
-/// Rows of a repeated block, the names of its objects, and the same objects written one by one.
+/// Rows of three columns: a repeated block, the names of its objects, and the same objects written
+/// one by one.
 const REPEATED: &str = "
     sphere B for i < 3 { center (i, 1, 0) } -> B[0] B[1] B[2] \
         -> sphere { center (0, 1, 0) } sphere { center (1, 1, 0) } sphere { center (2, 1, 0) }
@@ -182,8 +183,8 @@ fn fixes_in_repeated_objects_keep_their_index() {
     assert!(fixes > 50, "{fixes}");
 }
 
-/// A wrong head does not affect the next block. A repeated board causes one warning. A later `let`
-/// may have the name of the index, even if there are overrides.
+/// A wrong head of a repeated block does not affect the next block. A repeated board causes one
+/// warning. A later `let` may have the name of the index, even if there are overrides.
 #[test]
 fn a_repetition_does_not_affect_the_text_around_it() {
     for (text, set, expected) in [

@@ -1,4 +1,4 @@
-//! White space, and the limit of nesting.
+//! White space in scenes, and the limit of nested parentheses.
 
 use proptest::{prelude::*, sample::subsequence};
 
@@ -50,7 +50,7 @@ fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
 
 #[test]
 fn nesting_beyond_256_levels_is_an_error() {
-    // Write the value in a definition, and in a field, where a minus sign follows a name.
+    // The value is written in a definition, and in a field, where a minus sign may follow a name.
     let of = |open: &str, inner: &str, close: &str, depth: usize| {
         let value = format!("{}{inner}{}", open.repeat(depth), close.repeat(depth));
         let [of_let, of_field] =
@@ -71,7 +71,7 @@ fn nesting_beyond_256_levels_is_an_error() {
         assert_eq!(of(open, inner, close, levels), "", "{open}");
         assert_eq!(of(open, inner, close, levels + 1), "too_deep", "{open}");
     }
-    // Terms in a sequence do not count as nesting.
+    // The terms of a sum do not count as nested.
     let wide = vec!["-(1)"; 5000].join(" + ");
     assert_eq!(of("", &wide, "", 0), "");
 }

@@ -11,7 +11,7 @@ use crate::{
     scenes::{exact, read, sampled, sources},
 };
 
-/// Each scene has only the first object of a generated scene.
+/// Each tested scene has only the first object of a generated scene.
 #[test]
 fn nothing_seen_is_never_false_and_found_for_half_the_black_pictures() {
     let (mut warned, mut black) = (0, 0);
@@ -33,8 +33,9 @@ fn nothing_seen_is_never_false_and_found_for_half_the_black_pictures() {
         warned += u32::from(is_warned);
         black += u32::from(is_black);
     }
-    // Not all black pictures get the warning: the bounds used for it are larger than the objects,
-    // and the visible part of an object may be smaller than the error bound of a pixel.
+    // Some black pictures get no warning. The bounds from which the warning is derived are larger
+    // than the objects, and the visible part of an object may be smaller than the error bound of a
+    // pixel.
     assert!(black > 75 && warned * 2 > black, "{warned} of {black}");
 }
 
@@ -60,8 +61,8 @@ fn squares_too_small_is_never_false_and_found_for_most_plain_boards() {
                 );
                 let film = sampled(&read(&text));
                 let pixels = (0..16).flat_map(|y| film.row(y)).copied();
-                // Keep the pixels that show only the board: the background is red without green.
-                // Their green is the share of the board's second colour.
+                // Pixels that show a part of the red background have more red than green, and are
+                // left out. In the others, green is the share of the board's second colour, white.
                 let seen = pixels.filter(|[red, green, _]| red - green < 0.01);
                 let greens: Vec<f64> = seen.map(|[_, green, _]| green).collect();
                 let first = greens.iter().filter(|&&green| green < 0.5).count();

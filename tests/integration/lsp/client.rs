@@ -1,4 +1,4 @@
-//! Simple client, which writes messages and reads all messages that come back.
+//! A simple client of the language server: writes messages and reads what comes back.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -62,8 +62,8 @@ impl<C: Transport> Client<C> {
         id
     }
 
-    /// Removes and returns the first unread message for which `is_meant` is true. Waits for one if
-    /// there is none.
+    /// Removes and returns the first unread message for which `is_meant` is true. If there is none,
+    /// waits for one.
     fn next(&mut self, is_meant: impl Fn(&Value) -> bool) -> Value {
         while !self.unread.iter().any(&is_meant) {
             let message = self.read();
@@ -84,7 +84,8 @@ impl<C: Transport> Client<C> {
         self.response(id)
     }
 
-    /// Sends a request, waits for the response and returns its result. Panics if it is an error.
+    /// Sends a request, waits for the response and returns its result. Panics if the response is an
+    /// error.
     pub fn ask(&mut self, method: &str, params: Value) -> Value {
         let response = self.respond(method, params);
         assert!(response.get("error").is_none(), "{response}");
@@ -117,7 +118,7 @@ impl<C: Transport> Client<C> {
     }
 }
 
-/// Maximum time to wait for a message.
+/// Maximum time to wait for a message. After it, the test fails.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Running server with its standard input and output.

@@ -14,7 +14,7 @@ camera { eye (0, 1, 5)   lookat (0, r, 0) }
 sphere Ball { center (0, r, 0)  radus 2*r }
 ";
 
-/// Scene after fixing `radus`, renaming `r`, and formatting.
+/// The expected text of the scene after fixing `radus`, renaming `r`, and formatting.
 const EDITED: &str = "let height = 1
 camera { eye (0, 1, 5)  lookat (0, height, 0) }
 sphere Ball { center (0, height, 0)  radius 2 * height }

@@ -1,4 +1,4 @@
-//! Frames: they equal the pixels of a render, are computed in slices, and can be cancelled.
+//! Frames: they equal the pixels of a render, are computed in slices of work, and can be cancelled.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
@@ -24,7 +24,8 @@ fn sized(width: &str, height: &str) -> String {
     SCENE.replace("width 83  height 61", &size)
 }
 
-/// Returns the error code in the response to a request. Asserts that there already is a response.
+/// Returns the error code in the response to a request. Asserts that the response has already
+/// arrived.
 pub fn code(client: &mut LocalClient, request: i32) -> Value {
     assert!(client.has_answered(request));
     client.response(request)["error"]["code"].take()
@@ -74,7 +75,7 @@ fn a_frame_has_the_pixels_of_a_render() {
         let (text, size) = match name {
             "exact" => (SCENE.replace("multi_jittered", "exact"), [83, 61]),
             "scattered" => (SCENE.replace("multi_jittered", "scatter"), [83, 61]),
-            // With so many samples, a slice is a small part of the picture.
+            // With this number of samples, a slice of work is a small part of the picture.
             "many" => (SCENE.replace("per_pixel 9", "per_pixel 2000"), [83, 61]),
             "wide" => (sized("100_000", "2"), [100_000, 2]),
             _ => (SCENE.to_owned(), [83, 61]),
@@ -104,7 +105,7 @@ fn a_frame_of_an_outdated_text_is_refused() {
 
 #[test]
 fn a_frame_that_is_cancelled_ends_at_once() {
-    // The frame has ten thousand slices and would take minutes.
+    // The frame takes ten thousand slices of work, which would take minutes.
     let text = sized("1000", "1000").replace("per_pixel 9", "per_pixel 10_000");
     let mut client = LocalClient::with(&text);
     let frame = client.request("pinhole/frame", json!({}));
@@ -116,7 +117,7 @@ fn a_frame_that_is_cancelled_ends_at_once() {
     for _ in 0..4 {
         assert!(client.transport.step());
     }
-    // Later requests are answered between slices.
+    // Requests that arrive while the frame is computed are answered between slices.
     assert!(client.has_answered(early) && !client.has_answered(frame));
     let later = hover(&mut client);
     assert!(client.transport.step() && client.has_answered(later));

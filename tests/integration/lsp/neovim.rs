@@ -54,7 +54,7 @@ fn neovim_gets_the_recorded_answers() {
     let folder = Folder::with([("scene.scn", SCENE)]);
     let script = root("tests/lsp/neovim.lua");
     let mut found = answers(&folder, neovim(&folder, &script));
-    // Lua tables have no order, so sort the members of objects.
+    // Lua tables have no order, so the members of objects are sorted.
     found.sort_all_objects();
     let found = format!("{found:#}\n");
     assert_file(&script.with_extension("json"), &found);
@@ -63,8 +63,8 @@ fn neovim_gets_the_recorded_answers() {
 /// Text, the keys to type at `$0`, and the resulting line.
 type Typed = [&'static str; 3];
 
-/// Completions requested by `CTRL-X CTRL-O`. Neovim 0.7 inserts the whole completion, and Neovim
-/// 0.11 only its word, so the tests compare only their common start.
+/// Completions requested by `CTRL-X CTRL-O`, as rows of [`Typed`]. Neovim 0.7 inserts the whole
+/// completion, and Neovim 0.11 only its first word. Therefore, only their common start is compared.
 const ASKED: &[Typed] = &[
     ["$0\ncamera {}", "s p h <C-x><C-o>", "sphere"],
     ["$0\ncamera {}", "s <C-x><C-o> menu <C-n> <C-y>", "sphere"],
@@ -76,9 +76,10 @@ const ASKED: &[Typed] = &[
     ],
 ];
 
-/// Completions offered during typing, if Neovim 0.11 is configured as the page on editors says.
+/// Completions offered during typing, as rows of [`Typed`], if Neovim 0.11 is configured as the
+/// documentation for editors says.
 const OFFERED: &[Typed] = &[
-    // Nothing is inserted before the user chooses a completion.
+    // While a word is typed, nothing is inserted before the user chooses a completion.
     ["$0\ncamera {}", "s menu p h", "sph"],
     [
         "$0\ncamera {}",
@@ -132,10 +133,10 @@ fn neovim_completes_while_typing() {
     assert!(behind.contains("no field `radus`"), "{behind}");
 }
 
-/// Runs `tests/lsp/neovim_types.lua`, which types the keys of each row into its text in a Neovim
-/// with `snippet`, if given, as its configuration. Returns the JSON that the script writes: the
-/// resulting `lines`, and with a snippet also `hints` (whether inlay hints are on) and
-/// `behind_lines` (the text shown behind lines).
+/// Runs `tests/lsp/neovim_types.lua`, which types the keys of each row into its text. `snippet`, if
+/// given, is Neovim's configuration. Returns the JSON that the script writes: the resulting
+/// `lines`, and with a snippet also `hints` (whether inlay hints are on) and `behind_lines` (the
+/// text that is shown behind lines).
 fn typed(rows: &[Typed], snippet: Option<&str>) -> Value {
     let rows = rows.iter().map(|[text, keys, _]| {
         let keys: Vec<&str> = keys.split(' ').collect();

@@ -48,7 +48,7 @@ fn a_client_that_leaves_without_shutdown_ends_the_server_with_status_1() {
 fn malformed_lsp_input_is_logged_and_skipped() {
     let mut client = Client::start();
     client.transport.put("hello\r\n\r\n");
-    // A response that belongs to no request is ignored.
+    // A response to no request of the server is ignored.
     client.send(&json!({ "jsonrpc": "2.0", "id": null, "error": { "code": 1, "message": "" } }));
     client.ask("initialize", json!({ "capabilities": {} }));
     client.change(2, json!({ "text": "" }));
@@ -86,7 +86,7 @@ fn a_change_with_an_invalid_range_leaves_the_text_unchanged() {
 #[test]
 fn invalid_json_gets_a_parse_error_response() {
     let mut client = Client::start();
-    // The case of a header's name does not matter.
+    // Upper and lower case are not distinguished in a header's name.
     for (header, text) in [
         ("Content-Length", "not JSON!"),
         ("content-length", "{\"id\":1,"),
@@ -110,7 +110,7 @@ fn an_oversized_or_unfinished_message_ends_the_server_with_a_reason() {
     for (length, expected) in [
         ("99999999999999", "is announced"),
         ("2000000000", "is announced"),
-        // The announced length is the maximum, but the message ends early.
+        // The announced length is the maximum, but the message ends before it.
         ("1000000000", "after 2 of 1000000000 bytes"),
     ] {
         let mut client = Client::start();

@@ -1,10 +1,10 @@
-//! Limits and ranges of the sliders for numbers in a text.
+//! Tests of the limits and ranges that the language server gives for sliders of numbers.
 
 use serde_json::{Value, json};
 
 use super::local_client::LocalClient;
 
-/// Returns the minimum, the maximum, the step, and the ends of a slider, or null if there is none.
+/// Returns the minimum, the maximum, the step and the ends of a slider, or null if `found` is null.
 fn limits(found: &Value) -> Value {
     match found {
         Value::Null => Value::Null,
@@ -41,8 +41,8 @@ fn a_slider_takes_the_limits_of_its_field() {
     }
 }
 
-/// A slider leaves out numbers that cause errors. A count has a step of 1, wherever its number is
-/// written.
+/// A slider leaves out numbers that cause errors. The slider of a count has a step of 1, even if
+/// the count's number is in a definition.
 #[test]
 fn a_slider_never_reaches_a_value_that_is_an_error() {
     let many = "sphere { center (1, 2, 3) }\n".repeat(3000);
@@ -77,13 +77,13 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "camera { eye (0, 0, 9) lookat (0, 0, 0) fov 2 * a }",
             json!([1.0, 89.0, 1.0, [1.0, 89.0]]),
         ),
-        // The limits come from a direct use and a formula together.
+        // The limits come from both uses of the number: a direct one and a formula.
         (
             "1",
             "sphere { radius a }\nsphere { radius 3 - a }",
             json!([0.1, 2.9, 0.1, [0.1, 2.9]]),
         ),
-        // These numbers are whole.
+        // The language requires whole numbers here.
         (
             "4",
             "sphere for i < a { center (i, 0, 0) }",
@@ -124,14 +124,14 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "sphere for i < a { center (i, 0, 0) }",
             json!([1.0, 8.0, 1.0, [1.0, 8.0]]),
         ),
-        // A number at the end of the valid range still has a slider range.
+        // A number at the end of its valid range has a slider, too.
         (
             "1",
             "sphere { center (0, asin(a) / 1rad, 0) }",
             json!([-1.0, 1.0, 0.1, [-1.0, 1.0]]),
         ),
-        // Errors that the text already has do not count. If all nearby numbers cause errors, there
-        // are no limits.
+        // Errors that the text already has do not limit the slider. If all nearby numbers cause
+        // errors, there are no limits.
         (
             "1",
             "sphere { radios 1 radius a / 2 }",
@@ -142,7 +142,7 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "sphere for i < a / 4 { center (i, 0, 0) }",
             json!([null, null, 0.1, [-1.0, 9.0]]),
         ),
-        // A long text is not reread for each number that is tried.
+        // A long text is not read again for each number, so its slider has no limits.
         (
             "1",
             &format!("{many}sphere {{ radius a / 2 }}"),
@@ -160,14 +160,14 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
     }
 }
 
-/// The range of a definition's slider comes from the comment behind the definition, or else from
-/// the fields that use it.
+/// The range of a definition's slider comes from the comment behind the definition. Without such a
+/// comment, it comes from the fields that use the definition.
 #[test]
 fn definitions_take_slider_ranges_from_comments_or_fields() {
     let no_number = |it: &str| format!("`{it}` in the range is no number");
     let alone = || Some("a range is for a number or an angle that stands alone".to_owned());
-    // Each case has the value and the comment behind `=`; the minimum, the maximum and the step;
-    // and, if the comment's range is refused, the reason.
+    // Each case has three parts: the value and the comment, as they follow `=`; the minimum, the
+    // maximum and the step; and the reason if the comment's range is refused.
     let cases = [
         ("1 // [0.5:0.1:2] how large", json!([0.5, 2.0, 0.1]), None),
         ("-2 //[-3:3]", json!([-3.0, 3.0, 0.1]), None),

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{program::names, snapshot::assert_file};
 
-/// Returns a message as one line, without the JSON-RPC version, pictures, and the program's
+/// Returns a message as one line. Leaves out the JSON-RPC version, pictures, and the program's
 /// version.
 fn line(message: &str) -> String {
     let mut message: Value = serde_json::from_str(message).expect("JSON");

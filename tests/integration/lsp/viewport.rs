@@ -9,7 +9,8 @@ use super::{
 
 const FAILED: i32 = -32803;
 
-/// If a scene has very many objects, there are overlays for the first 1000 and the requested one.
+/// If a scene has very many objects, overlays are sent for the first 1000 and for the requested
+/// one.
 #[test]
 fn at_most_1000_overlays_and_the_requested_object_are_sent() {
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
@@ -28,7 +29,7 @@ fn at_most_1000_overlays_and_the_requested_object_are_sent() {
         assert_eq!(listed.as_array().map(Vec::len), Some(count));
         assert!(listed[0]["range"].is_object() && listed[0]["outline"].is_null());
     }
-    // The first board is listed wherever it is in the text, because objects stand on it.
+    // The first board is listed wherever it is in the text, because other objects stand on it.
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
     let floor = many.collect::<String>() + "checkerboard {}\ncheckerboard { y 1 }\n";
     let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
@@ -52,13 +53,14 @@ fn at_most_1000_overlays_and_the_requested_object_are_sent() {
 #[test]
 fn checkerboard_outlines_stop_at_objects_in_front_of_them() {
     let camera = "camera { eye (0, 1, 5) lookat (0, 0, 0) }";
-    // Rows of the size of a square, objects, and the number of visible parts of its outline.
+    // Each row has the size of a square, objects, and the number of visible parts of the square's
+    // outline.
     for (square, before, count) in [
         (2, "", 1),
         (2, "sphere { center (0, -5, 0) radius 1 }", 1),
         (2, "sphere { center (1, 0.3, 0) radius 0.6 }", 2),
         (2, "sphere { center (0.5, 0.5, 3) radius 1 }", 0),
-        // From above, the sides of a large square are partly far outside the picture.
+        // The eye is above this large square, whose sides lie partly far outside of the picture.
         (900, "sphere { center (0, 0.1, 3) radius 0.02 }", 3),
     ] {
         let board = format!("{camera} checkerboard {{ square {square} }}");
@@ -165,7 +167,7 @@ fn added_objects_lie_within_the_picture_in_distinct_colours() {
         format!("{figure}{board}"),
         format!("image {{ width 300 height 500 }}\n{figure}{board}"),
         format!("camera {{ eye (0, 1, 6) lookat (0, 1, 0) fov 30deg }}\n{board}"),
-        // Here the board is not in the picture.
+        // In this view, the board is not in the picture.
         format!("camera {{ eye (0, 2, 6) lookat (0, 9, 0) }}\n{board}"),
     ] {
         let mut text = before.clone();
@@ -246,7 +248,8 @@ fn an_added_object_stands_on_the_checkerboard() {
             let found =
                 LocalClient::with(&text).ask("pinhole/add", json!({ "kind": "checkerboard" }));
             let board = found["edits"][0]["newText"].as_str().expect("a text");
-            // These are the numbers of the name, of the centre, and of the radius or the size.
+            // The numbers are those of the name, of the centre, and of the radius or the size, in
+            // this order.
             let parts = written.split(|it: char| !matches!(it, '0'..='9' | '.' | '-'));
             let numbers: Vec<f64> = parts.filter_map(|it| it.parse().ok()).collect();
             let half = numbers[4] / if kind == "box" { 2.0 } else { 1.0 };
@@ -314,7 +317,7 @@ fn copying_a_block_does_not_move_its_trailing_comment() {
     }
 }
 
-/// A number that another field shares cannot be dragged to any point, with or without a step.
+/// The drag of a number that another field also uses is refused, with or without a step.
 #[test]
 fn dragging_a_number_shared_with_another_field_is_refused() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nlet r = 1\n\
@@ -333,7 +336,8 @@ fn dragging_a_number_shared_with_another_field_is_refused() {
     }
 }
 
-/// A drag with a step yields round numbers. If it ends where it began, the text stays unchanged.
+/// With a step, a drag yields round numbers. A drag that ends where it began does not change the
+/// text.
 #[test]
 fn a_drag_with_a_step_snaps_to_round_numbers() {
     let text =
@@ -353,7 +357,7 @@ fn a_drag_with_a_step_snaps_to_round_numbers() {
                 .parse()
                 .expect("a number")
         });
-        // Here 1 m is 90 pixels, so 0.01 m is 0.9 pixels and 0.1 m is 9 pixels.
+        // In the picture, 1 m is 90 pixels, so 0.01 m is 0.9 pixels and 0.1 m is 9 pixels.
         match x {
             None => assert!(f64::abs(by) < 0.5, "{by}: {found}"),
             Some(x) => {

@@ -65,7 +65,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     for name in ["time", "wall"] {
         assert!(first[at(name)].parse::<f64>().unwrap() > 0.0, "{name}");
     }
-    // The exact method has an error bound instead of a measured error.
+    // In the row of the exact method, the error is empty, and an error bound is given instead.
     for name in ["per_pixel", "rmse", "slope"] {
         assert_eq!(exact[at(name)], "", "{name}");
         assert_ne!(first[at(name)], "", "{name}");
@@ -80,7 +80,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
         let labels = labels(&read(&format!("error-against-{of}.svg")));
         let has = |word: &str| labels.iter().any(|(label, _)| label.starts_with(word));
         assert!(has("1/256") && has("exact") == has_exact, "{of}");
-        // Labels do not overlap.
+        // The labels of the chart do not overlap.
         let is_method = |label: &str| methods.iter().any(|m| label.split(' ').next() == Some(m));
         let labels = labels.iter().filter(|(label, _)| is_method(label));
         let mut heights: Vec<i32> = labels.map(|(_, height)| *height).collect();
@@ -94,11 +94,11 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     let page = read("index.html");
     let document = parsed(&page);
     let count = |name| elements(&document, name).count();
-    // The page shows the exact picture twice (alone, and beside the others) and the picture of each
-    // sampled method once.
+    // The page shows the exact picture twice (once alone, and once beside the others), and the
+    // picture of each sampled method once.
     let counts = [count("script"), count("table"), count("img")];
     assert_eq!(counts, [0, 1, 2 + methods.len()]);
-    // The recommendation comes first, then the charts, the table and the pictures.
+    // On the page, the recommendation comes first, then the charts, the table and the pictures.
     let order = ["class=\"verdict\">Use ", "<svg ", "<table>", "<img "];
     let places = order.map(|what| page.find(what).expect(what));
     assert!(places.is_sorted(), "{places:?}");
@@ -106,7 +106,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
         assert!(!image.attribute("alt").unwrap().is_empty());
         assert_eq!(size(image), (48, 32));
     }
-    // Nothing is fetched from other addresses.
+    // The page fetches nothing from other addresses.
     for node in document.descendants() {
         for name in ["src", "href"] {
             let target = node.attribute(name).unwrap_or("data:");
@@ -160,7 +160,8 @@ fn scene_names_cannot_escape_the_output_folder_or_break_a_file() {
     let errors = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{errors}");
     assert!(!errors.contains('\u{1b}'));
-    // Nothing was created outside the scenes' folder, and only the report's folder inside it.
+    // The command created nothing outside of the scenes' folder, and only the report's folder
+    // inside.
     assert_eq!(folder.names(), ["work"]);
     let entries = |name: &str| program::names(&folder.path(name));
     assert_eq!(entries("work").len(), names.len() + ["a", "out"].len());

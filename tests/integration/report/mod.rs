@@ -53,9 +53,9 @@ fn a_report_prints_a_table_and_one_recommendation() {
     };
     for row in Method::SAMPLED.map(|method| row(method.name())) {
         // The columns are the method, the slope, `±`, the slope's error, the samples, and two
-        // times, each with its unit.
+        // times, each in two columns: a number and its unit.
         assert_eq!((row.len(), row[2]), (9, "±"), "{row:?}");
-        // So few samples do not reach an error of 1/256, so the values are extrapolated.
+        // With few samples, no measured error reaches 1/256, so the values are extrapolated.
         let are_first = [(1, '−'), (4, '~'), (5, '~')].map(|(at, c)| row[at].starts_with(c));
         assert_eq!(are_first, [true; 3], "{row:?}");
     }
@@ -151,7 +151,7 @@ fn sample_counts_grow_until_the_error_is_reached() {
     for method in report["methods"].as_array().unwrap() {
         assert_eq!(method["needed"][0]["extrapolated"], false, "{method}");
     }
-    // The measurement stops at the first number of samples that reaches the error.
+    // The number of samples is increased only until the error reaches 1/256.
     let random = report["methods"][0]["measured"].as_array().unwrap();
     let is_enough = |point: &Value| number(&point["rmse"]) <= 1.0 / 256.0;
     assert_eq!(random.iter().position(is_enough), Some(random.len() - 1));

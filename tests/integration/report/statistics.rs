@@ -37,8 +37,8 @@ fn the_slope_has_the_standard_error_of_the_textbook_formula() {
     let fit = PowerLaw::fit(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
     assert!((fit.slope + 0.6).abs() < 1e-14);
     assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
-    // A line through two points, or exactly through three, has no standard error. A single point
-    // has no line, and an error of 0 has no logarithm.
+    // A line through two points has no standard error, nor has one through three. A single point
+    // determines no line, and an error of 0 has no logarithm.
     let few = [(1.0, 1.0), (4.0, 0.5), (16.0, 0.25)];
     for few in [&few[..], &few[1..]] {
         let few = PowerLaw::fit(few).unwrap();
@@ -48,7 +48,8 @@ fn the_slope_has_the_standard_error_of_the_textbook_formula() {
     assert_eq!(PowerLaw::fit(&[(1.0, 1.0), (4.0, 0.0)]), None);
 }
 
-/// Returns a series with one run per point. A point is the samples per pixel, seconds and error.
+/// Returns a series with one run per point. A point consists of the samples per pixel, the CPU time
+/// in seconds, and the error.
 fn series(method: Method, points: &[[f64; 3]]) -> MethodSeries {
     let point = |&[per_pixel, cpu, error]: &[f64; 3]| SeriesPoint {
         per_pixel: per_pixel as u64,
@@ -75,7 +76,7 @@ fn numbers(text: &str) -> Vec<f64> {
 }
 
 /// Each row has measured points, then an error and its expected cost: the samples and the CPU time,
-/// as far as they are known, and whether they are extrapolated.
+/// as far as they are known, and 1 if they are extrapolated.
 #[test]
 fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
     for [points, expected] in rows("
@@ -113,8 +114,8 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
         assert!((found.wall - found.cpu / 2.0).abs() < 1e-9, "{found:?}");
         assert_eq!(found.cpu_runs, [found.cpu; 2]);
     }
-    // If the error rises again later, the first low error does not count: a grid of samples may
-    // align with the picture by chance.
+    // If the error rises again with more samples, an earlier low error does not count: the samples'
+    // grid may have agreed with the picture by chance.
     let wave = [1.0, 4.0, 16.0, 64.0].map(|n| [n, n, if n == 16.0 { 0.2 } else { 0.05 }]);
     let found = estimate(&wave, 0.1).unwrap();
     let samples = found.per_pixel.unwrap();
@@ -130,7 +131,8 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
 #[test]
 fn multi_jittered_estimates_round_to_a_full_grid() {
     let points = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0].map(|n: f64| [n, n, 1.0 / n.sqrt()]);
-    // The number of samples is at most that of the last measured point.
+    // The number of samples is rounded up to one that makes a grid, but is at most that of the last
+    // measured point.
     let samples = [401.0, 400.0, 419.0, 421.0, 1020.0, 1024.0];
     let grids = [420.0, 400.0, 420.0, 441.0, 1024.0, 1024.0];
     for (samples, grid) in samples.into_iter().zip(grids) {
@@ -166,7 +168,8 @@ fn progress_reaches_1_when_a_sample_count_is_requested_twice() {
     let control = Control::default();
     let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
     assert!(measured.exact.is_none());
-    // The first run measures in ascending order, and the second run in a different order.
+    // The first run measures the numbers of samples in ascending order, and the second run in a
+    // different order.
     let told = told.into_inner();
     assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
     assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");

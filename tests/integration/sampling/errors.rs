@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// For several boxes, the share of points in the box, averaged over many pixels, is its area.
+/// For several boxes within a pixel, the share of points in the box, averaged over many pixels, is
+/// the box's area.
 #[test]
 fn every_method_except_regular_and_scatter_is_unbiased() {
     for method in Method::SAMPLED {
@@ -40,13 +41,13 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
     (mean, (squares.sum::<f64>() / (count - 1.0) / count).sqrt())
 }
 
-/// Edge of a half-plane: its normal, its distance from the pixel's centre, and the area of the
-/// pixel on its inner side. Edges parallel to the strata would tell nothing if each stratum has one
-/// unbiased point.
+/// Edge of a half-plane in a pixel: its normal, its distance from the pixel's centre, and the area
+/// of the pixel on its inner side. Edges parallel to the strata are not used: if each stratum has
+/// one unbiased point, their errors say nothing.
 type Edge = (DVec2, f64, f64);
 
 /// Returns an error for each edge: the share of points on the edge's inner side minus the area
-/// there. Each edge has its own pixel.
+/// there. A different pixel is used for each edge.
 fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     let sampling = sampling(method, n, n);
     let error = |(i, &(normal, distance, area)): (u32, &Edge)| {
@@ -69,8 +70,9 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// Returns the area of the pixel where normal · p < distance. Sums over four quadrants, whose
-/// corners are the pixel's corners, the part that the edge cuts off.
+/// Returns the area of the part of the pixel where normal · p < distance. Each corner of the pixel
+/// is the tip of a quadrant; the areas that the edge cuts off these quadrants are added with
+/// alternating signs.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);
@@ -99,8 +101,8 @@ fn variance_of_independent_points(n: u64, (_, _, area): Edge) -> f64 {
     area * (1.0 - area) / n as f64
 }
 
-/// Returns the variance of the share of points that lie on an edge's inner side, with one point in
-/// each of `n` square cells. Only cells that the edge crosses contribute.
+/// Returns the variance of the share of points that lie on an edge's inner side if each of `n`
+/// square cells has one point. Only cells that the edge crosses contribute.
 fn variance_of_one_point_per_cell(n: u64, (normal, distance, _): Edge) -> f64 {
     let side = n.isqrt();
     let middle = |i: u64| (i as f64 + 0.5) / side as f64 - 0.5;
@@ -128,8 +130,8 @@ fn squared_errors_match_theory() {
             variance_of_one_point_per_cell(n, edge)
         });
         assert!(off.abs() < 4.0, "{n}: {off}");
-        // A Latin hypercube of n points is no worse than n − 1 independent points (Owen 1997,
-        // "Monte Carlo variance of scrambled net quadrature").
+        // With a Latin hypercube of n points, the variance is at most that of n − 1 independent
+        // points (Owen 1997, "Monte Carlo variance of scrambled net quadrature").
         let off = beyond(Method::NRooks, &|edge| {
             variance_of_independent_points(n - 1, edge)
         });
@@ -137,8 +139,8 @@ fn squared_errors_match_theory() {
     }
 }
 
-/// If each cell contains one point, the error falls with a slope of −3/4 (Mitchell 1996). So it
-/// does for scrambled nets (He and Owen 2014).
+/// If each cell contains one point, the logarithm of the error falls with a slope of −3/4 (Mitchell
+/// 1996). The same holds for scrambled nets (He and Owen 2014).
 #[test]
 fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
     let edges = edges();
@@ -148,8 +150,8 @@ fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
         Method::Halton,
         Method::Sobol,
     ] {
-        // Compute the slope of the least-squares line through five equidistant logarithms, and the
-        // standard error of the slope.
+        // This computes the slope of the least-squares line through five equidistant logarithms,
+        // and the slope's standard error.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {
             let nothing = std::iter::repeat(0.0);

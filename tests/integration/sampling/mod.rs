@@ -44,7 +44,7 @@ fn sampling_with_total(
     Sampling::new(&sampler, width, height)
 }
 
-/// Returns those sample points of the pixel (x, y) whose indices are in `indices`.
+/// Returns the sample points of the pixel (x, y) whose indices are in `indices`.
 pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> Vec<DVec2> {
     let mut points = Points::default();
     let count = sampling.count(x, y);
@@ -52,7 +52,7 @@ pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> 
     points.iter().collect()
 }
 
-/// Returns all sample points of a pixel, with `n` per pixel.
+/// Returns all sample points of the pixel (x, y), if each pixel has `n`.
 fn points(method: Method, n: u64, seed: u64, [x, y]: [u32; 2]) -> Vec<DVec2> {
     let points = points_at(&sampling(method, n, seed), [x, y], 0..n);
     assert_eq!(points.len() as u64, n);
@@ -79,7 +79,7 @@ fn seeds_and_pixels_share_no_points() {
         if matches!(method, Method::Regular) {
             continue;
         }
-        // `scatter` has a different number of points in each pixel.
+        // With `scatter`, the number of points differs from pixel to pixel.
         let of = |seed, pixel: [u32; 2]| {
             let sampling = sampling(method, 5, seed);
             points_at(&sampling, pixel, 0..sampling.count(pixel[0], pixel[1]))
@@ -96,8 +96,8 @@ fn seeds_and_pixels_share_no_points() {
 
 #[test]
 fn sample_points_match_stored_values() {
-    // The eighth point of a pixel must stay the same on all machines, so that pictures do not
-    // change.
+    // The eighth point of a pixel must be the same on all machines and in all versions, so that
+    // pictures do not change.
     let expected = [
         DVec2::new(0.375, -0.125),
         DVec2::new(-0.48383530042028894, -0.350440702956024),

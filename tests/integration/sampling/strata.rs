@@ -4,15 +4,16 @@ use std::collections::HashSet;
 
 use super::*;
 
-/// Seeds and pixels with which properties are tested.
+/// Seeds and pixels for which properties are tested.
 const PLACES: [(u64, [u32; 2]); 3] = [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])];
 
-/// Returns in which of `n` strata an offset lies: ⌊(offset + 1/2) · n⌋, computed without rounding.
+/// Returns the index of the stratum, of `n` equal ones, in which an offset lies: ⌊(offset + 1/2) ·
+/// n⌋. It is computed without rounding.
 fn stratum(offset: f64, n: u64) -> u64 {
     ((fraction(offset) * u128::from(n)) >> 54) as u64
 }
 
-/// Returns offset + 1/2 in units of 2^−54. It is an integer for all methods except `regular`.
+/// Returns offset + 1/2 in units of 2^−54, which is an integer for all methods except `regular`.
 fn fraction(offset: f64) -> u128 {
     assert!((-0.5..0.5).contains(&offset), "{offset}");
     let scaled = offset * (1_u64 << 54) as f64;
@@ -20,7 +21,7 @@ fn fraction(offset: f64) -> u128 {
     (scaled as i64 + (1 << 53)) as u128
 }
 
-/// Returns whether the numbers are 0, 1, 2 and so on, each once, in any order.
+/// Returns whether `numbers` are 0, 1, 2 and so on, each once, in any order.
 fn each_once(numbers: impl Iterator<Item = u64>) -> bool {
     let mut numbers: Vec<_> = numbers.collect();
     numbers.sort_unstable();
@@ -131,8 +132,8 @@ fn halton_is_the_shifted_halton_sequence() {
     let n = 4_u64.pow(4) * 3_u64.pow(3);
     let points = points(Method::Halton, n, 0, [3, 5]);
     let origin = points[0];
-    // Returns the distance from the first point, modulo the pixel's side, in units of 2^−53. The
-    // error is at most one unit.
+    // This returns the distance from the first point, modulo the pixel's side, in units of 2^−53.
+    // The error is at most one unit.
     let from = |offset: f64, origin: f64| {
         (((fraction(offset) + (1 << 54) - fraction(origin)) & ((1 << 54) - 1)) >> 1) as u64
     };
@@ -180,8 +181,8 @@ fn sobol_keeps_its_strata_beyond_2_to_the_32() {
 
 #[test]
 fn the_largest_counts_keep_their_strata() {
-    // There are too many points to compute all, so test that a range of indices has distinct
-    // strata.
+    // There are too many points to compute all of them. Instead, the points of a range of indices
+    // must be in distinct strata.
     for n in [(1 << 53) - 111, 1 << 53, 1 << 33] {
         for method in [Method::NRooks, Method::MultiJittered, Method::Hammersley] {
             let sampling = sampling_with_total(method, n, 4, [1, 1]);

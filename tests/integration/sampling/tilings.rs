@@ -1,10 +1,10 @@
-//! The tilings that are told of a method hold one sample in each cell.
+//! The tilings that [`tilings`] lists for a method have one sample in each cell.
 
 use pinhole::sampling::tilings;
 
 use super::*;
 
-/// The cell of a tiling that holds a point, as its row and its place in the row.
+/// Returns the cell of a tiling that contains a point: its row, and its index in the row.
 fn cell(rows: &[u64], point: DVec2) -> (usize, u64) {
     let n: u64 = rows.iter().sum();
     let height = ((point.y + 0.5) * n as f64).floor() as u64;

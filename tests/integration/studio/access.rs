@@ -130,7 +130,8 @@ fn requests_with_a_foreign_host_or_origin_are_refused() {
         for path in ["/", "/studio.js", "/socket"] {
             assert_eq!(status(&ask(path, headers)), "403", "{path} {headers}");
         }
-        // The same holds for a request that opens a WebSocket and is otherwise correct.
+        // A request that opens a WebSocket is refused for the same reasons, even if the rest of it
+        // is correct.
         let upgrade = upgrade(&studio);
         let socket = upgrade.lines().filter(|line| {
             let own = ["Connection", "Upgrade", "Sec-"];
@@ -212,7 +213,7 @@ fn a_connection_without_the_token_is_closed() {
     ] {
         assert_eq!(studio.admitted(wrong).err(), Some(unknown), "{wrong}");
     }
-    // The host does not answer messages that are not texts.
+    // The host gives no answer to binary messages and to a close message.
     for wrong in [
         Message::binary(token.clone().into_bytes()),
         Message::Close(None),
@@ -228,12 +229,13 @@ fn a_connection_without_the_token_is_closed() {
     assert_page_works(&studio);
 }
 
-/// Each client sends the start of a request or message, and then stops or continues slowly.
+/// Each client sends the start of a request or message. Then it sends nothing more, or continues
+/// slowly.
 #[test]
 fn a_client_without_the_token_is_disconnected_after_five_seconds() {
     let (_folder, studio) = studio();
     let upgrade = upgrade(&studio);
-    // The first is a ping; the second is the start of a text frame of 100 bytes.
+    // `ping` sends a ping; `text` sends the start of a text frame of 100 bytes.
     let ping = [upgrade.as_bytes(), &[0x89, 0x80, 0, 0, 0, 0]].concat();
     let text = [upgrade.as_bytes(), &[0x81, 0xe4, 0, 0, 0, 0, 1]].concat();
     thread::scope(|scope| {
@@ -266,7 +268,7 @@ fn a_client_without_the_token_is_disconnected_after_five_seconds() {
                 let time = begun.elapsed();
                 let start = String::from_utf8_lossy(start);
                 assert!(time < Duration::from_secs(8), "{start}: {time:?}");
-                // A client that has closed its side, or has sent something other than a token, is
+                // A client that has closed its side, or has sent something that is not a token, is
                 // disconnected at once.
                 assert!(
                     is_early || time > Duration::from_secs(4),
@@ -289,7 +291,8 @@ fn idle_connections_without_the_token_do_not_block_pages() {
         assert_page_works(&studio);
         drop((idle, sockets));
     }
-    // More pages with the token keep working than clients without a token are admitted.
+    // Pages with the token keep working, even if there are more of them than the host admits
+    // clients without a token.
     let mut pages: Vec<_> = (0..80).map(|_| studio.page().0).collect();
     for page in pages.iter_mut().chain([&mut before]) {
         page.open(json!({}), SMALLEST);
@@ -302,7 +305,7 @@ fn malformed_requests_and_frames_do_no_harm() {
     let (_folder, studio) = studio();
     let start = format!("GET / HTTP/1.1\r\nHost: {}\r\n", studio.host());
     let upgrade = upgrade(&studio);
-    // This is the head of a text frame of 64 MiB, followed by a part of its text.
+    // This is the head of a text frame of 64 MiB, with a part of the frame's text.
     let head = [&[0x81, 0xff][..], &(64_u64 << 20).to_be_bytes(), &[0; 4]].concat();
     let huge = [upgrade.as_bytes(), &head, &vec![b'y'; 1 << 20]].concat();
     for wrong in [
@@ -313,7 +316,7 @@ fn malformed_requests_and_frames_do_no_harm() {
         b"GET / HTTP/1.1\r\n\xe9\r\n\r\n",
         b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
         // These are a reserved opcode, a frame without a mask, a continuation frame without a
-        // first frame, and a text that is not UTF-8.
+        // first frame, and a text frame that is not UTF-8.
         &[upgrade.as_bytes(), &[0x8f, 0x80, 0, 0, 0, 0]].concat(),
         &[upgrade.as_bytes(), &[0x81, 0x01, b'y']].concat(),
         &[upgrade.as_bytes(), &[0x80, 0x81, 0, 0, 0, 0, b'y']].concat(),
@@ -322,7 +325,7 @@ fn malformed_requests_and_frames_do_no_harm() {
     ] {
         let begun = Instant::now();
         let mut stream = studio.stream();
-        // The host may close the connection before everything is written, so ignore errors.
+        // The host may close the connection before everything is written, so errors are ignored.
         let _ = stream.write_all(wrong);
         let said = until_closed(&mut stream);
         let (said, wrong) = (

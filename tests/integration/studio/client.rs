@@ -86,8 +86,8 @@ impl Studio {
         client(request, self.stream()).unwrap().0
     }
 
-    /// Opens a page with a token. Returns the page and the token of its session, or the close code
-    /// with which the host refuses the page.
+    /// Opens a page with a token. Returns the page and its session's token, or the close code with
+    /// which the host refuses the page.
     pub fn admitted(&self, token: &str) -> Result<(Client<Page>, String), CloseCode> {
         let mut socket = self.socket();
         socket.send(Message::text(token)).unwrap();
@@ -119,7 +119,7 @@ impl Drop for Studio {
     }
 }
 
-/// A page's end of its WebSocket.
+/// The page's end of a WebSocket.
 pub struct Page(pub WebSocket<TcpStream>);
 
 impl Transport for Page {

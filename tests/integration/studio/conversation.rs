@@ -43,7 +43,7 @@ fn invalid_messages_get_errors_and_the_conversation_continues() {
         let found = page.respond(method, params);
         assert_eq!(found["error"]["code"], code, "{method}");
     }
-    // An unpaired surrogate cannot be in a text, so the request gets an error.
+    // No text can contain an unpaired surrogate, so the request gets an error.
     let text = r#"{ "id": "page-7", "method": "studio/save", "params": { "text": "\ud800" } }"#;
     page.transport.write(text);
     let answer = page.read();
@@ -90,7 +90,7 @@ fn a_message_that_is_too_long_ends_the_conversation() {
         &[0; 4],
     ]
     .concat();
-    // A binary message, which has no meaning, also ends the WebSocket connection.
+    // A binary message is not allowed, so it also ends the WebSocket connection.
     let mut bytes = studio.page().0.transport.0;
     bytes.send(Message::binary(vec![1])).unwrap();
     let mut long = studio.page().0.transport.0;
@@ -150,7 +150,7 @@ fn closing_a_page_cancels_its_work() {
 
     let (_folder, studio) = studio();
     let tasks = format!("/proc/{}/task", studio.child.id());
-    // Render threads have the same name as the thread that starts them.
+    // A render thread has the same name as the thread that starts it.
     let wait = |name: &str, is_there: bool| {
         for _ in 0..500 {
             let tasks = fs::read_dir(&tasks)

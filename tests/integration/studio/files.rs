@@ -18,8 +18,8 @@ fn save(page: &mut Client<Page>, text: &str, base: Option<&str>) -> Value {
     page.respond("studio/save", json!({ "text": text, "base": base }))
 }
 
-/// Waits for the host's next message about the file. Returns the file's text, and the reason if it
-/// has none.
+/// Waits for the host's next message about the file. Returns the file's text, and the reason if
+/// there is no text.
 fn told(page: &mut Client<Page>) -> [Value; 2] {
     let mut file = page.notification("studio/file");
     ["text", "reason"].map(|field| file[field].take())
@@ -42,7 +42,7 @@ fn a_save_writes_the_file_and_notifies_other_pages() {
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(folder.text("a.scn"), "// é\r\n");
     assert_eq!(told(&mut second), [json!("// é\r\n"), Value::Null]);
-    // If the file already has the text, saving succeeds whatever the base is.
+    // If the file already contains the text to be saved, saving succeeds, whatever the base is.
     for (text, base) in [("// é\r\n", "x"), ("// 2", "// é\r\n")] {
         assert_eq!(save(&mut second, text, Some(base))["result"], saved());
     }
@@ -57,21 +57,21 @@ fn a_save_never_overwrites_a_change_of_another_program() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
     folder.write("a.scn", "// theirs");
-    // The host notices the change even if it has not notified the page of it yet.
+    // Saving notices the change even if the host has not told the page about it.
     let theirs = json!({ "ok": false, "text": "// theirs" });
     assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], theirs);
     assert_eq!(folder.text("a.scn"), "// theirs");
     assert_eq!(page.notification("studio/file")["text"], "// theirs");
     let answer = save(&mut page, "// mine", Some("// theirs"));
     assert_eq!(answer["result"], saved());
-    // Now another program removes the file.
+    // Another program removes the file.
     fs::remove_file(folder.path("a.scn")).unwrap();
     assert_eq!(told(&mut page), [Value::Null, Value::Null]);
     let gone = json!({ "ok": false, "text": null });
     assert_eq!(save(&mut page, "// more", Some("// mine"))["result"], gone);
     assert_eq!(save(&mut page, "// mine", None)["result"], saved());
     assert_eq!(folder.text("a.scn"), "// mine");
-    // Now the file is in another encoding, which a save would destroy.
+    // The file gets another encoding, which a save would destroy.
     folder.write("a.scn", b"// \xff");
     let reason = "it is not a text in UTF-8";
     assert_eq!(told(&mut page), [Value::Null, json!(reason)]);
@@ -89,7 +89,7 @@ fn a_save_never_overwrites_a_change_of_another_program() {
 fn a_save_that_fails_changes_nothing() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
-    // A new scene can be saved only in the file's folder.
+    // A new scene can be saved only in the folder of the file, and only with the extension `.scn`.
     for name in ["../b.scn", "sub/b.scn", "b.txt"] {
         let elsewhere = json!({ "text": "x", "base": SCENE, "name": name });
         let error = page.respond("studio/save", elsewhere)["error"].take();
@@ -98,7 +98,7 @@ fn a_save_that_fails_changes_nothing() {
     }
     let own = json!({ "text": SCENE, "base": SCENE, "name": "a.scn" });
     assert_eq!(page.ask("studio/save", own), saved());
-    // Now a folder takes the file's place.
+    // A folder takes the place of the file.
     fs::remove_file(folder.path("a.scn")).unwrap();
     fs::create_dir(folder.path("a.scn")).unwrap();
     let error = save(&mut page, "// mine", None)["error"].take();
@@ -106,8 +106,7 @@ fn a_save_that_fails_changes_nothing() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
-/// Tests each way of protecting a file that is possible on this system. Only the last one has an
-/// effect on root.
+/// Tests each way to protect a file that this system has. Only the last way has an effect on root.
 #[cfg(unix)]
 #[test]
 fn a_forbidden_save_names_the_file_the_reason_and_a_remedy() {
@@ -185,14 +184,15 @@ fn a_new_scene_is_saved_only_under_an_unused_name() {
     assert_eq!(outer.text("inner/there.scn"), "// there");
     assert_eq!(save(&mut page, json!("new one.scn"))["result"], saved());
     assert_eq!(outer.text("inner/new one.scn"), "// new");
-    // From now on, the new scene is an ordinary file for all pages.
+    // From here on, the new scene is an ordinary file for all pages.
     for page in [&mut page, &mut other] {
         assert_eq!(
             page.notification("studio/file"),
             file("new one.scn", "// new", true)
         );
     }
-    // The other page saves another new scene beside it. That overwrites no existing file.
+    // The other page saves another new scene in the same folder, but cannot overwrite an existing
+    // file.
     let response = save(&mut other, json!("there.scn"));
     assert_eq!(response["error"]["code"], -32803);
     assert_eq!(outer.text("inner/there.scn"), "// there");
@@ -288,7 +288,7 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         env::var("PATH").unwrap()
     );
     let opened = folder.path("opened");
-    // A page that does not read has socket buffers smaller than this text.
+    // The socket buffers of a page that does not read are smaller than this text.
     let long = "// a long scene\n".repeat(1 << 19);
     folder.write("a.scn", &long);
     for (arguments, is_opened) in [("studio --no-open", false), ("studio a.scn", true)] {
@@ -304,7 +304,7 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         while !opened.exists() && Instant::now() < end {
             thread::sleep(Duration::from_millis(10));
         }
-        // Other users can read the command line of the browser, so the token in it is a separate
+        // Other users can read the browser's command line. Therefore, the token in it is a separate
         // one that works only once.
         let address = folder.text("opened");
         let (host, once) = address.trim().split_once("/#token=").unwrap();
@@ -315,7 +315,7 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         // The page reconnects with the token of its session.
         let (mut again, token) = studio.admitted(&session).unwrap();
         assert_eq!(token, session);
-        // Read the pending messages, which come before the notice that the session ends.
+        // The pending messages are read first; the notice that the session ends comes after them.
         first.notification("studio/file");
         again.notification("studio/file");
         let (mut other, _) = studio.page();
@@ -362,7 +362,7 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
             // With a pipe in place of the file, opening the file would wait for a writer.
             fs::remove_file(folder.path("a.scn")).unwrap();
             folder.make_pipe("a.scn");
-            // Wait until the host has looked at the file.
+            // This is long enough for the host to look at the file.
             thread::sleep(Duration::from_millis(2500));
         }
         let begun = Instant::now();

@@ -36,8 +36,8 @@ pub fn floor() -> Shape {
     scenes::board(0.0, 1.0)
 }
 
-/// Returns whether the camera does not look along its up vector. If it does, a rule about the
-/// world's axes determines its orientation.
+/// Returns whether the camera does not look along its up vector. In a camera that does, the world's
+/// axes determine the orientation.
 pub fn is_upright(scene: &Scene) -> bool {
     let Camera { eye, view, up, .. } = scene.camera;
     let direction = match view {
@@ -47,7 +47,8 @@ pub fn is_upright(scene: &Scene) -> bool {
     direction.cross(up) != DVec3::ZERO
 }
 
-/// Tracer and oracle of the same scene. All objects and squares have different colours.
+/// The tracer and the oracle for the same scene. All objects and all squares have different
+/// colours.
 struct TracerAndOracle {
     scene: Scene,
     world: World,
@@ -100,7 +101,7 @@ fn assert_agrees_with_oracle(scene: &Scene, points: usize) -> usize {
         if tries % 16 == 0 {
             both.check(x, y, a);
         }
-        // Bisect along x or y alone, down to neighbouring `f64` values.
+        // The segment is along x or y, and is bisected down to neighbouring `f64` values.
         let axis = tries % 2;
         b[1 - axis] = a[1 - axis];
         let color = both.color(x, y, a);
@@ -141,7 +142,7 @@ fn scenes_of_random_numbers_agree_with_the_oracle() {
 
 #[test]
 fn scenes_full_of_ties_agree_with_the_oracle() {
-    // All sample points are at multiples of 1/8 pixel.
+    // The sample points are at multiples of 1/8 pixel, so many lie exactly on edges.
     let mut random = Random::new(11);
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 11).map(|(_, scene)| scene);
     for scene in scenes.filter(is_upright).take(150) {
@@ -160,7 +161,7 @@ fn fans_of_triangles_agree_with_the_oracle() {
     let mut found = 0;
     for round in 0..24 {
         let camera = camera(random.vector(4.0), random.vector(1.0));
-        // Surround one vertex with a fan of triangles of any size.
+        // A fan of triangles, small or large, surrounds one vertex.
         let size = [1.0, 1e-3, 1e3][round % 3];
         let middle = random.vector(1.0);
         let rim: Vec<DVec3> = (0..5).map(|_| middle + random.vector(2.0) * size).collect();
@@ -171,7 +172,7 @@ fn fans_of_triangles_agree_with_the_oracle() {
     assert!(found > 200, "{found}");
 }
 
-/// Distances are close to the smallest and the largest `f64`, or equal.
+/// Distances are equal, or close to the smallest or the largest `f64`.
 #[test]
 fn objects_at_the_limits_of_f64_agree_with_the_oracle() {
     for [scene, values, boundaries] in rows(
@@ -211,7 +212,7 @@ fn lenses_at_the_limits_of_f64_show_the_right_objects() {
             "image {{ width 64 height 64 }} camera {{ eye (0, 0, 5) direction (0, 0, -1) {lens} }}
              box {{ min (-1, -1, -1) max (0, 1, 0) }} box {{ min (0, -1, -1) max (1, 1, 0) }}"
         )));
-        // The face that the boxes share is seen edge-on in the middle of the picture.
+        // The face that the boxes share is seen edge-on, in the middle of the picture.
         for (x, seen) in [0, 31, 32, 63].into_iter().zip(seen.split(' ')) {
             let found = both.color(x, 31, random.offset())[0];
             assert_eq!(found.to_string(), seen, "{lens}: {x}");
@@ -219,7 +220,7 @@ fn lenses_at_the_limits_of_f64_show_the_right_objects() {
     }
 }
 
-/// Two triangles are the halves of a square in front of red. They meet along the diagonal, which
+/// Two triangles are the halves of a square before a red background. They share the diagonal, which
 /// passes through the centres of pixels.
 #[test]
 fn two_halves_of_a_square_leave_no_gap() {
@@ -239,8 +240,8 @@ fn two_halves_of_a_square_leave_no_gap() {
             let (sampled, exact) = (sampled(&scene), exact(&scene));
             let mut seen = 0;
             for (sampled, [_, exact, _]) in sampled.pixels().iter().zip(exact.film.pixels()) {
-                // Red seen through a gap would make red and green differ. At the square's edges,
-                // where green is below 1, they may.
+                // If red were seen through a gap, red and green would differ. At the square's
+                // edges, where green is below 1, they may differ.
                 assert!(sampled[0] == sampled[1] || *exact < 1.0, "from {eye}");
                 seen += u32::from(sampled[1] == 1.0);
                 if eye == "(0, 0, 2)" {

@@ -1,4 +1,4 @@
--- The configuration of the language server, which Neovim 0.11 and newer find by its name.
+-- Configuration of the language server. Neovim 0.11 and newer find it by the name of this file.
 return {
   cmd = { "pinhole", "lsp" },
   filetypes = { "pinhole" },

@@ -1,5 +1,5 @@
--- Starts the language server for scenes. To start it in another way, set vim.g.pinhole_no_lsp
--- before this file is read.
+-- Starts the language server for scenes. To start the server in another way, set
+-- vim.g.pinhole_no_lsp before this file is read.
 if vim.g.pinhole_no_lsp then
   return
 end
@@ -9,7 +9,7 @@ if vim.lsp.enable then -- Neovim 0.11 and newer: lsp/pinhole.lua says how.
   return
 end
 
--- One server for all scenes.
+-- All scenes share one server.
 local client
 
 vim.api.nvim_create_autocmd("FileType", {
@@ -30,7 +30,7 @@ vim.api.nvim_create_autocmd("FileType", {
       })
     if client then
       vim.lsp.buf_attach_client(event.buf, client)
-      vim.bo[event.buf].omnifunc = "v:lua.vim.lsp.omnifunc" -- 0.11 sets it itself.
+      vim.bo[event.buf].omnifunc = "v:lua.vim.lsp.omnifunc" -- Neovim 0.11 sets this itself.
     end
   end,
 })

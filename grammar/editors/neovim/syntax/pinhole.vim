@@ -1,4 +1,4 @@
-" Highlights scenes where the language server does not. A field is told from a value by what stands before it.
+" Highlights scenes if the language server does not. The words before a name decide whether it is a field or a value.
 
 if exists("b:current_syntax")
   finish

@@ -1,4 +1,4 @@
-// Finds the program.
+// Finds the program `pinhole`, which contains the language server.
 
 const fs = require("node:fs");
 const os = require("node:os");

@@ -74,7 +74,7 @@ function binary() {
     const message = `The program pinhole is ${where}. Without it, scenes are highlighted, and no more.`;
     vscode.window.showErrorMessage(message, "Choose File…", "How to Get It").then(answer => {
       if (answer === "Choose File…") return chooseBinary();
-      // The extension's own page explains how.
+      // The extension's own page explains how to install the program.
       if (answer === "How to Get It") return vscode.commands.executeCommand("extension.open", "pinhole.pinhole");
     });
   }
@@ -88,7 +88,7 @@ async function chooseBinary() {
   const [file] = (await vscode.window.showOpenDialog({ title: "The program pinhole", openLabel: "Use" })) ?? [];
   if (file === undefined) return;
   const configuration = vscode.workspace.getConfiguration("pinhole");
-  // A setting of the workspace would override it.
+  // A setting of the workspace, if there is one, is changed, since it overrides the global setting.
   const { workspaceValue } = configuration.inspect?.("path") ?? {};
   const { Global, Workspace } = vscode.ConfigurationTarget;
   await configuration.update("path", file.fsPath, workspaceValue === undefined ? Global : Workspace);
@@ -119,7 +119,7 @@ async function savedScene() {
     vscode.window.showInformationMessage("Open a scene to render it. If another extension has its ending, run “Pinhole: Use Pinhole for This File” first.");
     return undefined;
   }
-  // A scene without a file, or that the user chose not to save, is not rendered.
+  // A scene is not rendered if it has no file or if the user chose not to save it.
   if (document.uri.scheme !== "file" || (document.isDirty && !(await document.save()))) {
     vscode.window.showInformationMessage("Save the scene to render it: the picture is written beside it.");
     return undefined;

@@ -1,12 +1,11 @@
-// The TextMate grammar of scene files, from which `npm run grammar` writes pinhole.tmLanguage.json.
+// The TextMate grammar of scene files. `npm run grammar` writes it to pinhole.tmLanguage.json.
 //
-// Every word gets the scope that corresponds to the type of the language server's semantic token
-// there (the table in `scopes`, which package.json repeats for themes), so that a file looks the
-// same before and after the server answers. A name means one thing at the start of a field and
-// another within a value, and only the words before decide which it is: `radius r - 1 color sun`. A
-// TextMate rule that has ended cannot pass anything on to its parent, so the rules do not end: the
-// rest of a block is read within the rule of the last value, and all of them end together at the
-// closing brace.
+// Every word gets the scope that corresponds to the type of its semantic token from the language
+// server (table `scopes`, which package.json repeats for themes), so that a file looks the same
+// before and after the server answers. The meaning of a name depends on the words before it: in
+// `radius r - 1 color sun`, `color` starts a field, and `sun` is a value. A TextMate rule that has
+// ended cannot pass information to its parent. So the rules do not end: the rest of a block is read
+// within the rule of the last value, and all rules end together at the closing brace.
 
 import { writeFileSync } from "node:fs";
 
@@ -44,7 +43,7 @@ export const colors = `
 export const functions = "sin cos tan asin acos atan atan2 sqrt abs min max length dot cross normalize rgb".split(" ");
 
 const NAME = "[A-Za-z_][A-Za-z0-9_]*";
-// A unit after a space is a mistake, but coloured as part of the number.
+// A unit after a space is a mistake, but it is coloured as part of the number.
 const NUMBER =
   "(?:[0-9][0-9_]*(?:\\.[0-9_]*)?|\\.[0-9][0-9_]*)(?:[eE][-+]?[0-9][0-9_]*)?(?:[ \\t]*(?:deg|rad))?(?![A-Za-z0-9_.])";
 const ODD_NUMBER = "\\.?[0-9][A-Za-z0-9_.]*";
@@ -53,10 +52,11 @@ const WORD_OF_THE_LANGUAGE = `(?:(?i:${colors.join("|")})|pi|deg|rad)\\b`;
 // `tan` is also a colour.
 const FUNCTION = `(?:${functions.map(name => (name === "tan" ? "tan(?=\\s*\\()" : name)).join("|")})\\b`;
 const QUOTED = "\"[^\"]*\"?|'[^']*'?";
-// Includes operators that the language lacks, but people try.
+// The operators include some that the language lacks but that people use by mistake.
 const OPERATOR = "\\*\\*|[-+*/^%×·÷−]";
 
-// A line that starts with a block's head ends the block above if its closing brace is missing.
+// A line that starts with the head of a block ends the block above it, whose closing brace may be
+// missing.
 const NEXT_ITEM =
   `(?=\\blet\\b)|^(?=\\s*${NAME}\\s*(?:${NAME}\\s*)?\\{|\\s*${NAME}\\s+(?:${NAME}\\s+)?for\\s+${NAME}\\s*<)`;
 const VALUES_END = `(?=\\})|${NEXT_ITEM}`;
@@ -127,7 +127,7 @@ export const grammar = {
         rule(
           `\\b(?!let\\b)(${NAME})(?:\\s+(${NAME}))?\\s*\\{`, ["keyword", "class"], `\\}|${NEXT_ITEM}`, "comment", "field",
         ),
-        // Here the name or the brace is on another line, or after a comment.
+        // The name or the brace of this block is on another line, or after a comment.
         rule(
           `\\b(?!let\\b)(${NAME})\\b`, ["keyword"], `(?<=\\})|(?=\\blet\\b)|^(?=\\s*${NAME}\\s+${NAME}\\s*\\{)`,
           "comment", "body", "repetition", "object-name",
@@ -157,7 +157,7 @@ export const grammar = {
     method: rule(`(${NAME})`, ["enumMember"], VALUES_END, "comment", "field"),
     ...values("field", "field"),
 
-    // Within parentheses a name is never a field, so the rule needs no state.
+    // Within parentheses, a name is never a field, so the rule does not depend on previous words.
     inner: {
       begin: "(?<=\\()",
       end: `\\)|(?=[{}])|${NEXT_ITEM}`,

@@ -1,4 +1,4 @@
-// Tests the files of the other editors: Neovim's are run, the rest is parsed.
+// Tests the files for other editors: those for Neovim by running it, the rest by parsing them.
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";

@@ -1,4 +1,5 @@
-// Tests the TextMate grammar on single lines in which the words before matter.
+// Tests the TextMate grammar on short texts in which the type of a word depends on the words before
+// it.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -1,4 +1,4 @@
-// Splits a scene into words with the types that the TextMate grammar gives them, by VS Code's own
+// Splits a scene into words, each with the type that the TextMate grammar assigns, by VS Code's own
 // engine.
 
 import { readFileSync } from "node:fs";
@@ -45,7 +45,7 @@ export function scoped(source) {
       const type = typeOfScopes(scopes);
       const word = { line, start, text: text.slice(start, end), type };
       const last = words.at(-1);
-      // A comment consists of pieces: its opening sign, its text, its closing sign.
+      // The engine splits a comment into its opening sign, its text and its closing sign.
       const goesOn = type === "comment" && last?.type === type && last.line === line && last.start + last.text.length === start;
       if (goesOn && !word.text.startsWith("/*") && !word.text.startsWith("//")) last.text += word.text;
       else if (type !== undefined && word.text.trim() !== "") words.push(word);

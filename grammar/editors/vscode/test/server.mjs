@@ -12,7 +12,7 @@ const { createProtocolConnection, StreamMessageReader, StreamMessageWriter } = r
 /** The program that PINHOLE names, or else the one on the path. */
 export const program = process.env.PINHOLE ?? "pinhole";
 
-// The servers of tests do not touch the user's caches.
+// A test's server must not change the user's caches.
 const caches = mkdtempSync(path.join(tmpdir(), "pinhole-caches-"));
 process.env.XDG_CACHE_HOME = caches;
 process.on("exit", () => rmSync(caches, { recursive: true, force: true }));

@@ -1,4 +1,5 @@
-// Compares the highlighting and the extension's client library with the language server.
+// Compares the TextMate grammar with the server's semantic tokens, and tests the extension's client
+// library against the server.
 
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
@@ -39,7 +40,7 @@ test("the grammar knows the colours and functions that the language knows", { ti
   };
   const [FUNCTION, COLOR] = [3, 16];
   assert.deepEqual((await offered(15, COLOR)).sort(), colors);
-  // Functions are offered by type: those of colours for colours, those of vectors for vectors, and
+  // Completion offers only functions of the wanted type: those of colours in place of colours, and
   // so on.
   const found = new Set([...await offered(15, FUNCTION), ...await offered(23, FUNCTION)]);
   assert.deepEqual([...found].sort(), [...functions].sort());

@@ -1,5 +1,5 @@
-// A substitute for the parts of VS Code that the extension and its client library use. What the
-// extension registers and shows is recorded for the tests.
+// Substitute for the parts of VS Code that the extension and its client library use. It records
+// what the extension registers and shows, for the tests.
 
 import { createRequire } from "node:module";
 import { fileURLToPath, pathToFileURL } from "node:url";

@@ -13,8 +13,8 @@ impl Extension for Pinhole {
         Self
     }
 
-    /// Returns the program from the settings (`lsp.pinhole.binary.path`), or else the one on the
-    /// path.
+    /// Returns the path of the program from the settings (`lsp.pinhole.binary.path`), or else of
+    /// the one on the system's search path.
     fn language_server_command(
         &mut self,
         id: &LanguageServerId,

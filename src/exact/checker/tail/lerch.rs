@@ -3,12 +3,14 @@
 
 use super::super::special::{Complex, integrals};
 
-/// Angle |θ|, in radians, below which a Taylor series gives the regular function R. The first
-/// omitted term, θ⁹/47900160, is 100 roundings; V may be off by 500.
+/// Angle |θ|, in radians, below which the regular function R ([`rest_of_pole`]) is computed by a
+/// Taylor series, because its closed formula cancels. The first omitted term, θ⁹/47900160, is 100
+/// roundings; the Lerch series may have an error of 500 roundings.
 const NEAR_POLE: f64 = 0.2;
 
-/// Computes V_3, V_4 and V_5 at `theta`, |θ| ≤ π, by the expansion up to R′; terms from R″ on are
-/// omitted. `rotation` is e^iθ.
+/// Computes the Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s) for s = 3, 4 and 5 at θ = `theta`,
+/// where |θ| ≤ π. Expands it about the pole of the integrand, up to the first derivative R′ of the
+/// regular function ([`rest_of_pole`]). `rotation` is e^iθ.
 pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     let (r, slope) = rest_of_pole(theta, rotation);
     let h = integrals(theta * w);
@@ -25,10 +27,10 @@ pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     })
 }
 
-/// Returns r and R′ of the regular function R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ at ζ = −iθ, where R = ½ +
-/// i·r:
+/// Returns the regular function R(ζ) = 1/(1 − e^(−ζ)) − 1/ζ at ζ = −iθ, where R = ½ + i·r, as the
+/// real numbers r and R′:
 ///
-/// r = ½·cot(θ/2) − 1/θ, R′ = 1/(4·sin²(θ/2)) − 1/θ².
+/// r = ½·cot(θ/2) − 1/θ, R′ = 1/(4·sin²(θ/2)) − 1/θ²
 fn rest_of_pole(theta: f64, rotation: Complex) -> (f64, f64) {
     let square = theta * theta;
     if theta.abs() < NEAR_POLE {

@@ -1,4 +1,5 @@
-//! The sum over the crossings of an edge along which the depth m does not double, by Fourier modes.
+//! The sum over the crossings of an edge along which the depth m less than doubles, by Fourier
+//! modes.
 
 use std::f64::consts::PI;
 
@@ -9,17 +10,20 @@ use super::super::special::{Complex, cis, reduced_multiple, square, times};
 use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, mode};
 use crate::math::{Double, Real};
 
-/// Truncation error that is always allowed for the modes of an edge along which m does not double,
-/// as a fraction of the pixel's tolerance.
+/// Truncation error that is always allowed for the Fourier modes of an edge along which the depth m
+/// less than doubles, as a fraction of the pixel's tolerance. It is used if it exceeds
+/// [`LATER_TERMS_SHARE`] of the edge's tolerance.
 const LEVEL_TRUNCATION: f64 = 1e-3;
-/// Reciprocal of the relative change of m along an edge below which m counts as constant. The bound
-/// is then larger by 4/STEADY of the sum of absolute terms: 1e-6 of a value that is itself small if
-/// crossings are many. Measured: with 7.5e5 or 1.2e7, no bound changes.
+/// Reciprocal of the relative change of the depth m along an edge below which m counts as constant.
+/// The error bound is then larger by 4/STEADY of the sum of absolute terms, that is by 1e-6 of a
+/// value that is itself small if crossings are many. Measured: with 7.5e5 or 1.2e7, no bound
+/// changes.
 const STEADY: f64 = 3e6;
 
-/// Computes Σ (−1)^j·X over the crossings of an edge along which m does not double. `trivial`
-/// bounds the absolute value of the sum, and `tolerance` limits the truncation error. Returns 0
-/// with the bound `trivial` if the modes are no better or exceed the budget.
+/// Computes Σ (−1)^j·X over the crossings of an edge along which the depth m less than doubles.
+/// `trivial` is an upper bound of the sum's absolute value, and `tolerance` limits the truncation
+/// error. Returns 0 with the bound `trivial` if the Fourier modes give no better bound or exceed
+/// the budget.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -34,24 +38,23 @@ pub(super) fn sum(
     let (w, u) = (start / all.rise, 1.0 / start);
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) * u * u * u, |a| a * (u / PI));
     let neglected = (LEVEL_TRUNCATION * budget.tolerance).max(LATER_TERMS_SHARE * tolerance);
-    // The mode n is at most 8/π²·n^−3 times the trivial bound.
+    // Mode n is at most 8/π²·n^−3 times `trivial`.
     let Some((last, beyond)) = last_mode(trivial, neglected, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };
 
     let step = all.alternating_step();
-    // These are the phases of mode 1 at the first crossing, and where the crossing after the last
-    // one would be.
+    // The phases of mode 1 at the first crossing, and at the place of the crossing that would
+    // follow the last one.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;
     if all.count.floor().1 {
         phases[1] = ends[1].map(|x| -x);
     }
-    // By Abel's inequality, the sum of a mode over j is at most 2/|1 − e^iθ| times the mode's first
-    // term, which is at most π/|θ| times that term. A mode is skipped if this is small enough. All
-    // skipped modes together add little to the truncation error, because Σ n^−2 over the odd n is
-    // π²/8.
+    // By Abel's inequality, the sum of a mode over the crossings is at most 2/|1 − e^iθ| ≤ π/|θ|
+    // times the mode's first term. A mode is skipped if this bound is small enough. All skipped
+    // modes together add little to the truncation error, because Σ n^−2 over the odd n is π²/8.
     let abel = PI
         * amplitudes
             .iter()
@@ -79,17 +82,17 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // If m counts as constant, m^−s differs from its value in the middle by at most s·gN/2m of it.
-    // Otherwise, each of the two Lerch series is accurate to about 500 roundings of w/2 times the
-    // series' first term, and has a truncation error of at most 0.04·s·(s + 1)/w² of that term.
+    // If m counts as constant, m^−s differs from its value in the middle by at most s·gN/2m of this
+    // value. Otherwise, each of the two Lerch series has an error of about 500 roundings of w/2
+    // times its first term, and a truncation error of at most 0.04·s·(s + 1)/w² of its first term.
     let model = if is_steady {
         4.0 / STEADY
     } else {
         1000.0 * UNIT * w / lines + 2.4 / (w * lines)
     };
-    // Up to mode n, the phase of an end is rotated n/2 times, by products with four roundings each:
-    // 4n for two ends, and as many for the rotations themselves. A mode has about 30 more
-    // operations at each end.
+    // Up to mode n, the phase of each end is rotated n/2 times by products with four roundings
+    // each. This makes 4n roundings for two ends, and the rotations themselves have as many. A mode
+    // has about 30 more operations at each end.
     let rounding = UNIT * (64.0 + 8.0 * last);
     BoundedSum {
         value,
@@ -97,7 +100,7 @@ pub(super) fn sum(
     }
 }
 
-/// Returns e^(iφ)·Σ e^(iθj) over j < N, the number of `lines`. `place` is the phase e^(iφ) of the
+/// Returns e^(iφ)·Σ e^(iθj) over 0 ≤ j < N, where N is `lines`. `place` is the phase e^(iφ) of the
 /// first term, and `last` is e^(iφ + iθN).
 fn geometric(theta: f64, lines: f64, [place, last]: [Complex; 2]) -> Complex {
     let half = 0.5 * theta;
@@ -116,8 +119,8 @@ fn geometric(theta: f64, lines: f64, [place, last]: [Complex; 2]) -> Complex {
     [-0.5 * y / sine, 0.5 * x / sine]
 }
 
-/// Returns e^(iφ)·Σ e^(iθj)·(1 + j/w)^(−s) over j < N for s = 3, 4, 5, where N is the number of
-/// `lines`. `place` is the phase e^(iφ) of the first term, and `last` is e^(iφ + iθN).
+/// Returns e^(iφ)·Σ e^(iθj)·(1 + j/w)^(−s) over 0 ≤ j < N for s = 3, 4, 5, where N is `lines`.
+/// `place` is the phase e^(iφ) of the first term, and `last` is e^(iφ + iθN).
 fn partial(theta: f64, w: f64, lines: f64, [place, last]: [Complex; 2]) -> [Complex; MODE_TERMS] {
     let angle = cis(theta);
     let (from, to) = (lerch(theta, angle, w), lerch(theta, angle, w + lines));
@@ -146,7 +149,7 @@ mod tests {
     }
 
     /// Returns the last argument of [`geometric`] and [`partial`] for φ = 0: the numbers 1 and
-    /// e^(iθN), where N is the number of `lines`.
+    /// e^(iθN), where N is `lines`.
     fn places(theta: f64, lines: f64) -> [Complex; 2] {
         [cis(0.0), cis(theta * lines)]
     }
@@ -159,7 +162,7 @@ mod tests {
     #[test]
     fn geometric_sums() {
         for theta in [0.0, 1e-9, -1e-3, 0.7, 3.0, -PI] {
-            // In the direct sum, angles are off by up to 1000·3·2⁻⁵³.
+            // In the direct sum, angles have errors of up to 1000·3·2⁻⁵³.
             close(
                 geometric(theta, 1000.0, places(theta, 1000.0)),
                 one_by_one(theta, f64::INFINITY, 1000.0, 3),
@@ -173,7 +176,7 @@ mod tests {
         for theta in [0.0, 1e-6, -1e-3, 0.02, 0.7, 3.0, -PI] {
             let found = partial(theta, 5000.0, 3000.0, places(theta, 3000.0));
             for (s, found) in (3..).zip(found) {
-                // The truncation error of `lerch`, 0.04·s·(s + 1)/w², leaves 5e-8 at w = 5000. 500
+                // The truncation error of `lerch`, 0.04·s·(s + 1)/w², is 5e-8 at w = 5000. 500
                 // roundings of w/2 add 3e-10.
                 close(found, one_by_one(theta, 5000.0, 3000.0, s), 1e-7);
             }

@@ -26,12 +26,12 @@
 //! of the board, this is the Euler–Maclaurin sum; at θ = π, it is Boole's sum.
 //!
 //! If m at least doubles along the edge, the first crossings are added one by one, and the Fourier
-//! modes give the sum over the rest ([`receding`]).
+//! modes give the sum over the remaining crossings ([`receding`]).
 //!
-//! If m does not double along the edge's N crossings, the n-th mode is at most n^−3 of the sum of
-//! all absolute terms, so that a few hundred modes are enough. A mode's sum over j is then the
+//! If m less than doubles along the edge's N crossings, the n-th mode is at most n^−3 of the sum of
+//! all absolute terms, so that a few hundred modes are enough. The sum of a mode over j is then the
 //! difference of two Lerch series, of which the second starts at the edge's end. If m is
-//! practically constant, it is a geometric sum ([`level`]).
+//! practically constant, the sum is geometric ([`level`]).
 
 mod lerch;
 mod level;
@@ -43,28 +43,33 @@ use super::homography::BoundedSum;
 use super::special::Complex;
 use crate::math::{Double, Real};
 
-/// Number of terms of the series X that are summed by Fourier modes; later terms are only bounded.
+/// Number of terms of the series X ([`EdgeSeries`]) that are summed by Fourier modes; later terms
+/// count as an error.
 const MODE_TERMS: usize = 3;
 
-/// Maximum number of crossings that are all added one by one; this takes 60 µs, 3 ns for each.
-/// Measured: with 5000 or 80,000, the running time changes by less than a tenth.
+/// Maximum number of crossings of an edge that are all added one by one; above it, Fourier modes
+/// are tried. So many crossings take 60 µs, 3 ns each. Not critical: with 5000 or 80,000, the
+/// measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
-/// Maximum number of crossings, or of modes, that are added for an edge; what remains is only
-/// bounded. This many take a few milliseconds.
+/// Maximum number of crossings, and of Fourier modes, that are added for an edge; the remaining
+/// ones count as an error. So many take a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Fraction of the tolerance up to which a whole sum is left out and only bounded. The same
-/// fraction is allowed for skipped modes. The shares of all kinds of errors add up to less than 1.
+/// Fraction of the tolerance below which a whole sum is left out and counts as an error. Skipped
+/// Fourier modes may have the same fraction. The fractions of all kinds of errors add up to less
+/// than 1.
 const SKIPPED_SHARE: f64 = 0.25;
-/// Fraction of the tolerance for the later terms of X, which are not summed by modes. Measured:
-/// with 0.0125 or 0.2, the running time changes by less than a tenth.
+/// Fraction of the tolerance for the later terms of the series X ([`EdgeSeries`]), which are not
+/// summed by Fourier modes. Not critical: with 0.0125 or 0.2, the measured running time changes by
+/// less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
-/// Work per crossing, in units of about 50 ns.
+/// Work charged per crossing that is added directly, in units of about 50 ns.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
-/// Work per mode, in units of about 50 ns.
+/// Work charged per Fourier mode, in units of about 50 ns.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Computes Σ (−1)^j·X over all crossings of an edge. `tolerance` limits the truncation error.
-/// Returns 0 with a bound if the sum is negligible or the budget does not afford it.
+/// Returns 0 with an upper bound of the sum's absolute value if the sum is negligible or the budget
+/// does not afford it.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -86,8 +91,8 @@ pub(super) fn sum(
         return unknown;
     }
     if all.rise * lines < all.depth {
-        // Here the modes of the sums beyond the two ends do not decay: m does not double between
-        // them.
+        // The modes of an infinite sum from either end would not decay, because m less than doubles
+        // between the ends.
         let sum = level::sum(all, series, trivial, tolerance, budget);
         if sum.bound > tolerance && lines <= MAX_TERMS_ADDED {
             return one_by_one(lines).unwrap_or(sum);
@@ -112,7 +117,7 @@ pub(super) fn sum(
     for (end, crossing) in ends.iter().enumerate() {
         let Some(crossing) = crossing else { continue };
         let rest = receding::sum_from(all, crossing, series, share, budget);
-        // Crossing j has the sign (−1)^j. The second sum, beyond the last crossing, is subtracted.
+        // Crossing j has the sign (−1)^j. The sum beyond the last crossing is subtracted.
         let odd = crossing.floor().1 != (end == 1);
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;
@@ -120,9 +125,9 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns the amplitudes of the first terms of X in the mode n = 1. `first` is the amplitude of a
-/// first term whose factor is 1. `next` derives from the amplitude of each term with the factor 1
-/// that of the next term.
+/// Returns the amplitudes of the first terms of X in the Fourier mode n = 1. `first` is the
+/// amplitude of the first term if its factor is 1. `next` computes from a term's amplitude with the
+/// factor 1 the amplitude of the next term with the factor 1.
 fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f64; MODE_TERMS] {
     let (mut amplitudes, mut unit) = ([0.0; MODE_TERMS], first);
     for (amplitude, factor) in amplitudes.iter_mut().zip(&series.factors[1..=series.terms]) {
@@ -132,10 +137,10 @@ fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f6
     amplitudes
 }
 
-/// Returns the number of the last mode to compute and a bound on the sum of all later modes. A mode
-/// n is at most `size`·n^−3. The later modes sum to less than a quarter of `limit`, unless that
-/// takes more than `MAX_TERMS_ADDED` modes. Returns `None` if the bound is not less than `trivial`,
-/// or if the budget does not afford the modes.
+/// Returns the number of the last Fourier mode to compute, and a bound on the sum of all later
+/// modes. Mode n must be at most `size`·n^−3. The later modes add up to less than a quarter of
+/// `limit`, unless this takes more than [`MAX_TERMS_ADDED`] modes. Returns `None` if the bound is
+/// not less than `trivial`, or if the budget does not afford the modes.
 fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Option<(f64, f64)> {
     // Σ n^−3 over the odd n beyond an integer Q is at most 1/(4Q²).
     let last = ((size / limit).sqrt().ceil() + 1.0).clamp(3.0, MAX_TERMS_ADDED);
@@ -146,13 +151,14 @@ fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Optio
     Some((last, beyond))
 }
 
-/// Returns the mode `n` of the first terms of X, from the terms' amplitudes and from their sums
+/// Returns the Fourier mode `n` of the first terms of X, from the terms' amplitudes and from the
+/// sums
 ///
-/// Σ_j e^(iπnt + iθj)·(w + j)^(−s).
+/// Σ_j e^(iπnt + iθj)·(w + j)^(−s)
 fn mode(n: f64, amplitudes: &[f64; MODE_TERMS], sums: [Complex; MODE_TERMS]) -> f64 {
     let per_mode = 1.0 / n;
     let cube = per_mode * per_mode * per_mode;
-    // These are the imaginary parts of i^−2, i^−3 and i^−4 (which are −1, i and 1) times the sums.
+    // The imaginary parts of the sums times i^−2, i^−3 and i^−4, which are −1, i and 1.
     let [first, second, third] = [-sums[0][1], sums[1][0], sums[2][1]];
     let [a, b, c] = amplitudes;
     cube * (a * first + per_mode * (b * second + per_mode * c * third))

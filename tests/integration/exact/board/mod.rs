@@ -1,4 +1,4 @@
-//! The board near its horizon, and with squares of any size, in ordinary and in extreme views.
+//! The board near its horizon and with squares of any size, in ordinary and in extreme views.
 
 mod extreme;
 mod ordinary;
