@@ -116,7 +116,7 @@ pub struct ExactPixel<const N: usize = 3> {
 /// Integrator that computes the exact pixels of a picture.
 #[derive(Debug)]
 pub struct Integrator<'a, const N: usize = 3> {
-    world: &'a World,
+    pub(crate) world: &'a World,
     quartering: Quartering<'a>,
     /// Values of each colour, by palette slot.
     colors: Vec<[f64; N]>,
@@ -183,11 +183,6 @@ impl<'a, const N: usize> Integrator<'a, N> {
             tolerance: DEFAULT_TOLERANCE,
             work: PictureWork::new(u64::MAX),
         }
-    }
-
-    /// Returns the prepared scene.
-    pub(crate) fn world(&self) -> &World {
-        self.world
     }
 
     /// Sets the requested error bound, as a fraction of the pixel's area.

@@ -78,7 +78,7 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
     control: &Control,
     also: &(dyn Fn(Area, &[ExactPixel<N>]) + Sync),
 ) -> Result<Exact<P>, RenderError> {
-    check_part(part, integrator.world().picture())?;
+    check_part(part, integrator.world.picture())?;
     let exact = Mutex::new(Exact {
         film: Film::new(part.width, part.height)?,
         bounds: vec![0f32; part.pixels() as usize],
