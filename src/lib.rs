@@ -6,7 +6,7 @@
 //! ```
 //! use pinhole::Scene;
 //!
-//! let text = "camera { eye (0, 2, 8)  lookat (0, 1, 0) } sphere { center (0, 1, 0) } checkerboard {}";
+//! let text = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere { center (0, 1, 0) }";
 //! let scene = Scene::parse(text)?.with_set("image.width=160")?.with_set("image.height=90")?;
 //! let picture = scene.render()?;
 //! assert_eq!(picture.to_rgb8().len(), 160 * 90 * 3);
@@ -16,10 +16,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`Scene::parse`] returns the scene, or all [`Mistakes`] of the text, each a [`Diagnostic`] with
-//!   its places and fixes. [`Scene::diagnostics`] has the warnings.
-//! - [`Scene::render`] samples as the scene says; [`Scene::render_exact`] computes each pixel's mean
-//!   with a bound on its error. [`Picture`] has bytes, linear light and files.
+//! - [`Scene::parse`] returns the scene, or all [`Mistakes`] of the text, each a [`Diagnostic`]
+//!   with its places and fixes. [`Scene::diagnostics`] has the warnings.
+//! - [`Scene::render`] samples as the scene says; [`Scene::render_exact`] computes each pixel's
+//!   mean with a bound on its error. [`Picture`] has bytes, linear light and files.
 //! - [`Picture::rmse`] says how much two pictures differ, and [`Scene::grade`] what is wrong with
 //!   the picture of another program.
 //! - [`Scene::data`] is what the text means, as plain data. Change a copy, and

@@ -35,7 +35,8 @@ pub struct Coarse {
 ///
 /// # Errors
 ///
-/// The part does not lie in the picture, there is not enough memory, no thread can be started, or the render was cancelled.
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
+/// the render was cancelled.
 pub fn coarse_to_fine(
     world: &World,
     part: Area,

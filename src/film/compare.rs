@@ -110,8 +110,7 @@ impl Comparison {
     }
 }
 
-/// Compares two pictures. A number that is infinite or NaN differs from any other by infinitely many
-/// steps.
+/// Compares two pictures. A number that is NaN differs from any other by infinitely many steps.
 ///
 /// # Errors
 ///

@@ -14,7 +14,7 @@ use crate::{
 /// A picture in memory: one that was rendered, or one of any program that was read from a file.
 ///
 /// ```
-/// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }  checkerboard {}")?;
+/// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }")?;
 /// let picture = scene.with_set("image.width=80")?.with_set("image.height=45")?.render()?;
 /// assert_eq!((picture.width(), picture.height()), (80, 45));
 /// assert_eq!(picture.to_rgb8().len(), 80 * 45 * 3);
@@ -90,11 +90,12 @@ impl Picture {
     /// channels, in linear light from 0 to 1.
     ///
     /// ```
-    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }  checkerboard {}
-    /// #     image { width 40  height 30 }")?;
+    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+    /// #     checkerboard {}  image { width 40  height 30 }")?;
     /// let exact = scene.render_exact()?.picture;
-    /// let error = |set: &str| Ok::<_, pinhole::Error>(scene.with_set(set)?.render()?.rmse(&exact)?);
-    /// assert!(error("sampler.per_pixel=64")? < error("sampler.per_pixel=4")?);
+    /// let few = scene.with_set("sampler.per_pixel=4")?.render()?;
+    /// let many = scene.with_set("sampler.per_pixel=64")?.render()?;
+    /// assert!(many.rmse(&exact)? < few.rmse(&exact)?);
     /// # Ok::<(), pinhole::Error>(())
     /// ```
     ///
@@ -112,8 +113,8 @@ impl Picture {
     /// ```
     /// # let folder = tempfile::tempdir().unwrap();
     /// # let path = folder.path().join("a.png");
-    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }  checkerboard {}
-    /// #     image { width 40  height 30 }")?;
+    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+    /// #     checkerboard {}  image { width 40  height 30 }")?;
     /// scene.render()?.save(&path)?;
     /// # Ok::<(), pinhole::Error>(())
     /// ```
@@ -165,8 +166,8 @@ impl Picture {
 /// A picture that was computed without samples, with a bound on the error of each pixel.
 ///
 /// ```
-/// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }  checkerboard {}
-/// #     image { width 40  height 30 }")?;
+/// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+/// #     checkerboard {}  image { width 40  height 30 }")?;
 /// let exact = scene.render_exact()?;
 /// let known = exact.picture.pixels().iter().zip(&exact.bounds);
 /// assert!(known.clone().all(|(mean, bound)| mean[0] <= 1.0 && *bound < 1e-9));

@@ -121,7 +121,7 @@ impl Scene {
     }
 
     /// Renders the picture as the scene's sampler says, with all processors. With the method
-    /// `exact`, the picture is computed without samples, as by [`render_exact`](Self::render_exact).
+    /// `exact`, it is computed without samples, as by [`render_exact`](Self::render_exact).
     ///
     /// # Errors
     ///

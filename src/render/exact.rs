@@ -52,7 +52,8 @@ impl<P> Exact<P> {
 ///
 /// # Errors
 ///
-/// The part does not lie in the picture, there is not enough memory, no thread can be started, or the render was cancelled.
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
+/// the render was cancelled.
 pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exact, RenderError> {
     render_exact_as(world, part, control)
 }

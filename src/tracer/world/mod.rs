@@ -68,8 +68,8 @@ struct Nearest<T: Real> {
 }
 
 impl World {
-    /// Checks a scene that was made or changed in code, and prepares it for the sample points of its
-    /// picture.
+    /// Checks a scene that was made or changed in code, and prepares it for the sample points of
+    /// its picture.
     ///
     /// # Errors
     ///
