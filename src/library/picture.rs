@@ -33,8 +33,16 @@ pub struct Picture {
 pub(super) enum Content {
     /// Those of a film that was rendered.
     Rendered(Film),
-    /// Those of a file, and what is known of its coding.
-    Read(Box<film::Picture>, Option<Jpeg>),
+    /// Those of a file.
+    Read(Box<FromFile>),
+}
+
+/// A picture that was read from a file.
+#[derive(Clone, Debug)]
+pub(super) struct FromFile {
+    pub(super) picture: film::Picture,
+    /// The coding of a JPEG file.
+    pub(super) jpeg: Option<Jpeg>,
 }
 
 impl Picture {
@@ -66,7 +74,7 @@ impl Picture {
     pub fn into_pixels(self) -> Vec<[f64; 3]> {
         match self.content {
             Content::Rendered(film) => film.into_pixels(),
-            Content::Read(picture, _) => picture.film.into_pixels(),
+            Content::Read(file) => file.picture.film.into_pixels(),
         }
     }
 
@@ -82,7 +90,7 @@ impl Picture {
     pub fn film(&self) -> &Film {
         match &self.content {
             Content::Rendered(film) => film,
-            Content::Read(picture, _) => &picture.film,
+            Content::Read(file) => &file.picture.film,
         }
     }
 
@@ -149,7 +157,7 @@ impl Picture {
         let sources = self.sources.as_ref()?;
         let crop = match &self.content {
             Content::Rendered(_) => None,
-            Content::Read(picture, _) => picture.crop,
+            Content::Read(file) => file.picture.crop,
         };
         Some(Recipe {
             scene: sources.file.text().to_owned(),
@@ -174,6 +182,7 @@ impl Picture {
 /// # Ok::<(), pinhole::Error>(())
 /// ```
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Exact {
     /// The means.
     pub picture: Picture,

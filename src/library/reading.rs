@@ -2,7 +2,10 @@
 
 use std::{borrow::Cow, path::Path, sync::Arc};
 
-use super::{Error, Picture, Scene, picture::Content};
+use super::{
+    Error, Picture, Scene,
+    picture::{Content, FromFile},
+};
 use crate::{
     cancel, files,
     film::{self, DECODED_LIMIT, Jpeg, Rounding, SizesDiffer},
@@ -38,13 +41,16 @@ impl Picture {
     ///
     /// They are no picture of at most [`DECODED_LIMIT`] decoded bytes.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
-        let picture = Box::new(film::read_picture(bytes)?);
+        let file = FromFile {
+            picture: film::read_picture(bytes)?,
+            jpeg: Jpeg::of(bytes),
+        };
         let sources = film::read_recipe(bytes).ok().map(|recipe| {
-            let file = Source::from_text("scene", recipe.scene);
-            Arc::new(Sources::new(file).with_sets(recipe.overrides))
+            let text = Source::from_text("scene", recipe.scene);
+            Arc::new(Sources::new(text).with_sets(recipe.overrides))
         });
         Ok(Self {
-            content: Content::Read(picture, Jpeg::of(bytes)),
+            content: Content::Read(Box::new(file)),
             sources,
         })
     }
@@ -52,7 +58,7 @@ impl Picture {
     /// Returns the picture as it would be read from a file that rounds nothing.
     fn as_read(&self) -> (Cow<'_, film::Picture>, Option<Jpeg>) {
         match &self.content {
-            Content::Read(picture, jpeg) => (Cow::Borrowed(picture), *jpeg),
+            Content::Read(file) => (Cow::Borrowed(&file.picture), file.jpeg),
             Content::Rendered(film) => {
                 let picture = film::Picture::new(film.clone(), Rounding::Float);
                 (Cow::Owned(picture), None)

@@ -253,7 +253,7 @@ fn errors_name_the_file_and_the_reason() {
         ),
         (
             Picture::open(path("none.png")).unwrap_err(),
-            "cannot read none.png: there is no such file",
+            "cannot read none.png: there is no such file or folder",
         ),
         (
             Picture::open(path("text.png")).unwrap_err(),

@@ -50,8 +50,10 @@ fn data_that_break_a_condition_are_no_scene() {
         ("`d` must be more than 0", |it| {
             it.camera.lens = Lens::Distance(0.0)
         }),
-        ("`up` must not be zero", |it| it.camera.up = DVec3::ZERO),
-        ("`direction` must not be zero", |it| {
+        ("`up` must be other than (0, 0, 0)", |it| {
+            it.camera.up = DVec3::ZERO
+        }),
+        ("`direction` must be other than", |it| {
             it.camera.view = View::Direction(DVec3::ZERO);
         }),
         ("`width` must be at least 1", |it| it.image.width = 0),
