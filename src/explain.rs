@@ -9,6 +9,9 @@
 /// The reference of the language, as Markdown.
 pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 
+/// The words of sampling, as Markdown: a section for each word and for each method.
+pub const SAMPLING: &str = include_str!("../grammar/sampling.md");
+
 /// Guide, as Markdown, for converting scenes of programs with left-handed coordinates or with z
 /// upwards.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
@@ -103,21 +106,38 @@ pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("horizon", "objects"),
     ("gradient", "limits: A texture"),
     ("antialiasing", "samples"),
+    ("strata", "stratum"),
+    ("stratified", "stratum"),
+    ("stratification", "stratum"),
+    ("monte_carlo", "monte carlo"),
+    ("moire", "moiré"),
+    ("jaggies", "aliasing"),
+    ("stairs", "aliasing"),
+    ("alias", "aliasing"),
+    ("grain", "noise"),
+    ("error", "rmse"),
+    ("convergence", "slope"),
     ("handedness", "left_handed"),
     ("for loop", "repetition"),
     ("ball.x", "limits: A part of a vector"),
 ];
 
-/// Returns the section of the reference with a heading, ignoring case; `None` if there is none.
+/// Returns the section with a heading, ignoring case, from the reference or from the words of
+/// sampling; `None` if there is none.
 pub fn section(heading: &str) -> Option<&'static str> {
+    section_of(LANGUAGE, heading).or_else(|| section_of(SAMPLING, heading))
+}
+
+/// Returns the section of a text in Markdown with a heading, ignoring case; `None` if there is none.
+pub fn section_of(text: &'static str, heading: &str) -> Option<&'static str> {
     let is_heading = |line: &str| line.starts_with("## ");
     let mut start = None;
     let (mut offset, mut is_scene) = (0, false);
-    for line in LANGUAGE.split_inclusive('\n') {
+    for line in text.split_inclusive('\n') {
         is_scene ^= line.starts_with("```");
         if !is_scene && is_heading(line) {
             if let Some(start) = start {
-                return LANGUAGE.get(start..offset).map(str::trim_end);
+                return text.get(start..offset).map(str::trim_end);
             }
             let words = line.trim_start_matches('#').trim();
             if words.eq_ignore_ascii_case(heading) {
@@ -126,7 +146,7 @@ pub fn section(heading: &str) -> Option<&'static str> {
         }
         offset += line.len();
     }
-    start.and_then(|start| LANGUAGE.get(start..).map(str::trim_end))
+    start.and_then(|start| text.get(start..).map(str::trim_end))
 }
 
 /// Returns a part of the section `heading`: its heading, the item or paragraph that starts with
@@ -149,9 +169,9 @@ pub fn part(heading: &str, words: &str) -> Option<String> {
     ))
 }
 
-/// Returns the headings of the reference's sections.
+/// Returns the headings of the sections of the reference and of the words of sampling.
 pub fn headings() -> impl Iterator<Item = &'static str> {
-    let lines = LANGUAGE.lines();
+    let lines = LANGUAGE.lines().chain(SAMPLING.lines());
     lines.filter_map(|line| line.strip_prefix("## "))
 }
 

@@ -75,7 +75,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     if explain::page(trimmed).is_none()
         && let Some(page) = describe::word(trimmed).or_else(field)
     {
-        return Ok(page.into());
+        return Ok(with_reasons(page, trimmed).into());
     }
     let of_vector = trimmed
         .rsplit_once('.')
@@ -128,6 +128,15 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     Err(Trouble(format!("nothing is known about `{word}`: {hint}")))
 }
 
+/// Appends to a page why the method is good at what it is good at, if `word` is a method.
+fn with_reasons(page: String, word: &str) -> String {
+    let section = schema::method(word).and_then(|_| explain::section_of(explain::SAMPLING, word));
+    match section.and_then(|section| section.split_once("\n\n")) {
+        Some((_, reasons)) => format!("{page}\n{reasons}\n"),
+        None => page,
+    }
+}
+
 /// Returns all codes with the titles of their pages, grouped by subject.
 fn list(headings: Headings) -> String {
     let width = explain::pages().map(|page| page.code.len()).max();
@@ -146,14 +155,16 @@ fn list(headings: Headings) -> String {
     text
 }
 
-/// Lays out a page for a terminal: scenes are indented, and lines are wrapped.
+/// Lays out a page for a terminal: scenes are indented, lines are wrapped, and pictures are left
+/// out.
 fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut text = String::new();
     let mut paragraph = String::new();
     let mut is_scene = false;
     // An empty line is added at the end, which closes the last paragraph.
     let mut rows: Vec<Vec<&str>> = Vec::new();
-    let lines = page.lines().map(without_targets).collect::<Vec<_>>();
+    let lines = page.lines().filter(|line| !line.starts_with("!["));
+    let lines = lines.map(without_targets).collect::<Vec<_>>();
     for line in lines.iter().map(String::as_str).chain([""]) {
         if !is_scene && line.starts_with('|') {
             rows.push(cells(line));
@@ -171,7 +182,10 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
         } else if line.is_empty() {
             push_wrapped(&mut text, &paragraph, width);
             paragraph.clear();
-            text.push('\n');
+            // A picture that was left out leaves one empty line, not two.
+            if !text.ends_with("\n\n") {
+                text.push('\n');
+            }
         } else {
             if line.starts_with("- ") {
                 push_wrapped(&mut text, &paragraph, width);
@@ -308,8 +322,10 @@ mod tests {
 
     #[test]
     fn the_reference_fits_terminals() {
+        let (_, sampling) = explain::SAMPLING.split_once("\n\n").unwrap();
+        let text = format!("{}\n{sampling}", explain::LANGUAGE);
         for width in [20, 40, 60, 80, WIDEST] {
-            let text = drawn(explain::LANGUAGE, width, Headings::Plain);
+            let text = drawn(&text, width, Headings::Plain);
             let is_heading = |line: &str| explain::headings().any(|heading| heading == line);
             let mut lines = text
                 .lines()
@@ -336,7 +352,17 @@ mod tests {
         }
         for heading in explain::headings() {
             let found = page(heading).unwrap();
-            assert!(found.starts_with(&format!("## {heading}\n")), "{heading}");
+            let is_method = schema::method(heading).is_some();
+            let level = if is_method { "#" } else { "##" };
+            assert!(
+                found.starts_with(&format!("{level} {heading}\n")),
+                "{heading}"
+            );
+        }
+        // Each method says what it is, shows how it is written, and says why it is good.
+        for method in schema::method_names() {
+            let page = page(method).unwrap();
+            assert!(page.matches("\n\n").count() == 3, "{page}");
         }
         // A word of the language explains itself, even if it is also another program's name for
         // something else.

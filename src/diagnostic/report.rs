@@ -87,8 +87,9 @@ impl<'s> Report<'s> {
         Self { sources, style }
     }
 
-    /// Returns the reports, separated by empty lines, and a summary of their number. Returns an
-    /// empty text if there are no diagnostics.
+    /// Returns the reports, separated by empty lines, and a summary of their number. Errors come
+    /// before warnings, since a warning may be a consequence of an error; within both, the order
+    /// is that of `diagnostics`. Returns an empty text if there are no diagnostics.
     pub fn human(&self, diagnostics: &[Diagnostic]) -> String {
         if diagnostics.is_empty() {
             return String::new();
@@ -100,7 +101,9 @@ impl<'s> Report<'s> {
         } else {
             Self::FIRST_SHOWN
         };
-        for diagnostic in &diagnostics[..shown] {
+        let mut ordered: Vec<_> = diagnostics.iter().collect();
+        ordered.sort_by_key(|diagnostic| diagnostic.severity != Severity::Error);
+        for diagnostic in &ordered[..shown] {
             text.push_str(&self.one(diagnostic));
             text.push('\n');
         }
@@ -115,7 +118,7 @@ impl<'s> Report<'s> {
         if !are_all {
             text.push_str(&counts(diagnostics));
         }
-        if let Some(first) = diagnostics.first() {
+        if let Some(first) = ordered.first() {
             let which = match diagnostics.len() {
                 1 => "it",
                 _ => "the first",

@@ -40,6 +40,10 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 /// costs 6. A label is placed where its total cost is least.
 const MARK: f64 = 40.0;
 
+/// Cost of a label over each of the diagonals that stand for a filled polygon. A label leaves the
+/// polygon if there is room near it.
+const FILL: f64 = 7.0;
+
 /// A drawing that is being built.
 pub struct Canvas {
     size: DVec2,
@@ -71,6 +75,10 @@ impl Canvas {
 
     /// Fills a polygon with a colour of the scene.
     pub fn fill(&mut self, class: &str, color: Color, points: &[DVec2]) {
+        let half = points.len() / 2;
+        let diagonals = (0..half).step_by((half / 4).max(1));
+        let diagonals = diagonals.map(|at| ([points[at], points[at + half]], FILL));
+        self.obstacles.extend(diagonals);
         self.path(class, points, &format!(" style=\"fill:{color}\""));
     }
 

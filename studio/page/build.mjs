@@ -52,6 +52,13 @@ const policy = [
 ].join("; ");
 // The page contains the reference of the language, without its links, which would leave the page.
 const renderer = new Renderer();
+// Figures are part of the served page, which loads no other file. The static page has no room for
+// them.
+renderer.image = ({ href, text }) => {
+  if (host === "static") return "";
+  const svg = readFileSync(path.join("../../grammar", href), "utf8").replaceAll("\n", "");
+  return `<img src="data:image/svg+xml,${encodeURIComponent(svg)}" alt="${text}">`;
+};
 renderer.link = function ({ tokens }) { return this.parser.parseInline(tokens); };
 renderer.heading = function ({ tokens, depth }) { return `<h${depth + 2}>${this.parser.parseInline(tokens)}</h${depth + 2}>`; };
 // The end of the reference is left out, from the section on overrides on. It is about the command

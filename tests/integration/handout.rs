@@ -1,10 +1,71 @@
-//! The handout's reference card has the same content as the tables of the language.
+//! The handout: its card is made of the language's own table, and its page of the handout's files.
 
-use std::path::Path;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use pinhole::schema::{BLOCKS, FUNCTIONS, METHODS, Preset};
+use pulldown_cmark::{Event, Options, Parser, Tag, html};
 
 use crate::snapshot::assert_file;
+
+/// Files of the handout, in the order in which they are read.
+const PAGES: [&str; 7] = [
+    "README",
+    "camera",
+    "pixel",
+    "error",
+    "right",
+    "questions",
+    "card",
+];
+
+fn path(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/handout");
+    folder.join(name)
+}
+
+/// The handout as one HTML page, which prints as a booklet. Links between its files become links
+/// within the page, and links to other documents lead out of the folder as before.
+#[test]
+fn the_page_is_that_of_the_files() {
+    let mut page = String::from(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+        <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+        <title>Pinhole: a handout</title>\n<link rel=\"stylesheet\" href=\"handout.css\">\n</head>\n<body>\n<main>\n",
+    );
+    for name in PAGES {
+        let text = fs::read_to_string(path(&format!("{name}.md"))).unwrap();
+        let events = Parser::new_ext(&text, Options::ENABLE_TABLES).map(|event| match event {
+            Event::Start(Tag::Link {
+                link_type,
+                dest_url,
+                title,
+                id,
+            }) => {
+                let target = dest_url.strip_suffix(".md").unwrap_or_default();
+                let dest_url = if PAGES.contains(&target) {
+                    format!("#{target}").into()
+                } else {
+                    dest_url
+                };
+                Event::Start(Tag::Link {
+                    link_type,
+                    dest_url,
+                    title,
+                    id,
+                })
+            }
+            event => event,
+        });
+        page += &format!("<section id=\"{name}\">\n");
+        html::push_html(&mut page, events);
+        page += "</section>\n";
+    }
+    page += "</main>\n</body>\n</html>\n";
+    assert_file(&path("handout.html"), &page);
+}
 
 #[test]
 fn the_card_is_that_of_the_schema() {
@@ -53,6 +114,5 @@ fn the_card_is_that_of_the_schema() {
         `sphere Bead for i < 8 { center (i, 0, 0) }`. Vectors are `(x, y, z)`, colours CSS names, `#rrggbb` or `rgb(255, 165, 0)`. \
         Operators are `+ - * /`. \
         Comments are `// …` and `/* … */`. [The reference](../../grammar/language.md) has the rest.\n";
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/handout/card.md");
-    assert_file(&path, &card);
+    assert_file(&path("card.md"), &card);
 }

@@ -14,12 +14,13 @@ use crate::{
 };
 
 /// Documents whose `console` blocks are run and whose `scn` blocks are checked.
-const DOCUMENTS: [&str; 9] = [
+const DOCUMENTS: [&str; 10] = [
     "README.md",
     "docs/accuracy.md",
     "docs/handout/camera.md",
     "docs/handout/error.md",
     "docs/handout/pixel.md",
+    "docs/handout/questions.md",
     "docs/handout/right.md",
     "docs/speed.md",
     "docs/teaching.md",

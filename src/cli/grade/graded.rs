@@ -88,8 +88,11 @@ impl JudgedPicture {
         rmse.unwrap_or_default()
     }
 
+    /// Returns the number of independent samples per pixel that would be as noisy. Returns `None` if
+    /// the picture is wrong, because its mistakes would count as noise.
     pub fn samples(&self) -> Option<f64> {
-        self.fields.get("samples_per_pixel")?.as_f64()
+        let samples = self.fields.get("samples_per_pixel")?.as_f64();
+        samples.filter(|_| self.is_right())
     }
 
     /// Returns the share of the difference that neither the mistakes nor the guesses explain.

@@ -25,19 +25,19 @@ pub fn page(scene: &str, graded: &[GradedStudent], total: Option<f64>) -> String
     let scene = escaped(scene);
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>Pictures of {scene}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<h1>Pictures of {scene}</h1>\n{}{}",
+         <title>Pictures of {scene}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<main>\n<h1>Pictures of {scene}</h1>\n{}{}",
         summary(graded),
         mistakes(graded) + &equal(graded)
     );
     html += &format!(
-        "<p class=\"hint\">Press a picture to see it beside the exact one; the map of differences is {HEAT_LEGEND}. Press a heading to sort.</p>\n\
+        "<p class=\"hint\">Below a picture stands the map of its differences from the exact one ({HEAT_LEGEND}). Press a picture to see it in full, and a heading to sort. Error: root mean square difference from the exact picture, in linear light. Samples: as many independent random samples in each pixel would be as noisy; a wrong picture has no such number.</p>\n\
          <table>\n<thead><tr>{}</tr></thead>\n<tbody>\n",
         headings(total)
     );
     for (index, one) in graded.iter().enumerate() {
         html += &row(index, one, total.is_some());
     }
-    html + "</tbody>\n</table>\n<dialog aria-label=\"a picture beside the exact one\"><form method=\"dialog\"><h2></h2><button autofocus>close</button></form><div></div></dialog>\n\
+    html + "</tbody>\n</table>\n</main>\n<dialog aria-label=\"a picture beside the exact one\"><form method=\"dialog\"><h2></h2><button autofocus>close</button></form><div></div></dialog>\n\
             <script>\n"
         + SCRIPT
         + "</script>\n</body>\n</html>\n"
@@ -178,7 +178,7 @@ fn thumbnail(index: usize, name: &str, judged: &JudgedPicture) -> String {
     let [small, small_heat] = &pictures.thumbnails;
     format!(
         "<button type=\"button\" class=\"open\" data-name=\"{name}\" data-picture=\"{whole}\" data-exact=\"{exact}\" data-difference=\"{heat}\">\
-         <img alt=\"the picture of {name}, larger\" src=\"{small}\"><img alt=\"\" class=\"heat\" src=\"{small_heat}\"></button>"
+         <img alt=\"the picture of {name}, larger\" src=\"{small}\"><img alt=\"where it differs from the exact picture\" src=\"{small_heat}\"></button>"
     )
 }
 

@@ -2,8 +2,8 @@
 //! methods by CPU time.
 
 use super::{
-    results::{Measurement, MethodSeries, Run, SeriesPoint},
-    statistics::PowerLaw,
+    results::{Measurement, MethodSeries, Run, SeriesPoint, end},
+    statistics,
 };
 use crate::scene::Method;
 
@@ -98,10 +98,8 @@ impl MethodSeries {
     /// reduce the error.
     ///
     /// Errors are assumed to fall as a power of the number of samples. Between two measured
-    /// numbers, the power is the slope of the line through both points, in logarithms. Beyond the
-    /// last, it is the slope of the line through the last three points. (With few samples, errors
-    /// may fall at another rate, because `scatter` then leaves pixels empty.) Times are assumed to
-    /// grow linearly with the number of samples.
+    /// numbers, the power is that of the line through both in logarithms. Beyond the last, it is
+    /// the slope at the [`end`]. Times are assumed to grow linearly with the samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));
@@ -127,9 +125,10 @@ impl MethodSeries {
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
-                let many = &steps[steps.len().saturating_sub(3)..];
-                let errors = many.iter().map(|(per_pixel, run)| (*per_pixel, run.error));
-                let slope = PowerLaw::fit(&errors.collect::<Vec<_>>())?.slope;
+                let errors = end(steps)
+                    .iter()
+                    .map(|(per_pixel, run)| (*per_pixel, run.error));
+                let slope = statistics::slope(&errors.collect::<Vec<_>>())?;
                 let more = libm::pow(error / last_run.error, 1.0 / slope);
                 (slope < 0.0).then(|| (last * more).ceil())?
             }

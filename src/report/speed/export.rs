@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::{
     estimate::Estimate,
-    results::{Measurement, MethodSeries, Run},
+    results::{EndSlope, Measurement, MethodSeries, Run, end},
     summary::verdicts,
 };
 
@@ -33,13 +33,13 @@ struct CsvRow {
 pub fn to_csv(measured: &Measurement) -> io::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for series in &measured.series {
-        let fit = series.fit();
+        let slope = series.slope();
         for point in &series.points {
             writer.serialize(CsvRow {
                 per_pixel: Some(point.per_pixel),
                 rmse: Some(point.typical().error),
-                slope: fit.map(|fit| fit.slope),
-                slope_error: fit.and_then(|fit| fit.slope_error),
+                slope: slope.map(|it| it.slope),
+                slope_error: slope.and_then(|it| it.error),
                 ..row(series.method.name(), &point.runs)
             })?;
         }
@@ -103,6 +103,7 @@ pub fn to_json(measured: &Measurement) -> Value {
             "bound": reference.bound(),
             "root_mean_square_bound": reference.root_mean_square_bound(),
         },
+        "mixed_pixels": {"edges": measured.mixture.edges, "board": measured.mixture.board},
         "exact": exact,
         "methods": measured.series.iter().map(method).collect::<Vec<_>>(),
         "verdicts": verdicts(measured),
@@ -110,7 +111,13 @@ pub fn to_json(measured: &Measurement) -> Value {
 }
 
 fn of_series(measured: &Measurement, series: &MethodSeries) -> Value {
-    let fit = series.fit();
+    let slope = |found: EndSlope| {
+        json!({
+            "slope": found.slope,
+            "slope_error": found.error,
+            "per_pixel": end(&series.points).iter().map(|point| point.per_pixel).collect::<Vec<_>>(),
+        })
+    };
     let needed = measured.errors.iter().map(|&error| {
         let estimate = measured.estimate(series, error);
         let number = |pick: fn(&Estimate) -> f64| estimate.as_ref().map(pick);
@@ -132,7 +139,7 @@ fn of_series(measured: &Measurement, series: &MethodSeries) -> Value {
     json!({
         "method": series.method.name(),
         "measured": points.collect::<Vec<_>>(),
-        "fit": fit.map(|fit| json!({"slope": fit.slope, "slope_error": fit.slope_error})),
+        "fit": series.slope().map(slope),
         "needed": needed.collect::<Vec<_>>(),
     })
 }

@@ -11,8 +11,10 @@ mod estimate;
 mod export;
 mod line_style;
 mod machine;
+mod mixture;
 mod notation;
 mod page;
+mod reasons;
 mod results;
 mod session;
 pub mod statistics;
@@ -24,8 +26,12 @@ pub use self::{
     estimate::Estimate,
     export::{to_csv, to_json},
     machine::Machine,
+    mixture::Mixture,
     page::page,
-    results::{MeasuredScene, Measurement, MethodPicture, MethodSeries, Request, Run, SeriesPoint},
+    results::{
+        EndSlope, MeasuredScene, Measurement, MethodPicture, MethodSeries, Request, Run,
+        SeriesPoint,
+    },
     session::measure,
     summary::verdict,
     text::text,

@@ -1,6 +1,6 @@
 //! Formats of errors, times, numbers of samples and slopes.
 
-use super::{estimate::Estimate, statistics::PowerLaw};
+use super::{estimate::Estimate, results::EndSlope};
 use crate::numbers;
 
 /// Mark in place of an unknown number.
@@ -56,15 +56,30 @@ pub fn samples(estimate: &Estimate) -> String {
     }
 }
 
-/// Formats the slope of a fit with its standard error, if it has one.
-pub fn slope(fit: Option<PowerLaw>) -> String {
-    let signed = |number: f64| format!("{number:.3}").replace('-', "−");
-    match fit {
+/// Formats a slope with its standard error, if it has one.
+pub fn slope(slope: Option<EndSlope>) -> String {
+    let signed = |number: f64| format!("{number:.2}").replace('-', "−");
+    match slope {
         None => UNKNOWN.to_owned(),
-        Some(fit) => match fit.slope_error {
-            None => signed(fit.slope),
-            Some(error) => format!("{} ± {error:.3}", signed(fit.slope)),
+        Some(EndSlope { slope, error }) => match error {
+            None => signed(slope),
+            Some(error) => format!("{} ± {error:.2}", signed(slope)),
         },
+    }
+}
+
+/// Formats a factor with two significant digits; a factor that is not known or beyond 10⁶ becomes
+/// [`UNKNOWN`].
+pub fn factor(factor: Option<f64>) -> String {
+    let known = factor.filter(|factor| *factor <= 1e6);
+    known.map_or(UNKNOWN.to_owned(), |factor| significant(factor, 2))
+}
+
+/// Formats a share, 0 to 1, as a percentage with two significant digits.
+pub fn percent(share: f64) -> String {
+    match share {
+        0.0 => "none".to_owned(),
+        _ => format!("{} %", significant(100.0 * share, 2)),
     }
 }
 

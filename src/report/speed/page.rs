@@ -11,12 +11,13 @@ use upon::{Engine, Value, fmt, value};
 use super::{
     chart::{against_samples, against_time, shown_errors},
     notation::{error, plural, seconds},
+    reasons::reasons,
     results::{Measurement, MethodPicture, Run},
     summary::{heading, notes, printable, table, verdicts},
 };
 use crate::{
     diagnostic::escaped,
-    film::{self, Film},
+    film::{self, Film, HEAT_LEGEND},
 };
 
 /// Maximum width and height of the whole picture on the page, in pixels. A larger picture is
@@ -53,7 +54,7 @@ fn write_escaped(out: &mut fmt::Formatter<'_>, value: &Value) -> fmt::Result {
 fn section(measured: &Measurement) -> io::Result<Value> {
     let summary = table(measured, &measured.errors);
     let overrides = measured.subject.overrides.iter().map(|set| printable(set));
-    let fits = || measured.series.iter().filter_map(|series| series.fit());
+    let slopes = || measured.series.iter().filter_map(|series| series.slope());
     let charts = if measured.series.is_empty() {
         Vec::new()
     } else {
@@ -72,11 +73,13 @@ fn section(measured: &Measurement) -> io::Result<Value> {
         charts: charts,
         has_dashed_lines: !shown_errors(measured).is_empty(),
         has_exact: measured.exact.is_some(),
-        has_slopes: fits().next().is_some(),
-        has_slope_errors: fits().any(|fit| fit.slope_error.is_some()),
-        heads: summary.heads,
+        has_slopes: slopes().next().is_some(),
+        has_slope_errors: slopes().any(|slope| slope.error.is_some()),
+        heads: summary.heads.iter().map(|head| head.replace('\n', " ")).collect::<Vec<_>>(),
         rows: summary.rows,
         notes: notes(measured),
+        reasons: reasons(measured),
+        legend: HEAT_LEGEND,
         part: part,
         only_method: only_method,
         pictures: pictures,
@@ -105,7 +108,7 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let time = time.map_or(String::new(), |times| {
         format!(", {}", seconds(Run::typical(times).cpu, 2))
     });
-    let mut pictures = vec![picture(&exact, "exact", format!("no error{time}"))?];
+    let mut pictures = vec![picture(&exact, None, "exact", format!("no error{time}"))?];
     for (name, shown) in shown {
         let about = format!(
             "error {}, {}, {} per pixel",
@@ -113,7 +116,7 @@ fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
             seconds(shown.cpu, 2),
             plural(shown.per_pixel as usize, "sample")
         );
-        pictures.push(picture(&shown.film, name, about)?);
+        pictures.push(picture(&shown.film, Some(&shown.difference), name, about)?);
     }
     let part = format!(
         "{} × {} pixels, {} from the left and {} from the top, where {first} errs most",
@@ -130,9 +133,21 @@ fn whole(measured: &Measurement) -> io::Result<Value> {
     } else {
         format!("the whole picture, reduced to {width} × {height} pixels")
     };
-    picture(&film, "the exact picture as a whole", about)
+    picture(&film, None, "the exact picture as a whole", about)
 }
 
-fn picture(film: &Film, name: &str, about: String) -> io::Result<Value> {
-    Ok(value! { uri: film::data_uri(film)?, name: name, about: about })
+/// Number of times that a part of a picture is magnified.
+const MAGNIFIED: u32 = 5;
+
+/// Returns the values of a figure: a picture and, below it, its difference from the exact one.
+fn picture(film: &Film, difference: Option<&Film>, name: &str, about: String) -> io::Result<Value> {
+    let difference = difference.map(film::data_uri).transpose()?;
+    Ok(value! {
+        uri: film::data_uri(film)?,
+        difference: difference.unwrap_or_default(),
+        width: MAGNIFIED * film.width(),
+        height: MAGNIFIED * film.height(),
+        name: name,
+        about: about,
+    })
 }

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use super::{
     machine::Machine,
-    statistics::{PowerLaw, median, root_mean_square},
+    mixture::Mixture,
+    statistics::{self, median, root_mean_square, standard_error},
 };
 use crate::{area::Area, film::Film, render::Exact, scene::Method};
 
@@ -49,6 +50,8 @@ pub struct Measurement {
     pub errors: Vec<f64>,
     /// The exact picture, with which all renders are compared.
     pub reference: Exact,
+    /// Pixels in which methods can err.
+    pub mixture: Mixture,
     /// Renders by the exact method, if it was requested.
     pub exact: Option<Vec<Run>>,
     /// Results of the sampled methods, in the order of the methods in the language's reference.
@@ -78,6 +81,42 @@ pub struct SeriesPoint {
     pub runs: Vec<Run>,
 }
 
+/// The slope of a method's error against samples, both logarithmic, at the [`end`] of its series.
+/// The error falls as the power `slope` of the number of samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndSlope {
+    /// Slope of the line of least squares.
+    pub slope: f64,
+    /// Standard error of the slope, from the slopes of single runs; `None` for fewer than three
+    /// runs.
+    pub error: Option<f64>,
+}
+
+impl EndSlope {
+    /// Minimum steepness for which more samples are said to help, so that measured noise is not
+    /// taken for a slope.
+    const LEAST: f64 = 0.05;
+
+    /// Returns by how much four times the samples divide the error, 4^−b. Returns `None` if more
+    /// samples do not help.
+    pub fn divisor(&self) -> Option<f64> {
+        (self.slope < -Self::LEAST).then(|| libm::pow(4.0, -self.slope))
+    }
+
+    /// Returns by how much the samples must be multiplied for a tenth of the error, 10^(−1/b).
+    /// Returns `None` if more samples do not help.
+    pub fn cost_of_a_tenth(&self) -> Option<f64> {
+        (self.slope < -Self::LEAST).then(|| libm::pow(10.0, -1.0 / self.slope))
+    }
+}
+
+/// Returns the last three of a method's results, or all if there are fewer. With few samples,
+/// errors may fall at another rate than later: `scatter` then leaves pixels empty, and `n_rooks`
+/// falls as steeply as strata in two dimensions, but ends like independent samples.
+pub fn end<T>(points: &[T]) -> &[T] {
+    &points[points.len().saturating_sub(3)..]
+}
+
 /// A timed render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
@@ -104,6 +143,8 @@ pub struct MethodPicture {
     pub part: Area,
     /// Pixels of `part`.
     pub film: Film,
+    /// Difference of that part from the exact picture, as a heat map.
+    pub difference: Film,
 }
 
 impl Run {
@@ -126,12 +167,20 @@ impl SeriesPoint {
 }
 
 impl MethodSeries {
-    /// Fits the error as a power of the number of samples. Returns `None` if fewer than two numbers
-    /// of samples were measured, or if an error is 0.
-    pub fn fit(&self) -> Option<PowerLaw> {
-        let place = |point: &SeriesPoint| (point.per_pixel as f64, point.typical().error);
-        let points: Vec<_> = self.points.iter().map(place).collect();
-        PowerLaw::fit(&points)
+    /// Returns the slope of the error at the end of the series. Returns `None` if fewer than two
+    /// numbers of samples were measured, or an error is 0.
+    pub fn slope(&self) -> Option<EndSlope> {
+        let slope = |error: &dyn Fn(&SeriesPoint) -> f64| {
+            let points = end(&self.points).iter();
+            let points = points.map(|point| (point.per_pixel as f64, error(point)));
+            statistics::slope(&points.collect::<Vec<_>>())
+        };
+        let runs = end(&self.points).iter().map(|point| point.runs.len()).min();
+        let of_each = (0..runs?).filter_map(|run| slope(&|point| point.runs[run].error));
+        Some(EndSlope {
+            slope: slope(&|point| point.typical().error)?,
+            error: standard_error(&of_each.collect::<Vec<_>>()),
+        })
     }
 
     /// Returns the samples per pixel that take the CPU time `cpu`, by linear interpolation between

@@ -17,11 +17,12 @@ use rand::seq::SliceRandom;
 
 use super::{
     machine::Machine,
+    mixture::Mixture,
     results::{MeasuredScene, Measurement, MethodPicture, MethodSeries, Request, Run, SeriesPoint},
 };
 use crate::{
     area::Area,
-    film::{self, Film, TooLarge},
+    film::{self, Film, Tolerance, TooLarge},
     render::{Control, RenderError, Rendered, render_as_asked, render_exact},
     sampling::{Sampling, rng::Key},
     scene::{Count, Method, Sampler, Scene},
@@ -82,6 +83,7 @@ pub fn measure(
         exact: (request.methods.contains(&Method::Exact)).then(Vec::new),
         series: series.collect(),
         reference,
+        mixture: Mixture::of(scene),
         interrupted: false,
     };
     let mut session = Benchmark {
@@ -236,14 +238,23 @@ impl Benchmark<'_> {
             let (film, reference) = (made.film(), &measured.reference.film);
             let part = match part {
                 Some(part) => part,
-                None => *part.insert(worst_part(film, reference)?),
+                None => *part.insert(worst_part(&World::new(self.scene), film, reference)?),
             };
+            let [shown, exact] = [film.part(part)?, reference.part(part)?];
             series.picture = Some(MethodPicture {
                 per_pixel,
                 cpu: run.cpu,
                 rmse: error_of(film, reference),
                 part,
-                film: film.part(part)?,
+                difference: film::heat_map(
+                    &shown,
+                    &exact,
+                    Tolerance {
+                        steps: 0.0,
+                        bounds: None,
+                    },
+                )?,
+                film: shown,
             });
         }
         Ok(())
@@ -290,26 +301,42 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// Maximum width and height of the part of a picture that a page shows for each method, in pixels.
-/// Several parts fit side by side, and are not reduced, so that the noise of single samples is
-/// visible.
-const PART: (u32, u32) = (240, 135);
+/// Maximum width and height of the part that is shown, in pixels. The page magnifies it so that
+/// single pixels are seen, and several parts stand side by side.
+const PART: (u32, u32) = (48, 27);
 
-/// Returns the part of a picture with the greatest error. The parts that are compared are half
-/// their size apart.
-fn worst_part(film: &Film, reference: &Film) -> Result<Area, TooLarge> {
-    let (width, height) = (film.width().min(PART.0), film.height().min(PART.1));
+/// Minimum share of a part's pixels that show another object than the rest, so that an edge is
+/// seen in it.
+const OTHER_OBJECT: f64 = 0.1;
+
+/// Returns the part of a picture that shows most of a method's errors: one without sky and with an
+/// edge of an object if there is one, otherwise one without sky, otherwise any, and of these the
+/// one with the greatest error. Parts are compared in steps of half of their size.
+fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge> {
+    let whole = world.picture();
+    let (width, height) = (whole.width.min(PART.0), whole.height.min(PART.1));
+    let objects: Vec<_> = whole.iter().map(|(x, y)| world.object_at(x, y)).collect();
     let places = |length: u32, size: u32| {
         let last = length - size;
         (0..last).step_by((size / 2).max(1) as usize).chain([last])
     };
-    let (mut worst, mut most) = (Area::whole(width, height), 0.0);
-    for y in places(film.height(), height) {
-        for x in places(film.width(), width) {
+    let (mut worst, mut most) = (Area::whole(width, height), (0, 0.0));
+    for y in places(whole.height, height) {
+        for x in places(whole.width, width) {
             let part = Area { x, y, ..worst };
-            let error = error_of(&film.part(part)?, &reference.part(part)?);
-            if error > most {
-                (worst, most) = (part, error);
+            let error = error_of(&film.part(part)?, &exact.part(part)?);
+            let mut seen: Vec<_> = part
+                .iter()
+                .map(|(x, y)| objects[whole.index(x, y)])
+                .collect();
+            seen.sort_unstable();
+            let has_no_sky = seen[0].is_some() && error > 0.0;
+            let runs = seen.chunk_by(|a, b| a == b).map(<[_]>::len);
+            let others = seen.len() - runs.max().unwrap_or(0);
+            let has_edge = others as f64 >= OTHER_OBJECT * seen.len() as f64;
+            let rank = u8::from(has_no_sky) + u8::from(has_no_sky && has_edge);
+            if (rank, error) > most {
+                (worst, most) = (part, (rank, error));
             }
         }
     }

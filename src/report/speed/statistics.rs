@@ -1,4 +1,4 @@
-//! The median, the root mean square, and the line of least squares.
+//! The median, the root mean square, the line of least squares, and the standard error of a mean.
 
 /// Returns the median of `values`, which may be in any order. For an even number of values, it is
 /// the mean of the middle two. Returns NaN if there are none.
@@ -18,44 +18,30 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
     (squares / values.len() as f64).sqrt()
 }
 
-/// A power law y = c·x^b, fitted by least squares as a line through the logarithms of the points.
+/// Returns the exponent b of a power law y = c·x^b through the points (x, y): the slope of the line
+/// of least squares through their logarithms,
 ///
-/// With k points, x̄ and ȳ the means of the logarithms, r the residuals, and S = Σ(x − x̄)², the
-/// slope and its standard error are
+/// b = Σ(x − x̄)·(y − ȳ)/Σ(x − x̄)²,
 ///
-/// slope: b = Σ(x − x̄)·(y − ȳ)/S, standard error: √(Σr²/(k − 2)/S)
-///
-/// (Draper and Smith, *Applied Regression Analysis*, 3rd ed. 1998, section 1.4).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PowerLaw {
-    /// Exponent b, the slope of the line.
-    pub slope: f64,
-    /// Standard error of b; `None` for fewer than four points. With three points and two fitted
-    /// parameters, only one degree of freedom is left, and the standard error would mean next to
-    /// nothing.
-    pub slope_error: Option<f64>,
+/// where x̄ and ȳ are the means of the logarithms. Returns `None` if there are not at least two
+/// different x, or if a number has no logarithm.
+pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
+    let logs = points.iter().map(|&(x, y)| (libm::log(x), libm::log(y)));
+    let logs: Vec<_> = logs.collect();
+    let count = logs.len() as f64;
+    let x_mean = logs.iter().map(|log| log.0).sum::<f64>() / count;
+    let y_mean = logs.iter().map(|log| log.1).sum::<f64>() / count;
+    let products = logs.iter().map(|(x, y)| (x - x_mean) * (y - y_mean));
+    let squares = logs.iter().map(|(x, _)| (x - x_mean) * (x - x_mean));
+    let slope = products.sum::<f64>() / squares.sum::<f64>();
+    slope.is_finite().then_some(slope)
 }
 
-impl PowerLaw {
-    /// Fits a power law to the points (x, y). Returns `None` if there are not at least two
-    /// different x, or if a number has no logarithm.
-    pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
-        let logs: Vec<_> = points
-            .iter()
-            .map(|&(x, y)| (libm::log(x), libm::log(y)))
-            .collect();
-        let k = logs.len() as f64;
-        let mean = |pick: fn(&(f64, f64)) -> f64| logs.iter().map(pick).sum::<f64>() / k;
-        let (x_mean, y_mean) = (mean(|log| log.0), mean(|log| log.1));
-        let centered = || logs.iter().map(|(x, y)| (x - x_mean, y - y_mean));
-        let spread: f64 = centered().map(|(x, _)| x * x).sum();
-        let slope = centered().map(|(x, y)| x * y).sum::<f64>() / spread;
-        let residuals: f64 = centered()
-            .map(|(x, y)| (y - slope * x) * (y - slope * x))
-            .sum();
-        slope.is_finite().then_some(Self {
-            slope,
-            slope_error: (logs.len() > 3).then(|| (residuals / (k - 2.0) / spread).sqrt()),
-        })
-    }
+/// Returns the standard error of the mean of `values`, s/√n, where s² = Σ(x − x̄)²/(n − 1). Returns
+/// `None` for fewer than three values, whose spread says next to nothing.
+pub fn standard_error(values: &[f64]) -> Option<f64> {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+    (values.len() >= 3).then(|| (squares / (count - 1.0) / count).sqrt())
 }

@@ -2,8 +2,8 @@
 
 use super::{
     estimate::{Estimate, Ranking},
-    notation::{UNKNOWN, asked_error, plural, samples, slope, time},
-    results::Measurement,
+    notation::{UNKNOWN, asked_error, factor, plural, samples, slope, time},
+    results::{EndSlope, Measurement},
 };
 use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 
@@ -108,35 +108,52 @@ fn per_pixel(estimate: &Estimate) -> String {
     format!("{} {noun} per pixel", samples(estimate))
 }
 
-/// Returns a table with a row for each method: the slope of its error and, for each of `errors`,
-/// the samples, the CPU time and the wall time that the method needs.
+/// Returns a table with a row for each method: the slope of its error at the end and what it means,
+/// and, for each of `errors`, the samples, the CPU time and the wall time that the method needs.
 pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
-    let mut heads = vec!["method".to_owned(), "slope of\nthe error".to_owned()];
+    let mut heads = vec!["method".to_owned()];
+    heads.extend(
+        [
+            "slope at\nthe end",
+            "4 × samples\ndivide it by",
+            "a tenth\ncosts",
+        ]
+        .map(str::to_owned),
+    );
     for wanted in errors.iter().copied().map(asked_error) {
         let columns = ["samples", "CPU time", "wall time"];
         heads.extend(columns.map(|what| format!("{what}\nfor {wanted}")));
     }
-    let row = |method: Method, slope: String, estimates: Vec<Option<Estimate>>| {
+    let row = |method: Method, slopes: [String; 3], estimates: Vec<Option<Estimate>>| {
         let cells = estimates.into_iter().flat_map(|estimate| match estimate {
             None => [UNKNOWN; 3].map(str::to_owned),
             Some(it) => [samples(&it), time(&it, it.cpu), time(&it, it.wall)],
         });
-        [method.name().to_owned(), slope]
-            .into_iter()
-            .chain(cells)
-            .collect()
+        let name = [method.name().to_owned()].into_iter();
+        name.chain(slopes).chain(cells).collect()
     };
     let mut rows: Vec<_> = (measured.series.iter())
         .map(|series| {
             let estimates = errors.iter().map(|&error| measured.estimate(series, error));
-            row(series.method, slope(series.fit()), estimates.collect())
+            row(series.method, slopes(series.slope()), estimates.collect())
         })
         .collect();
     if measured.exact.is_some() {
         let estimates = errors.iter().map(|&error| measured.exact_estimate(error));
-        rows.push(row(Method::Exact, String::new(), estimates.collect()));
+        rows.push(row(Method::Exact, Default::default(), estimates.collect()));
     }
     SummaryTable { heads, rows }
+}
+
+/// Returns the cells of a slope: the slope, by how much four times the samples divide the error,
+/// and how many times the samples a tenth of the error costs.
+fn slopes(found: Option<EndSlope>) -> [String; 3] {
+    let divisor = factor(found.and_then(|it| it.divisor()));
+    let cost = found.and_then(|it| it.cost_of_a_tenth());
+    let cost = cost.map_or(UNKNOWN.to_owned(), |cost| {
+        format!("{} ×", factor(Some(cost)))
+    });
+    [slope(found), divisor, cost]
 }
 
 /// Returns sentences that explain the table's signs and limits.

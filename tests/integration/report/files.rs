@@ -94,17 +94,20 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     let page = read("index.html");
     let document = parsed(&page);
     let count = |name| elements(&document, name).count();
-    // The page shows the exact picture twice (once alone, and once beside the others), and the
-    // picture of each sampled method once.
-    let counts = [count("script"), count("table"), count("img")];
-    assert_eq!(counts, [0, 1, 2 + methods.len()]);
-    // On the page, the recommendation comes first, then the charts, the table and the pictures.
+    // The page shows the exact picture twice (alone, and beside the others), and the picture of
+    // each sampled method with its difference from the exact one.
+    let counts = [count("script"), count("table"), count("main"), count("img")];
+    assert_eq!(counts, [0, 1, 1, 2 + 2 * methods.len()]);
+    // The recommendation comes first, then the charts, the table and the pictures.
     let order = ["class=\"verdict\">Use ", "<svg ", "<table>", "<img "];
     let places = order.map(|what| page.find(what).expect(what));
     assert!(places.is_sorted(), "{places:?}");
+    // No character is left that had to be made visible.
+    assert!(!page.contains("\\u{"), "{page}");
     for image in elements(&document, "img") {
         assert!(!image.attribute("alt").unwrap().is_empty());
-        assert_eq!(size(image), (48, 32));
+        let is_whole = image.attribute("alt") == Some("the exact picture as a whole");
+        assert_eq!(size(image), if is_whole { (48, 32) } else { (48, 27) });
     }
     // The page fetches nothing from other addresses.
     for node in document.descendants() {
@@ -182,6 +185,7 @@ fn scene_names_cannot_escape_the_output_folder_or_break_a_file() {
     let document = parsed(&page);
     let titles = elements(&document, "h2").filter(|node| node.has_tag_name((XHTML, "h2")));
     let titles: Vec<_> = titles.filter_map(|node| node.text()).collect();
-    assert_eq!(titles.len(), names.len() + 1, "{titles:?}");
-    assert_eq!(titles[4..], ["a/../a.scn", ".scn", "How this was measured"]);
+    assert_eq!(titles.len(), names.len() + 2, "{titles:?}");
+    let last = ["Which method for what", "How this was measured"];
+    assert_eq!(titles[4..], [&["a/../a.scn", ".scn"], &last[..]].concat());
 }

@@ -43,8 +43,8 @@ fn parsed(text: &str) -> roxmltree::Document<'_> {
 
 #[test]
 fn a_report_prints_a_table_and_one_recommendation() {
-    let text = table("--samples 1,2,4,16 --runs 2");
-    let start = "a.scn: 48 × 32 pixels, 2 runs, ";
+    let text = table("--samples 1,2,4,16 --runs 3");
+    let start = "a.scn: 48 × 32 pixels, 3 runs, ";
     assert!(text.starts_with(start), "{text}");
     let row = |name: &str| -> Vec<&str> {
         let mut rows = text.lines().map(|line| line.split_whitespace().collect());
@@ -52,11 +52,12 @@ fn a_report_prints_a_table_and_one_recommendation() {
             .unwrap()
     };
     for row in Method::SAMPLED.map(|method| row(method.name())) {
-        // The columns are the method, the slope, `±`, the slope's error, the samples, and two
-        // times, each in two columns: a number and its unit.
-        assert_eq!((row.len(), row[2]), (9, "±"), "{row:?}");
-        // With few samples, no measured error reaches 1/256, so the values are extrapolated.
-        let are_first = [(1, '−'), (4, '~'), (5, '~')].map(|(at, c)| row[at].starts_with(c));
+        // The columns are the method, the slope, `±`, the slope's error, what four times the
+        // samples divide the error by, what a tenth of it costs with `×`, the samples, and two
+        // times, each with its unit.
+        assert_eq!((row.len(), row[2], row[6]), (12, "±", "×"), "{row:?}");
+        // So few samples do not reach an error of 1/256, so the values are extrapolated.
+        let are_first = [(1, '−'), (7, '~'), (8, '~')].map(|(at, c)| row[at].starts_with(c));
         assert_eq!(are_first, [true; 3], "{row:?}");
     }
     assert!(!row("exact").concat().contains('~'), "{text}");
@@ -74,7 +75,7 @@ fn a_report_prints_a_table_and_one_recommendation() {
             assert_eq!(several.matches(&words).count(), 1, "{several}");
         }
     }
-    // A slope through only two points has no standard error.
+    // A slope of a single run has no standard error.
     assert!(!several.contains('±'), "{several}");
     for line in text.lines().chain(several.lines()) {
         assert!(line.chars().count() <= 100, "it fits a terminal: {line}");
@@ -178,7 +179,7 @@ fn a_picture_of_one_colour_has_no_error() {
     let text = folder.told("report empty.scn -o out", 0);
     let mut lines = text.lines().map(str::split_whitespace);
     let sobol = lines.find_map(|mut line| (line.next() == Some("sobol")).then_some(line));
-    assert!(sobol.unwrap().take(2).eq(["–", "1"]), "{text}");
+    assert!(sobol.unwrap().take(4).eq(["–", "–", "–", "1"]), "{text}");
     parsed(&folder.text("out/index.html"));
     parsed(&folder.text("out/error-against-time.svg"));
 }

@@ -6,9 +6,9 @@ use pinhole::{
     area::Area,
     render::{Control, render_exact},
     report::speed::{
-        Estimate, Machine, MeasuredScene, Measurement, MethodSeries, Request, Run, SeriesPoint,
-        measure,
-        statistics::{PowerLaw, median, root_mean_square},
+        Estimate, Machine, MeasuredScene, Measurement, MethodSeries, Mixture, Request, Run,
+        SeriesPoint, measure,
+        statistics::{median, root_mean_square, slope, standard_error},
         verdict,
     },
     scene::Method,
@@ -30,22 +30,58 @@ fn median_and_root_mean_square_match_values_computed_by_hand() {
 }
 
 #[test]
-fn the_slope_has_the_standard_error_of_the_textbook_formula() {
+fn slopes_and_standard_errors_match_values_computed_by_hand() {
     // In units of ln 2, the points x = 0, 1, 2, 3 and y = 0, −1, −1, −2 have the means x̄ = 1.5 and
-    // ȳ = −1, and S = Σ(x − x̄)² = 5. The slope is −3/5. The residuals r are 0.1, −0.3, 0.3 and
-    // −0.1, so Σr² = 0.2, and the standard error is √(0.2 / 2 / 5) = √0.02.
-    let fit = PowerLaw::fit(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]).unwrap();
-    assert!((fit.slope + 0.6).abs() < 1e-14);
-    assert!((fit.slope_error.unwrap() - 0.02f64.sqrt()).abs() < 1e-14);
-    // A line through two points has no standard error, nor has one through three. A single point
-    // determines no line, and an error of 0 has no logarithm.
-    let few = [(1.0, 1.0), (4.0, 0.5), (16.0, 0.25)];
-    for few in [&few[..], &few[1..]] {
-        let few = PowerLaw::fit(few).unwrap();
-        assert_eq!((few.slope, few.slope_error), (-0.5, None));
+    // ȳ = −1, and Σ(x − x̄)·(y − ȳ) = −3, Σ(x − x̄)² = 5.
+    let found = slope(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]);
+    assert!((found.unwrap() + 0.6).abs() < 1e-14);
+    // A single point has no line, and an error of 0 has no logarithm.
+    assert_eq!(slope(&[(1.0, 1.0), (4.0, 0.5)]), Some(-0.5));
+    assert_eq!(slope(&[(4.0, 0.5)]), None);
+    assert_eq!(slope(&[(1.0, 1.0), (4.0, 0.0)]), None);
+    // The mean is 2, s² = 1, and the standard error 1/√3.
+    assert_eq!(
+        standard_error(&[1.0, 2.0, 3.0]),
+        Some((1.0f64 / 3.0).sqrt())
+    );
+    assert_eq!(standard_error(&[1.0, 2.0]), None);
+}
+
+/// Each row has errors at 1, 4, 16, … samples, then the slope at the end, by how much four times
+/// the samples divide the error, and how many times the samples a tenth of the error costs.
+#[test]
+fn the_slope_is_that_of_the_last_three_points_and_says_what_it_means() {
+    for [errors, expected] in rows(
+        "
+        0.4 0.2 0.1 0.05 -> -0.5 2 100
+        -- What is steep at first ends like independent samples.
+        3.2 0.8 0.2 0.1 0.05 -> -0.5 2 100
+        0.8 0.1 -> -1.5 8 4.641588833612779
+        -- Noise is no slope.
+        0.4 0.4 0.4 -> 0
+        0.1 0.2 0.4 -> 0.5
+    ",
+    ) {
+        let (errors, expected) = (numbers(errors), numbers(expected));
+        let power = |at: usize| f64::from(1 << (2 * at));
+        let points = errors
+            .iter()
+            .enumerate()
+            .map(|(at, &error)| [power(at), 1.0, error]);
+        let found = series(Method::Random, &points.collect::<Vec<_>>())
+            .slope()
+            .unwrap();
+        let means = [Some(found.slope), found.divisor(), found.cost_of_a_tenth()];
+        for (at, found) in means.into_iter().enumerate() {
+            let is_equal = match (found, expected.get(at)) {
+                (Some(found), Some(expected)) => {
+                    (found - expected).abs() <= 1e-13 * (1.0 + expected.abs())
+                }
+                (found, expected) => found.is_none() && expected.is_none(),
+            };
+            assert!(is_equal, "{errors:?}: {found:?}");
+        }
     }
-    assert_eq!(PowerLaw::fit(&[(4.0, 0.5)]), None);
-    assert_eq!(PowerLaw::fit(&[(1.0, 1.0), (4.0, 0.0)]), None);
 }
 
 /// Returns a series with one run per point. A point consists of the samples per pixel, the CPU time
@@ -211,6 +247,10 @@ fn measured(methods: &str) -> Measurement {
         rungs: vec![4, 16],
         errors: Vec::new(),
         reference: render_exact(&world, Area::whole(48, 32), &one_thread()).unwrap(),
+        mixture: Mixture {
+            edges: 0.1,
+            board: 0.2,
+        },
         exact,
         series: sampled,
         interrupted: false,

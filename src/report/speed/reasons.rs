@@ -1,0 +1,76 @@
+//! Why methods differ in a scene, in sentences with the scene's own figures.
+
+use super::{
+    notation::{asked_error, factor, percent, samples},
+    results::Measurement,
+};
+use crate::scene::Method;
+
+/// Explains why the methods differ in this scene: which pixels they can err in, how the error falls
+/// there, and what the exact method does instead. The sentences about methods need series that were
+/// measured.
+pub fn reasons(measured: &Measurement) -> Vec<String> {
+    let mixture = measured.mixture;
+    let (edges, board) = (percent(mixture.edges), percent(mixture.board));
+    let mut reasons = vec![format!(
+        "An edge crosses {edges} of the pixels, and {board} more show a checkerboard alone in both of its colours. Every other pixel has one colour, which any method finds with one sample: the error comes from the mixed pixels alone."
+    )];
+    if measured.series.is_empty() || mixture.edges + mixture.board == 0.0 {
+        return reasons;
+    }
+    let along_edges = "Along an edge, N samples in N cells of a pixel can err only in the cells that the edge cuts, about √N of them, so that the error falls like N^(−3/4). Independent samples can err everywhere, and their error falls like N^(−1/2).";
+    let on_board = "Where many squares fall into one pixel, the cells are as mixed as the pixel itself until there are more cells than squares: strata help there only with many samples, and the slope lies between both.";
+    if mixture.edges > 0.0 {
+        reasons.push(along_edges.to_owned());
+    }
+    if mixture.board > 0.0 {
+        reasons.push(on_board.to_owned());
+    }
+    reasons.extend(
+        measured
+            .errors
+            .first()
+            .and_then(|&error| compared(measured, error)),
+    );
+    reasons.extend(in_exact_time(measured));
+    reasons
+}
+
+/// Compares the method that needs the fewest samples for `error` with independent samples.
+fn compared(measured: &Measurement, error: f64) -> Option<String> {
+    let estimates = measured.series.iter().filter_map(|series| {
+        let estimate = measured.estimate(series, error)?;
+        Some((series.method, estimate, estimate.per_pixel?))
+    });
+    let estimates: Vec<_> = estimates.collect();
+    let (_, random, many) = estimates.iter().find(|it| it.0 == Method::Random)?;
+    let (best, least, few) = estimates.iter().min_by(|a, b| a.2.total_cmp(&b.2))?;
+    (few < many).then(|| {
+        format!(
+            "For an error of {}, {} needs {} samples per pixel, and random {}: {} times as many.",
+            asked_error(error),
+            best.name(),
+            samples(least),
+            samples(random),
+            factor(Some(many / few)),
+        )
+    })
+}
+
+/// Says how many samples of the fastest method the exact picture's time would pay for.
+fn in_exact_time(measured: &Measurement) -> Option<String> {
+    let exact = measured.exact_estimate(1.0)?;
+    let most = measured.series.iter().filter_map(|series| {
+        let last = series.points.last()?;
+        let per_pixel = exact.cpu / last.typical().cpu * last.per_pixel as f64;
+        Some((series.method, per_pixel))
+    });
+    let (method, per_pixel) = most.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (per_pixel.is_finite() && per_pixel >= 1.0).then(|| {
+        format!(
+            "exact computes the mean of a mixed pixel from its edges, without samples. The whole picture takes it the time of about {} samples per pixel by {}.",
+            factor(Some(per_pixel)),
+            method.name(),
+        )
+    })
+}
