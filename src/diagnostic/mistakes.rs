@@ -13,7 +13,8 @@ use crate::source::Sources;
 /// that a `main` which returns them ends with a report.
 ///
 /// ```
-/// let mistakes = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookt (0, 1, 0) }").unwrap_err();
+/// let text = "camera { eye (0, 2, 8)  lookt (0, 1, 0) }  checkerboard {}";
+/// let mistakes = pinhole::Scene::parse(text).unwrap_err();
 /// for mistake in &mistakes {
 ///     let place = mistakes.sources().place(mistake.labels[0].span);
 ///     assert_eq!((place.line, place.column), (1, 25));

@@ -77,7 +77,7 @@ impl Scene {
     /// #     sphere { center (0, 1, 0) }  checkerboard {}  image { width 64  height 48 }")?;
     /// let theirs = scene.with_set("camera.up=(0, -1, 0)")?.render()?;
     /// let verdict = scene.grade(&theirs)?;
-    /// assert_eq!(verdict.mistakes[0].id, "upside_down");
+    /// assert!(verdict.to_string().starts_with("wrong"), "{verdict}");
     /// # Ok::<(), pinhole::Error>(())
     /// ```
     ///
