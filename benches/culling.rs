@@ -24,11 +24,11 @@ use pinhole::{
 
 use self::one_by_one::one_by_one;
 
-/// Number of rounds. The fastest round is printed, since other work on the machine only makes a
-/// round slower.
+/// Number of times that each picture is rendered in each way. The shortest CPU time counts, since
+/// other work on the machine only makes a render slower.
 const ROUNDS: usize = 3;
 
-/// How samples are traced.
+/// How the samples of a picture are traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
     /// Each sample by itself, with the quadtree finding the objects that its ray may hit.
@@ -40,8 +40,8 @@ enum Way {
 
 const WAYS: [Way; 2] = [Way::OneByOne, Way::Culled];
 
-/// Names of the examples that are rendered in both ways. Culling suits some of them, but not
-/// others.
+/// Names of the examples that are rendered in both ways ([`Way`]). In some of them, culling saves
+/// much more time than in others.
 const SCENES: [&str; 5] = [
     "scatter",
     "near_and_far",
@@ -112,7 +112,7 @@ fn main() {
     exact();
 }
 
-/// Scene with a floor on which nearly every pixel sees many squares.
+/// Scene with a checkerboard of small squares, so that nearly every pixel sees many of them.
 const DENSE: &str = "camera { eye (0.3, 2, 5) lookat (7, 1.8, -30) } checkerboard { square 0.001 }";
 
 /// Returns an element of a Weyl sequence: the fractional part of `index`·`step`, for an irrational

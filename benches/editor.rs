@@ -19,10 +19,10 @@ mod spheres;
 
 const OBJECTS: usize = 1000;
 
-/// Number of times that each request is repeated and measured.
+/// Number of times that each request is repeated. The median and the longest time are printed.
 const ROUNDS: u32 = 200;
 
-/// Number of times that each slow request is repeated and measured.
+/// As [`ROUNDS`], for the slow requests about a line of a million tokens.
 const FEW: u32 = 10;
 
 const URI: &str = "file:///spheres.scn";
@@ -136,7 +136,7 @@ fn formatted() {
     print("its edits, and their diagnostics", times.collect());
 }
 
-/// Measures a text with all objects in one line.
+/// Measures the server's answers in a text with all objects in one line.
 fn objects_in_one_line() {
     let text = spheres(OBJECTS, Layout::Lines);
     // Comments are left out, since a line comment would comment out the rest of the line.
@@ -146,7 +146,7 @@ fn objects_in_one_line() {
     in_one_line(&line, ROUNDS);
 }
 
-/// Measures a text with a sum of a million tokens in one line.
+/// Measures the server's answers in a text whose only line is a sum of a million tokens.
 fn tokens_in_one_line() {
     const TOKENS: usize = 1_000_000;
     let line = format!("let a = 1{}", " + 1".repeat((TOKENS - 4) / 2));

@@ -28,7 +28,8 @@ use mistakes::{GROUPS, Mistake, OF_THE_OBJECTS};
 use serde_json::{Value, json};
 use textbook::{SAMPLINGS, Sampling};
 
-/// Sizes of the corpus's pictures, in pixels.
+/// Widths and heights of the pictures that are judged, in pixels. Without `--all`, only those of
+/// the middle size are.
 const SIZES: [[u32; 2]; 3] = [[96, 64], [320, 180], [640, 360]];
 
 fn main() {
@@ -57,7 +58,7 @@ fn main() {
     for count in 0..4 {
         for &size in &sizes {
             for &sampling in &samplings {
-                // Pairs and triples of mistakes are tested in the middle size only.
+                // Pairs and triples of mistakes are tested only in pictures of the middle size.
                 if count > 1 && size != SIZES[1] {
                     continue;
                 }

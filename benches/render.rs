@@ -24,8 +24,8 @@ const WIDTH: u32 = 1280;
 const HEIGHT: u32 = 720;
 const PER_PIXEL: u64 = 16;
 
-/// Number of runs. The shortest time is printed, since other work on the machine only makes a run
-/// slower.
+/// Number of times that each measured function is run. The shortest time is printed, since other
+/// work on the machine only makes a run slower.
 const RUNS: usize = 5;
 
 fn main() {

@@ -35,8 +35,8 @@ mod grammar {
 
 const OBJECTS: usize = 10_000;
 
-/// Number of rounds. The fastest round is printed, since other work on the machine only makes a
-/// round slower.
+/// Number of times that each stage is run. The shortest time is printed, since other work on the
+/// machine only makes a run slower.
 const ROUNDS: usize = 20;
 
 fn main() {

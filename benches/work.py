@@ -24,8 +24,9 @@ TABLE = pathlib.Path(__file__).with_suffix(".csv")
 COLUMNS = ["command", "instructions", "memory_kb", "rustc", "valgrind"]
 SIZE = (160, 90)
 SPHERES = [1000, 10_000]
-# Factors by which a command may exceed its row before it fails. Instruction counts repeat within
-# 0.2 %. Peak memory repeats only within 5 %, so the least of MEMORY_RUNS runs counts.
+# Maximum ratios of a command's instructions and peak memory to those in its row of `work.csv`;
+# above them, the command fails. Instruction counts repeat within 0.2 %. Peak memory repeats only
+# within 5 %, so the least of MEMORY_RUNS runs counts.
 MORE_INSTRUCTIONS, MORE_MEMORY = 1.03, 1.10
 MEMORY_RUNS = 5
 ENVIRONMENT = {**os.environ, "NO_COLOR": "1"}

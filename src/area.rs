@@ -112,7 +112,8 @@ impl Area {
         }
     }
 
-    /// Returns the area relative to the top left corner of `outer`, which must contain it.
+    /// Returns the same area with columns and rows counted from the top left corner of `outer`,
+    /// which must contain it.
     pub fn within(self, outer: Self) -> Self {
         Self {
             x: self.x - outer.x,
@@ -143,7 +144,7 @@ impl Area {
         Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
     }
 
-    // Ends are `u64`, so that an area from user input cannot overflow.
+    // The ends of the range are `u64`, so that an area from user input cannot overflow.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)
     }
@@ -153,14 +154,14 @@ impl Area {
     }
 }
 
-/// Writes `X,Y,W,H`.
+/// Writes an area as `X,Y,W,H`: leftmost column, topmost row, width and height, in pixels.
 impl fmt::Display for Area {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{},{},{},{}", self.x, self.y, self.width, self.height)
     }
 }
 
-/// Parses `X,Y,W,H`, four whole numbers. Fails if W or H is 0.
+/// Parses an area in the form `X,Y,W,H`, four whole numbers. Fails if W or H is 0.
 impl FromStr for Area {
     type Err = String;
 

@@ -13,7 +13,7 @@ use thiserror::Error;
 #[error("interrupted")]
 pub struct Cancelled;
 
-/// Flag of work that is never cancelled.
+/// Cancellation flag for work that nobody can cancel: it is never set.
 pub(crate) static NEVER: AtomicBool = AtomicBool::new(false);
 
 /// Returns whether the flag `cancel` is set.

@@ -61,8 +61,8 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
     }
 }
 
-/// Returns the least linear light whose nearest byte is `k` + 1, for `k` < 255. It is the least
-/// `f64` that is not below the light of `k` + 1/2.
+/// Returns the least linear light that is rounded to the byte `k` + 1 of sRGB, for `k` < 255. It is
+/// the least `f64` that is not below the light whose sRGB value is `k` + 1/2, in 8-bit steps.
 ///
 /// The exponents of the sRGB curve are rational, so integers can decide: L − x^2.4 has the same
 /// sign as L^5 − x^12.
@@ -77,13 +77,13 @@ pub fn half_byte(k: u8) -> f64 {
     light
 }
 
-/// Returns whether `light`, in linear light, is darker than the light of `k` + 1/2. `light` must be
-/// positive and not subnormal.
+/// Returns whether `light`, in linear light, is darker than the light whose sRGB value is `k` +
+/// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // Double-doubles decide most cases; integers alone would take half the time of rendering a
-    // small picture. In units of the double-double rounding, the relative errors are at most 4 for
-    // light^5, 11 for scale^12, 1 for the product of these, 11 for x^12, and 1 for the difference,
-    // in sum less than 32.
+    // Bound on the relative rounding error of `difference` below. Double-doubles decide most cases;
+    // integers alone would take half the time of rendering a small picture. In units of the
+    // double-double rounding, the relative errors are at most 4 for light^5, 11 for scale^12, 1 for
+    // the product of these, 11 for x^12, and 1 for the difference, in sum less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -101,7 +101,7 @@ fn is_below_half(light: f64, k: u8) -> bool {
     }
 }
 
-/// Returns whether `light` is darker than the light of `k` + 1/2, computed with integers.
+/// As [`is_below_half`], computed with integers.
 fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let exponent = (light.to_bits() >> 52) as usize;
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
@@ -115,7 +115,7 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
         significand * 65_892u32 < UBig::from(10 * halves) << shift
     } else {
         // On the curved piece, the test is L < x^2.4, with x = (c + 0.055)/1.055 = (1000·halves +
-        // 28050)/538050.
+        // 28050)/538050 and c = halves/510.
         let x = UBig::from(1000 * halves + 28_050);
         significand.pow(5) * UBig::from(538_050u32).pow(12) < x.pow(12) << (5 * shift)
     }

@@ -9,16 +9,15 @@
 /// The reference of the language, as Markdown.
 pub const LANGUAGE: &str = include_str!("../grammar/language.md");
 
-/// The words of sampling, as Markdown: a section for each word and for each method.
+/// The glossary of sampling, as Markdown: a section for each term and for each method.
 pub const SAMPLING: &str = include_str!("../grammar/sampling.md");
 
 /// Guide, as Markdown, for converting scenes of programs with left-handed coordinates or with z
 /// upwards.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// Words of other programs. A row holds such a word, and a heading of the reference or a word of
-/// the language that explains it. A heading may be followed by `: ` and the first words of an item
-/// or paragraph in that section.
+/// Terms of other programs, each with what `explain` shows for it: a heading of the reference, a
+/// word of the language, or, for one item or paragraph under a heading, `HEADING: FIRST WORDS`.
 pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop", "repetition"),
     ("repeat", "repetition"),
@@ -122,13 +121,14 @@ pub const OTHER_NAMES: &[(&str, &str)] = &[
     ("ball.x", "limits: A part of a vector"),
 ];
 
-/// Returns the section with a heading, ignoring case, from the reference or from the words of
-/// sampling; `None` if there is none.
+/// Returns the section with the heading `heading`, in any capitalization, of the reference or of
+/// the glossary of sampling ([`SAMPLING`]). Returns `None` if there is none.
 pub fn section(heading: &str) -> Option<&'static str> {
     section_of(LANGUAGE, heading).or_else(|| section_of(SAMPLING, heading))
 }
 
-/// Returns the section of a text in Markdown with a heading, ignoring case; `None` if there is none.
+/// Returns the section of `text`, which is Markdown, with the heading `heading`, in any
+/// capitalization. Returns `None` if there is none.
 pub fn section_of(text: &'static str, heading: &str) -> Option<&'static str> {
     let is_heading = |line: &str| line.starts_with("## ");
     let mut start = None;
@@ -149,9 +149,9 @@ pub fn section_of(text: &'static str, heading: &str) -> Option<&'static str> {
     start.and_then(|start| text.get(start..).map(str::trim_end))
 }
 
-/// Returns a part of the section `heading`: its heading, the item or paragraph that starts with
-/// `words`, and a reference to the rest of the section. Returns `None` if the section or the item
-/// does not exist.
+/// Returns a part of the section `heading` of the reference: its heading, the item or paragraph
+/// that starts with `words`, and a sentence that refers to the rest of the section. Returns `None`
+/// if the section or the item does not exist.
 pub fn part(heading: &str, words: &str) -> Option<String> {
     let section = section(heading)?;
     let lines = section.lines();
@@ -169,7 +169,7 @@ pub fn part(heading: &str, words: &str) -> Option<String> {
     ))
 }
 
-/// Returns the headings of the sections of the reference and of the words of sampling.
+/// Returns the headings of the sections of the reference and of the glossary of sampling.
 pub fn headings() -> impl Iterator<Item = &'static str> {
     let lines = LANGUAGE.lines().chain(SAMPLING.lines());
     lines.filter_map(|line| line.strip_prefix("## "))

@@ -198,7 +198,8 @@ fn rounded(x: &Big) -> f64 {
     x.to_finite() + 0.0
 }
 
-/// Sums over the objects that the text for people does not list.
+/// Totals of the objects beyond the first [`LISTED`], which the readable output (`Display`) does
+/// not list one by one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rest {
     objects: u64,
@@ -210,7 +211,7 @@ struct Rest {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Writes the text for people. It lists at most [`LISTED`] objects.
+/// Writes the readable output of `pinhole inspect`. It lists at most [`LISTED`] objects.
 impl fmt::Display for Inspection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
@@ -253,10 +254,9 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// Formatting of the lines about the objects.
+/// Formatting of what is seen of the objects.
 impl Inspection {
-    /// Sums what is seen of the objects that the text does not list. Returns `None` if it lists all
-    /// objects.
+    /// Returns the totals of the objects beyond the first [`LISTED`], or `None` if there are none.
     fn rest(&self) -> Option<Rest> {
         let rest = self.objects.get(LISTED..).filter(|rest| !rest.is_empty())?;
         let mut sum = Rest {
@@ -325,7 +325,7 @@ impl Inspection {
     }
 }
 
-/// Formats a camera for people: its axes, its field of view, and the axes' vanishing points.
+/// Formats a camera as readable text: its axes, its field of view, and the axes' vanishing points.
 pub fn camera_summary(camera: &CameraFacts, vanishing_points: &[Option<[f64; 2]>; 3]) -> String {
     let mut text = format!("camera    looks {}\n", camera.looks);
     let vectors = [

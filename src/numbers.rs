@@ -36,7 +36,7 @@ pub fn significant(x: f64, digits: usize) -> f64 {
     format!("{x:.after$e}").parse().unwrap_or(x)
 }
 
-/// Formats an upper bound with two significant digits, rounded up.
+/// Formats an upper bound with two significant digits and an exponent, rounded up.
 pub fn at_most(bound: f64) -> String {
     if bound == 0.0 {
         return "0".to_owned();
@@ -44,8 +44,8 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // Adds 1 to the last digit. The sum of two numbers with one decimal each is correct after
-        // formatting with one decimal.
+        // The text is below the bound: adds 1 to its last digit. The sum of two numbers with one
+        // decimal each is correct after formatting with one decimal.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);
@@ -55,8 +55,8 @@ pub fn at_most(bound: f64) -> String {
     }
 }
 
-/// Formats a number that a reader compares with `others`. Uses the short form, unless the short
-/// form compares differently with one of them.
+/// Formats a number that a reader compares with the numbers `others`. Uses the form of [`short`],
+/// or all digits if the short form compares differently with one of them.
 pub fn beside(x: f64, others: &[f64]) -> String {
     let text = short(x);
     let read = text.parse().unwrap_or(x);
@@ -80,7 +80,7 @@ pub fn rounded(x: f64, error: f64) -> f64 {
     format!("{x:.decimals$}").parse().unwrap_or(x) + 0.0
 }
 
-/// Removes trailing zeros of the decimals, and the point if no decimals remain.
+/// Removes the trailing zeros of a number's decimals, and the point if no decimals remain.
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') {
         digits.trim_end_matches('0').trim_end_matches('.')

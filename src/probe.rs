@@ -85,7 +85,7 @@ impl Probe {
     }
 }
 
-/// Writes the text that `pinhole probe` prints for people.
+/// Writes the readable output of `pinhole probe`.
 impl fmt::Display for Probe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (x, y) = (short(self.pixel.x), short(self.pixel.y));

@@ -9,7 +9,7 @@ use crate::{
     tracer::Basis,
 };
 
-/// A camera as numbers in `f64`.
+/// Eye, axes and pixel size of a camera in `f64`, by which points are projected.
 #[derive(Clone, Copy, Debug)]
 pub struct Projection {
     /// Position of the eye, in world coordinates.
@@ -45,7 +45,8 @@ impl Projection {
     /// projections per second.
     pub fn quick(camera: &Camera, image: &Image) -> Self {
         let [right, top, backward] = formulas::axes(camera);
-        // If lengths exceed the range of `f64`, the formulas give no axes.
+        // If lengths exceed the range of `f64`, the textbook formulas give no axes, and the exact
+        // ones are used.
         if !(right + top).is_finite() {
             return Self::new(camera, image);
         }
@@ -80,8 +81,8 @@ impl Projection {
         across / (self.depth(point) * self.pitch) + self.size / 2.0
     }
 
-    /// Returns the direction of the ray through a point of the picture, in pixels from the top left
-    /// corner. Its length is such that it ends at depth 1.
+    /// Returns the vector from the eye, along the ray through a point of the picture, to the point
+    /// at depth 1. The point of the picture is given in pixels from the top left corner.
     pub fn ray(&self, point: DVec2) -> DVec3 {
         let across = (point - self.size / 2.0) * self.pitch;
         self.ahead + self.right * across.x - self.top * across.y

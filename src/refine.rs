@@ -16,11 +16,12 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Sides of the blocks in successive steps, in pixels. Each step takes four times as long as the
-/// step before. All steps together take less time than a picture with one sample per pixel.
+/// Sides of the blocks of a coarse picture in successive steps, in pixels. Each step takes four
+/// times as long as the step before. All steps together take less time than a picture with one
+/// sample per pixel.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
-/// A picture in blocks.
+/// A picture in square blocks, each of one colour.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coarse {
     /// Side of a block, in pixels.
@@ -109,8 +110,9 @@ pub fn coarse(
 
 /// Returns the palette slot that is seen at the centre of a block.
 fn at_center(world: &World, block: Area) -> usize {
-    // For an odd length, the centre is that of a pixel. For an even length, it is the edge before a
-    // pixel.
+    // A block with an odd number of pixels along a side has its centre in a pixel. With an even
+    // number, the centre is on the edge between two pixels, and is given as the left or top edge of
+    // the second.
     let place = |start: u32, length: u32| match length % 2 {
         0 => (start + length / 2, -0.5),
         _ => (start + length / 2, 0.0),

@@ -90,8 +90,8 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
     ((0..scene.objects.len()).map(seen).collect(), is_exact)
 }
 
-/// Maximum number of objects that `inspect` lists for people. For each listed object that is
-/// hidden, it also finds the object in front.
+/// Maximum number of objects that the readable output of `inspect` lists. For each listed object
+/// that is hidden, it also names the object in front.
 pub const LISTED: usize = 100;
 
 /// For each object, by its index: the bounding rectangle of its pixels, and the area that shows it,

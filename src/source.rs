@@ -262,8 +262,8 @@ impl Source {
         place.unwrap_or(LineCol { line: 0, col: 0 })
     }
 
-    /// Returns the index of the line starts and of the characters with more than one byte. The
-    /// index is computed on first use.
+    /// Returns the index with which lines and columns of offsets are found: the starts of the
+    /// lines, and the characters with more than one byte. It is computed on first use.
     pub fn lines(&self) -> &LineIndex {
         self.lines.get_or_init(|| LineIndex::new(&self.text))
     }

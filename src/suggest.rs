@@ -7,8 +7,8 @@ use std::cell::Cell;
 
 use strsim::osa_distance;
 
-/// Remaining number of comparisons of names. When it is spent, no further names are suggested.
-/// Without a limit, a text with many mistakes and many names would compare all pairs.
+/// Number of comparisons of names that are left. When it is 0, no further names are suggested.
+/// Without a limit, each mistake in a text would be compared with each name in it.
 #[derive(Debug)]
 pub struct ComparisonBudget(Cell<usize>);
 
@@ -51,10 +51,10 @@ pub fn nearest_name<'c>(
     }
 }
 
-/// Returns whether `near`, the nearest candidate, is nearer to `written` than every other
-/// candidate. Returns `false` if
+/// Returns whether `written` surely means `near`, the nearest candidate, because no other candidate
+/// is equally near. Returns `false` in any case if
 ///
-/// - the digits differ, since the name is then a different one;
+/// - the digits of the two names differ, since the name is then a different one;
 /// - `written` has several words whose letters are not exactly those of `near`;
 /// - at least three letters follow `near` in `written`.
 pub fn is_only_near<'c>(
@@ -68,7 +68,7 @@ pub fn is_only_near<'c>(
     let letters = |name: &str| name.replace(|c: char| !c.is_ascii_alphanumeric(), "");
     let digits = |name: &str| name.replace(|c: char| !c.is_ascii_digit(), "");
     let near_letters = letters(near).to_ascii_lowercase();
-    // The letters after the name may be its value, as in `colorred`.
+    // The letters after the name may be a value that was joined to it, as in `colorred`.
     let is_longer = written.starts_with(near) && written.len() >= near.len() + 3;
     if is_longer
         || digits(&written) != digits(near)
@@ -93,7 +93,7 @@ fn nearest_of<'c>(written: &str, candidates: &mut dyn Iterator<Item = &'c str>) 
     let mut best: Option<(usize, &str)> = None;
     for candidate in candidates {
         let other = candidate.chars().count();
-        // At most half of the shorter name's letters may differ.
+        // One letter in three may differ, but not more than half of the shorter name's letters.
         let allowed = (length.max(other) / 3).max(1).min(length.min(other) / 2);
         if length.abs_diff(other) > allowed || best.is_some_and(|(least, _)| least == 0) {
             continue;

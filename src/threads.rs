@@ -10,12 +10,12 @@ use std::{
     thread,
 };
 
-/// Error of starting threads.
+/// Error if the system cannot start threads.
 pub use rayon::ThreadPoolBuildError as NoThreads;
 pub(crate) use rayon::prelude;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Maximum number of threads that can be requested; a greater request is reduced to it. Few
+/// Maximum number of threads that a user can request; a greater request is reduced to it. Few
 /// machines have more processors.
 const MAX_THREADS: usize = 1024;
 
@@ -23,8 +23,8 @@ const MAX_THREADS: usize = 1024;
 /// processors are the only global state, and they change only running times.
 static LIMIT: AtomicUsize = AtomicUsize::new(0);
 
-/// Number of processors. It is stored because asking the system takes longer than rendering a small
-/// picture.
+/// Number of processors of the machine that this process may use. It is stored because asking the
+/// system takes longer than rendering a small picture.
 static PROCESSORS: LazyLock<usize> =
     LazyLock::new(|| thread::available_parallelism().map_or(1, NonZero::get));
 
@@ -110,7 +110,7 @@ mod tests {
 
     use super::{prelude::*, *};
 
-    /// Runs twice, because the calling thread is in a pool the second time.
+    /// Runs the check twice, because the calling thread is in a pool the second time.
     #[test]
     fn where_no_thread_can_be_started_the_calling_one_does_it() {
         for _ in 0..2 {

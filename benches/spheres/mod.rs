@@ -5,13 +5,13 @@ use std::fmt::Write;
 use pinhole::sampling::CounterRng;
 use rand::{Rng, RngExt, SeedableRng};
 
-/// Layout of a block in the text.
+/// Layout of the blocks in a generated text.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// One line for each field.
+    /// Each field of a block on a line of its own.
     Blocks,
-    /// One line for each block.
+    /// Each block on a single line.
     Lines,
 }
 

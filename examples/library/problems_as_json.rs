@@ -2,6 +2,10 @@
 //! what could be written instead.
 //!
 //! `cargo run --example problems_as_json -- SCENE`
+#![allow(
+    clippy::disallowed_methods,
+    reason = "only Pinhole itself opens all files by one module"
+)]
 
 use std::{error::Error, fs};
 

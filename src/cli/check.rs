@@ -17,7 +17,7 @@ use crate::{
     source::Source,
 };
 
-/// Checks each scene in turn and reports its problems. Returns the worst status.
+/// Checks each scene in turn and reports its problems. Returns the worst of the exit statuses.
 pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     let is_json = args.format.format == AnswerFormat::Json;
@@ -85,7 +85,7 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneIn
     Ok(input)
 }
 
-/// Returns a text for people that says how many fixes were not applied and which option applies
+/// Returns a sentence that tells the user how many fixes were not applied and which option applies
 /// them.
 fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     let mut text = String::new();

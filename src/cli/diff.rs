@@ -199,7 +199,7 @@ fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Returns the meaning of a heat map's colours.
+/// Returns what a heat map's colours mean, or that it is all black because the pictures are equal.
 fn legend(is_equal: bool) -> &'static str {
     if is_equal {
         "black all over: nothing differs by more than the tolerance"
@@ -234,13 +234,13 @@ fn write_heat_map(
     Ok(())
 }
 
-/// The result of a comparison, for output.
+/// Result of `diff`, which is printed as text or as JSON.
 struct DiffReport {
     names: [String; 2],
     sizes: [[u32; 2]; 2],
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    /// The verdict on A; `None` if B is not a scene.
+    /// The verdict on the picture A; `None` if B is not a scene.
     verdict: Option<Verdict>,
     is_strict: bool,
 }
@@ -436,7 +436,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
 /// Returns a sentence about which objects are right and which are not. If there are more than 12
 /// objects, it lists only those that are not right, at most 12.
 fn objects(verdict: &Verdict) -> String {
-    /// Maximum number of objects that the sentence lists.
+    /// Maximum number of objects that the sentence lists. If the scene has more, those that are
+    /// right are only counted.
     const MOST: usize = 12;
     let all = &verdict.objects;
     let is_all = all.len() <= MOST;

@@ -14,8 +14,8 @@ use crate::{
     schema, suggest,
 };
 
-/// Maximum width of a line, in columns, even if the terminal is wider, since longer lines are hard
-/// to read.
+/// Maximum width of a printed page, in columns, even if the terminal is wider, since longer lines
+/// are hard to read.
 const WIDEST: usize = 90;
 
 /// Prints the page of `args.words`, or the list of all codes if there are no words.
@@ -39,7 +39,7 @@ pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     Ok(Status::Done)
 }
 
-/// Style of headings.
+/// Style in which the headings of a printed page stand out.
 #[derive(Clone, Copy)]
 enum Headings {
     Plain,
@@ -128,7 +128,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     Err(Trouble(format!("nothing is known about `{word}`: {hint}")))
 }
 
-/// Appends to a page why the method is good at what it is good at, if `word` is a method.
+/// Appends to `page` the reasons why a sampling method works well, if `word` is the name of one.
 fn with_reasons(page: String, word: &str) -> String {
     let section = schema::method(word).and_then(|_| explain::section_of(explain::SAMPLING, word));
     match section.and_then(|section| section.split_once("\n\n")) {

@@ -145,9 +145,9 @@ impl SceneInput {
         }
     }
 
-    /// Reads the scene, and reports its problems to people. Objects outside of the picture are not
-    /// reported, since they may be intended, for example in one frame of an animation. The commands
-    /// that check the text itself report them.
+    /// Reads the scene, and reports its problems to the user. Objects outside of the picture are
+    /// not reported, since they may be intended, for example in one frame of an animation. The
+    /// commands that check the text itself report them.
     pub fn scene(&self) -> Reading {
         let mut reading = scene::read(&self.sources);
         let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
@@ -156,7 +156,7 @@ impl SceneInput {
         reading
     }
 
-    /// Returns the report about the scene's problems, for people.
+    /// Returns the report about the scene's problems as readable text.
     pub fn report(&self, reading: &Reading) -> String {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::inspect;
 
-/// Prints the properties of a scene, for people or as JSON.
+/// Prints the properties of a scene, as readable text or as JSON.
 pub fn run(args: &InspectArgs) -> Result<Status, Trouble> {
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let Some(scene) = input.scene().scene else {

@@ -64,7 +64,7 @@ struct LineCursor<'t> {
     text: &'t str,
     /// Index of the next line.
     next: usize,
-    /// Byte at which the next line starts.
+    /// Offset of the byte at which the next line starts.
     at: usize,
     /// Number of characters before the next line, except white space.
     solid_before: usize,
@@ -125,8 +125,9 @@ impl Iterator for LineChanges<'_> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // An empty line has the same number of solid characters before it as the line after
-                // it. Where these numbers are equal, the empty line is passed first.
+                // The text whose next line has fewer characters before it, not counting white
+                // space, is advanced first; if equally many, the one whose next line is empty;
+                // otherwise both.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),

@@ -121,7 +121,7 @@ fn print_answer(answer: &clap::Error) -> ExitCode {
     }
 }
 
-/// Runs `one` on each scene in turn, and prints errors. Returns the worst status.
+/// Runs `one` on each scene in turn, and prints errors. Returns the worst of the exit statuses.
 fn each(
     scenes: &[PathBuf],
     interrupt: &Interrupt,
@@ -161,7 +161,7 @@ impl From<Status> for ExitCode {
     }
 }
 
-/// Error that ended a command, in words for people.
+/// Error that ended a command, as a sentence for the user.
 #[derive(Debug)]
 struct Trouble(String);
 

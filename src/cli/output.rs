@@ -185,8 +185,8 @@ pub fn style() -> Style {
     }
 }
 
-/// Number of columns to the left of an excerpt, for the line number and the frame. They are not
-/// available to the excerpt.
+/// Number of columns to the left of an excerpt of a scene in a report. The line number and the
+/// frame take them, so they are subtracted from the terminal's width.
 const FRAME: usize = 8;
 
 /// Returns the style of pages on standard output; `None` if standard output is not a terminal.

@@ -22,13 +22,13 @@ use crate::{
     tracer::World,
 };
 
-/// A rendered picture, with pixels in the precision that is needed.
+/// A rendered picture, with its pixels in the precision that the output needs.
 pub enum RenderedPicture {
-    /// Means in 64-bit floats.
+    /// Means of the pixels in linear light, in 64-bit floats.
     Light(Rendered),
-    /// Means rounded to 32-bit floats.
+    /// Means of the pixels in linear light, rounded to 32-bit floats.
     Floats(Rendered<[f32; 3]>),
-    /// Bytes of sRGB.
+    /// Pixels rounded to bytes of sRGB.
     Bytes(Rendered<[u8; 3]>),
 }
 
@@ -51,7 +51,7 @@ impl RenderedPicture {
         }
     }
 
-    /// Returns notes for people on the error bounds of an exact picture; empty for a sampled
+    /// Returns notes for the user on the error bounds of an exact picture; empty for a sampled
     /// picture. `part` is the part of the whole picture that was rendered.
     pub fn notes(&self, part: Area, output: &PictureOutput) -> String {
         match self {
@@ -79,11 +79,11 @@ impl RenderedPicture {
 /// are needed for something else, for example to show the picture in the terminal.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeptPixels {
-    /// Means in 64-bit floats.
+    /// Means of the pixels in linear light, in 64-bit floats.
     Light,
-    /// Means rounded to 32-bit floats.
+    /// Means of the pixels in linear light, rounded to 32-bit floats.
     Floats,
-    /// Bytes of sRGB.
+    /// Pixels rounded to bytes of sRGB.
     Bytes,
 }
 
@@ -120,14 +120,14 @@ pub fn picture(
     })
 }
 
-/// Threshold on the error bound of a pixel, in linear light. A note is printed about pixels above
-/// it.
+/// Error bound of a pixel's mean, in linear light. If bounds are larger, a note for the user says
+/// how many pixels are known less well than to a millionth.
 const VAGUE: f32 = 1e-6;
 
-/// Name of the rounding of pixels in a PNG, for [`certificate`].
+/// Name of the rounding to bytes of sRGB, as the notes about a PNG call it.
 const BYTES: &str = "the 8-bit rounding";
 
-/// Name of the rounding of pixels in an EXR, for [`certificate`].
+/// Name of the rounding to 32-bit floats, as the notes about an EXR call it.
 const FLOATS: &str = "the 32-bit rounding";
 
 /// Returns the certificate of an exact part of the picture: the bound on the error of its means,
@@ -184,18 +184,19 @@ pub enum PictureOutput {
 /// How the path of a file was chosen.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum PathChoice {
-    /// By the command line.
+    /// The user named it on the command line.
     Explicit,
-    /// From the scene's name. A file is replaced only if it is in the scene's folder.
+    /// It was derived from the scene's name. An existing file is replaced only if it is in the
+    /// scene's folder.
     BesideScene,
 }
 
 /// Format of a picture's file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum FileFormat {
-    /// Bytes of sRGB. The file also carries the scene.
+    /// PNG with bytes of sRGB. The file also carries the scene.
     Png,
-    /// Floats in linear light.
+    /// OpenEXR with floats in linear light.
     Exr,
 }
 

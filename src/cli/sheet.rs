@@ -27,11 +27,11 @@ use crate::{
     tracer::World,
 };
 
-/// A cell of the sheet: a scene whose picture has the size that it has on the sheet, and its
+/// A cell of the sheet: a scene, whose picture is already reduced to its size on the sheet, and its
 /// caption.
 type SheetCell = (Scene, String);
 
-/// Gap between two cells, and around all cells, in pixels.
+/// Gap between two cells of the sheet, and around all cells, in pixels.
 const GAP: u32 = 12;
 /// Colour of the frame around each picture, in sRGB bytes.
 const FRAME: [u8; 3] = [192; 3];

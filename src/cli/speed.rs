@@ -29,7 +29,7 @@ use crate::{
 /// Number of steps of the progress bar, which shows the share of the work that is done.
 const STEPS: u64 = 1000;
 
-/// File name of the HTML page.
+/// File name of a report's HTML page.
 const INDEX: &str = "index.html";
 
 /// Names of a report's files. The HTML page is the last.

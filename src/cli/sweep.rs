@@ -13,7 +13,7 @@ use crate::{
 /// Maximum number of scenes in a sweep. A sweep with more is rejected.
 const MOST: usize = 1000;
 
-/// The target and the range of a sweep.
+/// The argument of `--sweep`: the target, the ends of its range, and the number of scenes.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     target: String,
@@ -24,7 +24,7 @@ pub struct Sweep {
 
 /// One scene of a sweep.
 pub struct SweepStep {
-    /// The `--set` argument of the scene.
+    /// The `--set` argument that makes this scene from the one in the file.
     pub set: String,
     /// The argument with its value rounded to few digits, for a caption.
     pub label: String,

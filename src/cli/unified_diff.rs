@@ -4,11 +4,12 @@
 
 use std::ops::Range;
 
-/// Number of unchanged lines that are shown around a change.
+/// Number of unchanged lines that are shown before and after a change, as is usual in diffs.
 const AROUND: usize = 3;
 
-/// Maximum number of lines, in both texts together, that the search for the next equal lines
-/// passes. Beyond it, all remaining lines count as changed.
+/// Maximum number of lines, in both texts together, that are passed after a difference in the
+/// search for the place where the texts agree again. If it is farther away, all remaining lines
+/// count as changed.
 const MOST_STEPS: usize = 1000;
 
 /// Lines of the old text, and the lines of the new text that replace them.
@@ -74,8 +75,8 @@ fn push_hunk(text: &mut String, hunk: &[ReplacedLines], old: &[&str], new: &[&st
 }
 
 /// Returns the changes from `old` to `new`. Walks through both texts. After a difference, the walk
-/// continues at the nearest place where two lines agree or both texts end. The list may be longer
-/// than the shortest one, but is always correct.
+/// continues at the nearest place where the next two lines of both texts agree or both texts end.
+/// The list may be longer than the shortest one, but is always correct.
 fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());
     while a < old.len() || b < new.len() {

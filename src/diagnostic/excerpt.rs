@@ -26,28 +26,31 @@ pub struct Excerpt<'s> {
 
 #[derive(Debug)]
 struct ExcerptLine {
-    /// Line number in the source, counted from 1.
+    /// Number of the line in the source, counted from 1.
     number: usize,
     /// Start of the line in the excerpt, in bytes.
     start: usize,
     /// End of the line in the excerpt, in bytes, without the line feed.
     end: usize,
-    /// For each shown character, its offsets in the source and in the excerpt; likewise for the end
-    /// of each shown part.
+    /// Maps places of the source to places of the excerpt: for each shown character, and for the
+    /// end of each shown part of the line, its byte offset in the source and in the excerpt.
     shown: Vec<(usize, usize)>,
 }
 
 /// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
 /// Longer lines are cut.
 pub const LONG_LINE_BYTES: usize = 160;
-/// Minimum width of an excerpt in columns, which also holds if the terminal is narrower.
+/// Minimum width of an excerpt, in columns. An excerpt is this wide even if the terminal is
+/// narrower.
 pub const MIN_COLUMNS: usize = 30;
-/// Number of columns between a label and its message.
+/// Number of columns that miette needs for the line from the middle of a label to the label's
+/// message, as in `╰── message`.
 const HOOK_COLUMNS: usize = 4;
-/// Minimum width, in columns, to which a label's message is wrapped, even if the label stands far
-/// to the right.
+/// Minimum width, in columns, to which a label's message is wrapped. It is used if the label stands
+/// so far to the right that less room is left.
 const MIN_MESSAGE_COLUMNS: usize = 16;
-/// Maximum number of lines of a label. A longer label is drawn under its first line only.
+/// Maximum number of lines of a label that is drawn whole. A longer label is drawn only in its
+/// first line.
 const MAX_LABEL_LINES: usize = 6;
 
 /// Returns an excerpt of every source that has labels, in the order of the labels.
@@ -70,7 +73,8 @@ pub fn excerpts<'s>(
 }
 
 impl<'s> Excerpt<'s> {
-    /// Makes the excerpt of a source. Lines longer than about `columns` bytes are cut.
+    /// Makes the excerpt of a source for labels in it. Lines longer than about `columns` bytes are
+    /// cut.
     fn new<'l>(
         source: &'s Source,
         labels: impl Iterator<Item = &'l Label>,
@@ -99,11 +103,12 @@ impl<'s> Excerpt<'s> {
             let end = excerpt.offset_of(span.end).max(start + 1);
             let inner = SourceSpan::from((start, end - start));
             let line = excerpt.line_at(start).map_or(start, |(_, line)| line.start);
-            // miette starts the line to a label's message at the middle of the label.
+            // The line from a label to its message starts below the middle of the label in miette's
+            // drawing.
             let left = start.midpoint(end) - line + HOOK_COLUMNS;
             let room = columns.saturating_sub(left).max(MIN_MESSAGE_COLUMNS);
             let message = textwrap::fill(&visible_line(message), room);
-            // miette shows the line and column of the primary label in its header.
+            // The first label is the primary one, whose line and column miette shows in its header.
             excerpt.labels.push(match index {
                 0 => LabeledSpan::new_primary_with_span(Some(message), inner),
                 _ => LabeledSpan::new_with_span(Some(message), inner),

@@ -17,7 +17,7 @@ pub enum Applicability {
 }
 
 impl Applicability {
-    /// Returns [`Self::Safe`] or [`Self::Unsafe`].
+    /// Returns [`Self::Safe`] if `is_safe`, and otherwise [`Self::Unsafe`].
     pub const fn safe_if(is_safe: bool) -> Self {
         if is_safe { Self::Safe } else { Self::Unsafe }
     }
@@ -58,8 +58,8 @@ impl Fix {
         Self::sorted(title.into(), edits.into_iter().collect())
     }
 
-    /// Makes a fix of edits after sorting them. This function is not generic, so that it is
-    /// compiled only once.
+    /// Makes a fix of edits, which are sorted first. Unlike [`Self::new`], this function is not
+    /// generic, so that it is compiled only once.
     fn sorted(title: String, mut edits: Vec<Edit>) -> Self {
         sort_by_span(&mut edits, |edit| edit.span);
         // A removal includes the adjacent white space. Between two removals, only the first one
@@ -151,10 +151,10 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
     Span::new(span.source, span.start, span.end + behind.trim_end().len())
 }
 
+/// Blanks: the characters of white space within a line.
 const BLANK: [char; 2] = [' ', '\t'];
 
-/// Returns whether only blanks stand between the last line end in `before`, or its start, and its
-/// end.
+/// Returns whether a text that follows `before` is the first on its line, apart from blanks.
 fn starts_line(before: &str) -> bool {
     let outer = before.trim_end_matches(BLANK);
     outer.is_empty() || outer.ends_with(['\n', '\u{feff}'])
@@ -165,7 +165,8 @@ fn ends_line(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
-/// Returns the text after the blanks and comments at its start, up to the end of their line.
+/// Returns the text after the blanks and comments at its start. A line end that is not within a
+/// comment is not skipped.
 fn past_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches([' ', '\t']);
     loop {
@@ -263,7 +264,7 @@ impl Edit {
         Self::new(Span::new(source, outer.len(), end), text)
     }
 
-    /// Returns whether the edit removes a comment together with something else, or joins two words.
+    /// Returns whether the edit removes a comment together with other text, or joins two words.
     fn is_careless(&self, text: &str) -> bool {
         let is_comment = |sign: &str| {
             let rest = |text: &str| text.find(sign).map(|at| text.len() - at - sign.len());

@@ -8,8 +8,8 @@ use std::ops::{Deref, DerefMut};
 use super::{Diagnostic, Label, Severity};
 use crate::source::Span;
 
-/// Maximum number of problems that a stage reports, and of places that one fix changes. Further
-/// problems are omitted, and a last diagnostic says so.
+/// Maximum number of problems that a stage of reading a scene reports, and of places that one fix
+/// changes. Further problems are omitted, and a last diagnostic says so.
 pub const MOST_PROBLEMS: usize = 10_000;
 
 /// Message of the diagnostic that stands for all omitted problems. The summary does not count this

@@ -22,7 +22,7 @@ pub struct Style {
     pub drawing: Drawing,
     /// Whether colours are used.
     pub color: bool,
-    /// Width in columns to which help is wrapped.
+    /// Width, in columns, to which the help is wrapped.
     pub width: usize,
     /// Width of the terminal in columns, to which lines of an excerpt are cut and labels and titles
     /// are wrapped. If it is `None`, there is no terminal, and only very long lines are cut.
@@ -58,7 +58,8 @@ pub struct Report<'s> {
     style: Style,
 }
 
-/// Returns a line for each kind of diagnostic with its count, the most frequent kind first.
+/// Returns a line for each code that diagnostics have, with the number of diagnostics that have it,
+/// the most frequent code first.
 fn counts(diagnostics: &[Diagnostic]) -> String {
     let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
     for diagnostic in diagnostics
@@ -76,10 +77,11 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
 }
 
 impl<'s> Report<'s> {
-    /// Maximum number of reports that are shown in full. If there are more, only the first
-    /// [`Self::FIRST_SHOWN`] and the count of each kind are shown; JSON has all of them.
+    /// Maximum number of diagnostics that are all shown as reports. If there are more, only the
+    /// first [`Self::FIRST_SHOWN`] are, and the others are counted by their codes. JSON always has
+    /// all of them.
     pub const MOST_SHOWN: usize = 100;
-    /// Number of reports that are shown in full if there are more than [`Self::MOST_SHOWN`].
+    /// Number of diagnostics that are shown as reports if there are more than [`Self::MOST_SHOWN`].
     pub const FIRST_SHOWN: usize = 20;
 
     /// Makes a printer for diagnostics about `sources`.

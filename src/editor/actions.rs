@@ -11,8 +11,8 @@ use crate::{
     syntax::tokens::{Lexer, TokenKind},
 };
 
-/// Returns the fixes of the problems whose first label touches `within`, each with its problem.
-/// Editors underline the first label.
+/// Returns the fixes of those problems whose first label touches the bytes `within`, each with its
+/// problem. Editors underline the first label.
 pub fn fixes<'a>(
     analysis: &'a Analysis<'_>,
     within: Span,
@@ -32,8 +32,9 @@ pub fn fixes<'a>(
     })
 }
 
-/// Returns the ranges of the example values in the text `written` of a placeholder fix: numbers and
-/// lists, or else the whole text. The author replaces these values.
+/// Returns the byte ranges of the made-up example values in `written`, the new text of a
+/// placeholder fix: its numbers and lists, or the whole text if it has none. The author replaces
+/// these values.
 pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     let mut values: Vec<Range<usize>> = Vec::new();
     let (mut lexer, mut open) = (Lexer::new(written, 0), 0_usize);
@@ -63,7 +64,8 @@ pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     values
 }
 
-/// Returns all safe fixes as one fix, or `None` if there are none.
+/// Returns the safe fixes of all problems of the text, joined to one fix. Returns `None` if there
+/// are none.
 pub fn fix_all(analysis: &Analysis<'_>) -> Option<Fix> {
     let fixed = scene::fix_all(analysis.model.sources(), Applicability::Safe);
     let edit = change(analysis.text(), &fixed.text);

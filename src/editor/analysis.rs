@@ -23,7 +23,8 @@ pub struct Analysis<'s> {
     tokens: OnceCell<Vec<RoleToken>>,
 }
 
-/// Nodes of the tree that contain an offset, from the largest to the smallest.
+/// The nodes of the tree that contain an offset, each in the one before it: a definition or a
+/// block, a field of the block, and values.
 #[derive(Debug, Default)]
 pub(super) struct Path<'a, 's> {
     /// The definition that contains the offset.
@@ -126,7 +127,8 @@ impl<'s> Analysis<'s> {
         Some((block, indices.find(|index| index.name.text == name)?))
     }
 
-    /// Returns the objects of a block.
+    /// Returns the objects that a block stands for: several for a repeated block, and none if the
+    /// block has errors or is no object.
     pub(super) fn objects_of(&self, block: &Block<'_>) -> &[Object] {
         let objects = &self.model.parts.objects;
         let first = objects.partition_point(|it| it.span.start < block.span.start);
@@ -162,8 +164,9 @@ impl<'a, 's> Path<'a, 's> {
                     break;
                 }
             } else if matches!(item, Item::Block(_)) {
-                // Definitions within a block precede it in the list of items, so only a later block
-                // ends the search.
+                // A `let` that was written within a block stands before that block in the list of
+                // items. So items with later places may come before those with earlier ones, and
+                // only a later block ends the search.
                 break;
             }
         }

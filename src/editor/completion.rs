@@ -80,7 +80,8 @@ pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     completions
 }
 
-/// Returns the completion that inserts a word without placeholders.
+/// Returns a completion that inserts only the word itself, without placeholders, in place of the
+/// typed one.
 fn word(
     situation: &Situation,
     word: &str,
@@ -107,12 +108,12 @@ fn placeholder(value: impl Into<String>) -> SnippetPart {
     SnippetPart::Placeholder(value.into())
 }
 
-/// Returns completions for `let`, for all objects, and for the settings that the scene does not
-/// have yet.
+/// Returns completions for `let`, for all kinds of objects, and for those of `image`, `camera` and
+/// `sampler` that the scene does not have yet.
 fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let is_there = |row: &schema::BlockRow| {
-        // If a block follows the word that is being typed, its keyword is parsed as the name of
-        // that word's block.
+        // If a block follows the word that is being typed, the typed word is parsed as a kind, and
+        // the keyword of that block as its name. So names are searched for keywords, too.
         let words = analysis.blocks().flat_map(|block| [block.kind, block.name]);
         let mut words = words.flatten();
         words.any(|word| word.span != situation.word && word.text == row.name)
@@ -162,7 +163,7 @@ fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
         _ => (" {\n  ", "\n  ", "\n}"),
     };
     let mut pieces = vec![text(format!("{}{open}", row.name))];
-    // The values are aligned in a column, as the formatter does.
+    // The values of the fields are aligned in a column, as the formatter does.
     let widest = least.iter().map(|field| field.name.len()).max();
     let width = widest.unwrap_or(0);
     for (index, field) in least.iter().enumerate() {
@@ -179,7 +180,8 @@ fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
     pieces
 }
 
-/// Returns an example value as a placeholder. Each part of a list is a placeholder of its own.
+/// Splits an example value into the parts of a snippet: a placeholder or, for a list, a placeholder
+/// for each of its elements.
 fn value_to_type_over(example: &str) -> Vec<SnippetPart> {
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
     match inner {
@@ -188,7 +190,8 @@ fn value_to_type_over(example: &str) -> Vec<SnippetPart> {
     }
 }
 
-/// Returns a list that starts with `open`, with a placeholder for each part.
+/// Returns the snippet parts of a list: the text `open`, such as `(`, the elements `parts` as
+/// placeholders, and the closing parenthesis.
 fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Vec<SnippetPart> {
     let mut pieces = vec![text(open)];
     for part in parts {
@@ -201,8 +204,8 @@ fn list_to_type_over<'p>(open: &str, parts: impl Iterator<Item = &'p str>) -> Ve
     pieces
 }
 
-/// Returns an example value for a field that does not contradict the other fields of the current
-/// block.
+/// Returns an example value for the field `field`. The value does not contradict the other fields
+/// of the current block.
 fn example(analysis: &Analysis<'_>, situation: &Situation, field: &FieldRow) -> String {
     let at = situation.word.start;
     // The current block is the last one that starts before the word. It may not be closed yet.
@@ -259,7 +262,7 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
     if lists.contains(&wanted) {
-        // A single colour cannot be the value of a field for several colours.
+        // A field for several colours takes no single colour, so nothing else is offered for it.
         return completions;
     }
     completions.extend(functions(situation, is_color));

@@ -92,8 +92,8 @@ fn is_letter(c: char) -> bool {
     c.is_ascii_alphabetic() || c == '_'
 }
 
-/// Returns the span of a token that touches the offset `at` and satisfies `is_meant`, or else the
-/// empty span at `at`. Returns `None` in a comment.
+/// Returns the span of the first token that touches the offset `at` and satisfies `is_meant`. If
+/// there is none, returns the empty span at `at`. Returns `None` if `at` is in a comment.
 fn touched(
     analysis: &Analysis<'_>,
     at: usize,
@@ -116,8 +116,8 @@ fn touched(
     (!is_in_comment).then(|| token.map_or(file(at, at), |token| token.span))
 }
 
-/// Replaces `word` by the made-up name [`CURSOR`] and parses the text. Returns the result of `ask`
-/// for the path to this name in the tree.
+/// Parses the text with the made-up name [`CURSOR`] in place of `word`, and returns what `ask`
+/// returns for the path to this name in the tree.
 fn with_cursor<T>(
     analysis: &Analysis<'_>,
     word: Span,
@@ -223,9 +223,9 @@ fn is_cursor(value: &tree::Value<'_>) -> bool {
     matches!(value.kind, ValueKind::Name(CURSOR))
 }
 
-/// Returns what can be typed in a block at the offset `at` outside of its fields: another kind of
-/// block in place of its keyword, or a field within its braces. Returns `None` in the rest of its
-/// head.
+/// Returns what can be typed at the offset `at`, which is in a block but not in one of its fields:
+/// another keyword in place of the block's own, or a field between the braces. Returns `None` in
+/// the rest of the head.
 fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     if block.kind.is_some_and(|kind| kind.text == CURSOR) {
         return Some(Expected::Item);

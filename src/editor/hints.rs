@@ -23,24 +23,26 @@ pub struct Hint {
     pub text: String,
 }
 
-/// Hints about one value.
+/// The hints about one value, before they are put at the end of a line.
 struct Remark<'s> {
-    /// Byte offset of the value's end.
+    /// Byte offset of the end of the value.
     end: usize,
     /// Name of the value's field or definition.
     name: &'s str,
     /// Result of the value, if it is an expression.
     result: Option<Value>,
-    /// A fact that follows from this value and others, such as the field of view.
+    /// A fact that follows from this value and other values of the block, such as the field of view
+    /// that a distance gives.
     beside: Option<String>,
 }
 
-/// Returns the hints about values that end in the byte range `within`, in order: the result of an
-/// expression, the field of view that corresponds to a distance, the total number of samples.
+/// Returns the hints about the values that end in the byte range `within`, in order. A hint shows
+/// the result of an expression, the field of view for a `d`, or the total number of samples for a
+/// `per_pixel`.
 ///
 /// Hints stand at the ends of lines, because within a line they would shift the formatter's
-/// columns. A result that does not directly follow its expression is preceded by the name of its
-/// field.
+/// columns. If other text stands between an expression and the end of its line, the result is
+/// preceded by the name of the field or definition.
 pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
     let mut remarks: Vec<Remark<'_>> = Vec::new();
     let touches =
@@ -144,8 +146,8 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
     }
 }
 
-/// Returns whether a diagnostic labels the field's name or the block's keyword, as it does for
-/// conflicting fields.
+/// Returns whether a problem has a label at the field's name or at the block's keyword, as a report
+/// of conflicting fields has.
 fn is_disputed(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
     let diagnostics = analysis.diagnostics().iter();
     let mut labels = diagnostics.flat_map(|diagnostic| &diagnostic.labels);

@@ -183,8 +183,9 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
     )
 }
 
-/// Returns the index in `path.values` of the value to describe: the innermost one, except that a
-/// number, a list or a sign stands for the operation or call that it belongs to.
+/// Returns the index in `path.values` of the value that the hover describes. It is the innermost
+/// value or, if that is a number, a list or a negation, the innermost operation or call that
+/// contains it.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;

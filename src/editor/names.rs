@@ -28,7 +28,7 @@ enum Namespace {
     Objects,
 }
 
-/// Returns the span of the name at the offset `at` in its definition.
+/// Returns where the name at the offset `at` is defined: the span of the name in its definition.
 pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     let mut occurrences = occurrences(analysis, at).into_iter();
     let first = occurrences.find(|occurrence| occurrence.is_definition);
@@ -115,8 +115,8 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
         }
         _ => {}
     }
-    // Indices of different blocks may have the same name, so an index `new` of another block is no
-    // conflict.
+    // Indices of different blocks may have the same name, so it is no conflict if `new` is an index
+    // of another block.
     let block = |name: &str, at| analysis.index_at(name, at).map(|(block, _)| block.span);
     let own = block(analysis.slice(name.span), name.span.start);
     let is_elsewhere = |token: &RoleToken| {
@@ -128,8 +128,7 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
             && analysis.slice(token.span) == new
             && !is_elsewhere(token)
     };
-    // An undefined use of the new name would then refer to the renamed definition, so it counts as
-    // taken.
+    // An undefined use of `new` would refer to the renamed definition, so it counts as taken, too.
     let taken = analysis.tokens().iter().find(is_taken);
     match taken.filter(|_| analysis.slice(name.span) != new) {
         Some(taken) => Err(format!(

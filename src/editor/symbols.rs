@@ -78,7 +78,8 @@ fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
         selection: field.name.span,
         children: Vec::new(),
     });
-    // A wrong name before the keyword, as in `let Ball = sphere {`, is outside of the block's span.
+    // A misplaced name before the keyword, as in `let Ball = sphere {`, is outside of the block's
+    // span.
     let name = block
         .name
         .filter(|name| name.span.start >= block.span.start);

@@ -108,7 +108,7 @@ fn scanned(text: &str, comments: &[Span]) -> Vec<RoleToken> {
     }
 }
 
-/// Tokens whose roles are set from the tree.
+/// The tokens of a text, while their roles are set from the tree.
 struct Roles(Vec<RoleToken>);
 
 impl Roles {

@@ -27,13 +27,13 @@ const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 /// centre on the correct side of a line whose error is |h|.
 ///
 /// Derivation: the line does not cut the cell, so the form has the same sign at all vertices, and
-/// is at most n·|h| there. Each vertex is at most 2n·|h| from the line, because the larger factor
-/// of the form is at least 1/2. The cell is at most √2 long, and 2·√2 < 3.
+/// is at most n·|h| there. Each vertex is at most 2n·|h| from the line, because the larger of |a|
+/// and |b| in the form a·x + b·y + c is at least 1/2. The cell is at most √2 long, and 2·√2 < 3.
 const MAX_AREA_PER_HEIGHT: f64 = 3.0;
 
 /// Upper bound on the rounding error of a line's form a·x + b·y + c at a vertex; below it, the sign
-/// of the form is uncertain. The form has four roundings of terms that are at most 2, because its
-/// larger factor is about 1.
+/// of the form is uncertain. The form has four roundings of terms that are at most 2, because the
+/// larger of |a| and |b| is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// Returns the share of each colour in the sub-pixel of `regions`, which `lines` cut into cells.
@@ -43,9 +43,9 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
     for line in lines {
         let rad = line.rad + ROUNDING;
         worst = worst.max(rad);
-        // The true line is within 2·`rad` of the computed one, because the larger factor is at
-        // least 1/2. The line is at most √2 long in the pixel, and 2·√2 < 3. `rad` includes the
-        // rounding errors of vertices on both sides of the line.
+        // `rad` is the maximum error of a value of the line's form at a vertex. The larger of the
+        // form's factors of x and y is at least 1/2, so the true line is within 2·`rad` of the
+        // computed one. The line is at most √2 long in the pixel, and 2·√2 < 3.
         regions.add_doubtful_area(3.0 * rad);
         for polygon in mem::take(&mut polygons) {
             if regions.budget.is_spent() {
@@ -64,8 +64,8 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
         }
         let area = area(polygon);
         let inside = center(polygon);
-        // If the point is close to a line, the point and with it the whole cell may be on the wrong
-        // side.
+        // If the cell's point is close to a line, rounding may have put the point, and even the
+        // whole cell, on the wrong side of the line.
         let may_be_thin = || area <= MAX_AREA_PER_HEIGHT * polygon.len() as f64 * worst;
         let is_near_line = || {
             lines

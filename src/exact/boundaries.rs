@@ -22,15 +22,18 @@ use super::budget::PixelBudget;
 /// side. The value is eight unit roundoffs, about the rounding error of a pixel's mean in `f64`.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Work charged per pair of objects whose depths are compared, in units of about 50 ns.
+/// Work charged to the pixel's budget per pair of objects whose depths are compared, in units of
+/// about 50 ns.
 const PAIR_WORK: f64 = 1.0 / 16.0;
-/// Work charged per object or pair of objects whose curves are computed, in units of about 50 ns.
+/// Work charged to the pixel's budget per object or pair of objects whose curves are computed, in
+/// units of about 50 ns.
 const CURVES_WORK: f64 = 8.0;
-/// Work charged to prepare a triangle or cuboid, in units of about 50 ns. It is charged only if the
-/// candidates outnumber the cache's slots, because the cache then cannot keep all prepared objects.
+/// Work charged to the pixel's budget to prepare a triangle or cuboid, in units of about 50 ns. It
+/// is charged only if there are more candidates than [`CACHE_SLOTS`], because the world's cache of
+/// prepared objects then cannot keep all of them.
 const PREPARATION_WORK: f64 = 140.0;
-/// Additional work charged per object, and per pair of surfaces, whose curves are computed in the
-/// highest precision, in units of about 50 ns.
+/// Additional work charged to the pixel's budget per object, and per pair of surfaces, whose curves
+/// are computed in the highest precision ([`Big`]), in units of about 50 ns.
 const BIG_CURVE_WORK: f64 = 1500.0;
 
 /// Source of boundary curves: an object or a pair of objects, as indices into the candidates.
@@ -101,8 +104,8 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // `room` exceeds `2 * max_curves` only if more than `max_curves` curves are left after
-        // merging equal curves.
+        // `room` is the length of `out` at which equal curves are merged next. It exceeds `2 *
+        // max_curves` only if more than `max_curves` curves were left after merging.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }
@@ -192,7 +195,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
             for (j, b) in self.candidates.iter().enumerate().skip(i + 1) {
                 let apart = a.inverse_depth.high < b.inverse_depth.low
                     || b.inverse_depth.high < a.inverse_depth.low;
-                // All boards are parallel, and their common silhouette is the horizon.
+                // Boards are all parallel, so that two of them do not intersect. Their common
+                // silhouette, the horizon, is among the outlines.
                 let are_parallel = is_board(a) && is_board(b);
                 if !apart && !are_parallel {
                     take(BoundarySource::Pair(i, j))?;
@@ -248,7 +252,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         self.objects[at].get_or_init(|| {
             self.charge_big_curve();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
-            // With more candidates than slots, the cache cannot keep all prepared objects.
+            // With more candidates than slots, the world's cache cannot keep all prepared objects,
+            // so that each may have to be prepared again.
             if self.candidates.len() > CACHE_SLOTS && matches!(*object, Object::Convex(_)) {
                 self.budget.charge(PREPARATION_WORK);
             }
@@ -277,8 +282,8 @@ impl Boundary {
         }
     }
 
-    /// Returns whether the curve's error is so small that a higher precision would hardly improve
-    /// the pixel's bound.
+    /// Returns whether the curve's error is below [`LOOSE_LINE`] or [`LOOSE_CONIC`], so small that
+    /// the highest precision would hardly improve the error bound of the pixel's mean.
     fn is_tight(&self) -> bool {
         match self {
             Self::Line(line) => line.rad < LOOSE_LINE,

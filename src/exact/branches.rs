@@ -14,7 +14,7 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// Maximum error of an arc's area, divided by the arc's width, for a result in `f64`; above it, the
+/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width; above it, the
 /// arc is computed in double-double. All arcs of a curve across the pixel then contribute at most
 /// 4e-15 square pixels, far below the default tolerance of 9e-10.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
@@ -23,9 +23,9 @@ const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 /// vertical, because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Distance in y from the pixel beyond which a branch, bulge included, is ignored, divided by the
-/// branch's largest |y| or by 1, whichever is greater. Rounding errors of y are millions of times
-/// smaller.
+/// Minimum distance in y between the pixel and a branch, its bulge over the chord included, at
+/// which the branch is ignored. It is divided by the branch's largest |y| or by 1, whichever is
+/// greater. Rounding errors of y are millions of times smaller.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).
@@ -55,11 +55,11 @@ pub enum Track<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct ConicGraph {
     factors: [Double; 6],
-    /// Coefficients of x², 2x and 1 in the polynomial Δ.
+    /// Coefficients of x², 2x and 1 in Δ, a polynomial in x.
     delta: [Double; 3],
 }
 
-/// The two functions of a conic over a range of x.
+/// The two functions y(x) of a conic over a range of x.
 #[derive(Debug)]
 pub struct ConicSpan<'a> {
     graph: &'a ConicGraph,
@@ -97,7 +97,7 @@ impl ConicGraph {
     /// two functions begin and end.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         let [p, q, r] = self.delta;
-        // These are the roots of px² + 2qx + r, computed without cancellation.
+        // Δ is px² + 2qx + r; its roots are computed without cancellation.
         let discriminant = q.times(&q).minus(&p.times(&r));
         let roots = (discriminant.hi >= 0.0).then(|| {
             let root = discriminant.sqrt().hi;
@@ -185,8 +185,8 @@ impl<'a> ConicSpan<'a> {
         if !y[1].is_finite() {
             return None;
         }
-        // If the curvature has one sign, the distance from the chord is nowhere more than twice the
-        // distance in the middle.
+        // If the branch's curvature has one sign, the branch is nowhere farther from its chord than
+        // twice its distance in the middle, `sagitta`.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -205,8 +205,9 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // A branch without an arc may be too flat to distinguish its tangents; its section is
-            // then straight. Each y has six operations, and the mean of two y has two.
+            // A branch without an arc may be too flat to distinguish its tangents. If its middle is
+            // within `flat`, the rounding error, of the chord, it is treated as straight. Each y
+            // has six roundings, and the mean of two y adds two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -244,16 +245,17 @@ impl<'a> ConicSpan<'a> {
             end,
             weight: w2.sqrt(),
         };
-        // An arc that turns by more than 120° is rejected, so that the caller halves it. For a
-        // circle, the weight is the cosine of half the turn.
+        // Minimum weight of an arc. For a circle, the weight is the cosine of half the arc's turn.
+        // An arc of less weight turns by more than 120° and is rejected, so that the caller halves
+        // it.
         const MIN_WEIGHT: f64 = 0.5;
         let turns_little = arc.weight > MIN_WEIGHT && arc.weight < 1.0 / MIN_WEIGHT;
         (control.x >= 0.0 && control.x <= end.x - start.x && turns_little).then_some((arc, off))
     }
 }
 
-/// A point of a conic, with √Δ there. √Δ has the sign of the branch, and is half of the derivative
-/// of the conic's form with respect to y.
+/// A point of a conic, with a signed √Δ ([`ConicGraph`]) there: it has the sign of the branch, and
+/// is half of the derivative of the conic's form with respect to y.
 struct ArcEnd<T> {
     at: [T; 2],
     root: T,
@@ -299,8 +301,8 @@ impl Tangents {
             1.0 + terms / length(&gradients[i])
         });
         let kappa = kappa[0].max(kappa[1]);
-        // Returns the conic's quadratic part Q at the vector `v`, and its relative error in
-        // roundings. `v` has an error of `off` roundings.
+        // Returns Q(v), the conic's quadratic part at the vector `v`, and the relative error of
+        // Q(v) in roundings. `off` is the relative error of `v` in roundings.
         let quadratic = |v: &[T; 2], off: f64| {
             let half = [
                 product(&[a.clone(), b.clone()], v),
@@ -444,8 +446,9 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
-        // The coordinates of both arcs have errors and take about twenty operations. The error
-        // counts on both sides, for three points and the chord.
+        // The coordinates of each arc's points have rounding errors of about twenty operations.
+        // These count for both arcs, in the three points as well as in the chord from which heights
+        // are measured.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest
             + (aside + rounding) * steepest

@@ -49,8 +49,8 @@ impl PictureWork {
 #[derive(Debug)]
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
-    /// Requested error bound, as a fraction of the pixel's area. Integrators may truncate infinite
-    /// sums at fractions of it.
+    /// Requested error bound of the pixel's mean, as a fraction of the pixel's area. Integrators
+    /// may truncate infinite sums at fractions of it.
     pub tolerance: f64,
     /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,

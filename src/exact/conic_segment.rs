@@ -22,11 +22,11 @@ const NEAR_PARABOLA: f64 = 0.36;
 /// Maximum number of board lines at which an arc is cut; if more cross it, the arc is halved first.
 /// Measured: with 48, boards of small squares behind spheres take up to 50 % longer.
 const MAX_LINES: f64 = 12.0;
-/// Maximum total area of the segments of an arc's halves, as a fraction of the whole arc's segment.
-/// Above it, numbers are too large or too small to represent the arc: it is not halved, and its
-/// segment is added to the error bound. Exactly, the fraction is 1/4 for a parabola, at most 0.37
-/// for an ellipse (half of one), and less for a hyperbola. The constant is twice the largest of
-/// these.
+/// Maximum area of the segments of an arc's two halves together, divided by the area of the whole
+/// arc's segment. Above it, numbers are too large or too small to represent the arc: it is not
+/// halved, and its segment is added to the error bound. The exact quotient is 1/4 for a parabola,
+/// at most 0.37 for an ellipse (half of one), and less than 1/4 for a hyperbola. The constant is
+/// twice the largest of these.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.
@@ -60,13 +60,13 @@ impl Arc {
         triangle * triangle_share(self.weight)
     }
 
-    /// Returns the point at the parameter `t`, from 0 to 1.
+    /// Returns the point of the arc at the curve's parameter `t`: 0 is the start, 1 the end.
     pub(crate) fn at(&self, t: f64) -> DVec2 {
         let (point, weight) = self.blossom(t, t);
         point / weight
     }
 
-    /// Returns the part of the arc between the parameters `t0` and `t1`.
+    /// Returns the part of the arc between the curve's parameters `t0` and `t1`.
     pub(crate) fn between(&self, t0: f64, t1: f64) -> Self {
         let (start, w0) = self.blossom(t0, t0);
         let (control, w) = self.blossom(t0, t1);
@@ -213,7 +213,8 @@ impl Homography {
                     .across
                     .map(|across| square_wave(form(&across, middle) * depth));
                 let mut segment = over_one_square(piece.area(), a * b);
-                // Rounding errors displace the lines of the board.
+                // Rounding errors of the forms displace the lines of the board, which changes the
+                // integral.
                 segment.bound += self.displacement_error(&[piece.start, piece.control, piece.end]);
                 chords.sum.add(segment);
                 chords.points.push(piece.end);
@@ -258,9 +259,10 @@ impl Homography {
 fn over_one_square(area: f64, sign: f64) -> BoundedSum {
     BoundedSum {
         value: sign * area,
-        // The area of a triangle has five operations, and the ratio of segment to triangle up to
-        // ten. Where the series gives way to the closed formula, the formula's difference is only a
-        // quarter of its terms.
+        // The area of the triangle of chord and control point has five roundings, and the segment's
+        // share of the triangle (`triangle_share`) up to ten. At |1 − w²| = `NEAR_PARABOLA`, the
+        // difference θ − sin θ·cos θ is only a quarter of its terms, which makes their roundings
+        // four times as large.
         bound: 48.0 * UNIT * area,
     }
 }
@@ -269,13 +271,14 @@ fn over_one_square(area: f64, sign: f64) -> BoundedSum {
 struct Chords {
     points: Vec<DVec2>,
     sum: BoundedSum,
-    /// Maximum area of a neglected segment, in square pixels.
+    /// Maximum area of a piece's segment that is neglected, in square pixels.
     neglected: f64,
 }
 
 /// Returns the roots between 0 and 1 of f0·(1 − t)² + f1·t·(1 − t) + f2·t².
 fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
-    // Without scaling, the products underflow for extremely large squares.
+    // Without scaling, the products underflow if the squares of the board are extremely large,
+    // because f0, f1 and f2 are then tiny.
     let scale = 1.0 / f0.abs().max(f1.abs()).max(f2.abs());
     let [f0, f1, f2] = [f0 * scale, f1 * scale, f2 * scale];
     let discriminant = f1 * f1 - 4.0 * f0 * f2;
@@ -308,7 +311,8 @@ mod tests {
                 weight: cos,
             };
             let expected = if degrees < 20 {
-                // The segment is (x − sin x)/2 = x³/12 − x⁵/240 + … with x = 2θ.
+                // For small θ, θ − sin θ·cos θ loses digits. With x = 2θ, it equals (x − sin x)/2,
+                // whose series is x³/12 − x⁵/240 + …
                 let x = 2.0 * theta;
                 let mut term = x * x * x / 6.0;
                 let mut sum = 0.0;
@@ -321,8 +325,8 @@ mod tests {
                 theta - sin * cos
             };
             assert!(
-                // The triangle's height is the difference between the coordinate 1/cos θ and cos
-                // θ, and loses digits for small θ.
+                // The height of the triangle of chord and control point is 1/cos θ − cos θ, which
+                // loses digits for small θ.
                 (arc.area() / expected - 1.0).abs() < 4e-15 + 2.0 * f64::EPSILON / (theta * theta),
                 "{degrees}: {} {expected}",
                 arc.area()

@@ -65,8 +65,9 @@ use self::{
     region::{Regions, Shares},
 };
 
-/// Error bound that is requested by default, as a fraction of the pixel's area. It is a little
-/// below 1e-9, so that the result is within 1e-9 even after the rounding of sums.
+/// Default of the requested error bound: the fraction of a pixel's area that may have a wrong
+/// colour. It is a little below 1e-9, so that the result is within 1e-9 even after the rounding of
+/// sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// Maximum number of curves that pass through a whole pixel; with more, the pixel is quartered
 /// before anything is computed. n curves cross at about n² points, where all curves have to be
@@ -75,8 +76,8 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves grows with each quartering. Curves that pass
-/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap:
-/// with 1 instead of 4, the time is two thirds; with 16, it is four times as long.
+/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap of
+/// objects: with 1 instead of 4, the time is two thirds; with 16, it is four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed piece is quartered to reduce its
 /// bound. The piece with the largest bound comes first, while the pixel's bound exceeds the
@@ -94,7 +95,7 @@ const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged per piece, in units of about 50 ns. Work constants need not be precise, because
 /// they only stop computations that take too long.
 const PIECE_WORK: f64 = 100.0;
-/// Work charged per object of a piece, in units of about 50 ns.
+/// Work charged per candidate object of a piece, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
 /// Work charged per ordered pair of curves in a piece with a conic, in units of about 50 ns.
 /// Without it, the regions' work accounts for only half of the time measured for a heap of 10⁴
@@ -118,9 +119,9 @@ pub struct ExactPixel<const N: usize = 3> {
 pub struct Integrator<'a, const N: usize = 3> {
     pub(crate) world: &'a World,
     quartering: Quartering<'a>,
-    /// Values of each colour, by palette slot.
+    /// Values of each colour of the world's palette, by its index there (slot).
     colors: Vec<[f64; N]>,
-    /// Error bound that is requested, as a fraction of the pixel's area.
+    /// Requested error bound: the fraction of a pixel's area that may have a wrong colour.
     tolerance: f64,
     work: PictureWork,
 }
@@ -185,7 +186,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         }
     }
 
-    /// Sets the requested error bound, as a fraction of the pixel's area.
+    /// Sets the requested error bound: the fraction of a pixel's area that may have a wrong colour.
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
@@ -219,7 +220,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut curves = Vec::new();
         let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
-        // Checkerboard pixels that the batches cannot compute accurately enough.
+        // Checkerboard pixels that are computed alone, because the batches are not accurate enough.
         let mut deferred = Vec::new();
         let is_over = || cancel.load(Relaxed) || self.work.is_exceeded();
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
@@ -260,10 +261,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
         (flow.is_continue() && !is_over()).then_some(film.pixels)
     }
 
-    /// Calls `show` with each area of one colour and with each other pixel, together with the share
-    /// of each colour by palette slot. The world must be made by [`World::by_object`]. Above the
-    /// work limit, a pixel's middle counts for the whole pixel. Returns whether all shares are
-    /// known to within 1e-6.
+    /// Calls `show` with each area in which only one object is seen, and with each other pixel,
+    /// together with the objects' shares, by palette slot. The world must be made by
+    /// [`World::by_object`], so that slots stand for objects. Above the work limit, a pixel's
+    /// middle counts for the whole pixel. Returns whether all shares are known to within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -332,8 +333,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue grows by copying to twice the memory, and the old memory exists
-                // until then.
+                // A full queue of pieces grows by copying to twice the memory; the old memory
+                // exists until then.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -405,7 +406,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let widths = (0..N).map(|i| greatest[i] - least[i]);
         ExactPixel {
             mean: array::from_fn(|i| least[i].midpoint(greatest[i])),
-            // The values are at most 1, and each has been rounded twice.
+            // The ends of the range are at most 1, and each has been rounded twice.
             bound: 0.5 * widths.fold(0.0, f64::max) + 4.0 * UNIT,
         }
     }

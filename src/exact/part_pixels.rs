@@ -11,7 +11,8 @@ pub(super) struct PartPixels<const N: usize> {
 }
 
 impl<const N: usize> PartPixels<N> {
-    /// Sets all pixels of an area that shows one colour, with the bound 0.
+    /// Sets all pixels of the area `part`, which shows one colour, to the mean `mean` with the
+    /// bound 0.
     pub fn fill(&mut self, part: Area, mean: [f64; N]) {
         for y in part.y..part.y + part.height {
             let start = self.part.index(part.x, y);

@@ -21,19 +21,21 @@ use super::{
     conic_segment::Arc,
 };
 
-/// Work charged per region, in units of about 50 ns.
+/// Work charged to the pixel's budget per region, in units of about 50 ns.
 const REGION_WORK: f64 = 4.0;
-/// Work charged per object that a region's ray may hit, in units of about 50 ns.
+/// Work charged to the pixel's budget per candidate object that a region's ray may hit, in units of
+/// about 50 ns.
 const RAY_WORK: f64 = 0.5;
-/// Work charged per object that a region's ray may hit if the ray is traced in the highest
-/// precision ([`Big`]), in units of about 50 ns.
+/// Work charged to the pixel's budget per candidate object that a region's ray may hit, if
+/// double-double arithmetic does not decide what the ray hits and the highest precision
+/// ([`Big`](crate::math::Big)) does, in units of about 50 ns.
 const BIG_RAY_WORK: f64 = 200.0;
 
 /// Shares of the colours in a pixel or sub-pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
-    /// Palette slots, each with the share of the sub-pixel's area that shows its colour. The
-    /// shares add up to 1 except for rounding.
+    /// Slots (indices) of the world's palette, each with the share of the sub-pixel's area that
+    /// shows its colour. The shares add up to 1 except for rounding.
     pub by_slot: Vec<(usize, f64)>,
     /// Maximum share of the sub-pixel that may have the wrong colour.
     pub bound: f64,
@@ -54,7 +56,7 @@ pub struct Regions<'a> {
 /// A checkerboard in the coordinates of a sub-pixel.
 pub struct LocalBoard {
     pub board: Homography,
-    /// Whether the square [0, 1)² has the second colour.
+    /// Whether the square 0 ≤ a < 1, 0 ≤ b < 1 in the coordinates of `board` has the second colour.
     pub odd: bool,
     /// Maximum error of a value of the board's linear forms, divided by the size of the form's
     /// terms.
@@ -103,7 +105,7 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         }
         let Some(at) = self.board(object) else {
-            // This cannot happen, because only boards have two colours.
+            // This cannot happen, because only checkerboards have two colours.
             self.add_doubtful_area(region.area);
             return self.shares.add(first, region.area);
         };
@@ -115,8 +117,9 @@ impl<'a> Regions<'a> {
             sum.bound += segment.bound;
         }
         let half = if local_board.odd { -0.5 } else { 0.5 } * sum.value;
-        // The board's own bound assumes one rounding error in each factor of a form. Here, the
-        // factors may have greater errors. The error of a share never exceeds the region's area.
+        // `sum.bound` assumes that each factor of the board's forms has one rounding error. Here,
+        // the factors may have greater errors. The error of a share never exceeds the region's
+        // area.
         let bound = 0.5 * sum.bound * (1.0 + local_board.relative_error / f64::UNIT);
         let bound = bound.min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
@@ -168,10 +171,10 @@ impl<'a> Regions<'a> {
         let total: f64 = shares.by_slot.iter().map(|(_, share)| share).sum();
         shares.bound += (1.0 - total).abs();
         if !(shares.bound.is_finite() && total > 0.0 && total < 2.0) {
-            // Intermediate results have overflowed, so the shares are meaningless.
+            // Intermediate results must have overflowed, so that the shares are meaningless.
             return self.unknown();
         }
-        // The error of a channel is at most 1.
+        // The error of a channel of the pixel's mean colour is at most 1.
         shares.bound = shares.bound.min(1.0);
         shares
     }
@@ -226,7 +229,8 @@ impl LocalBoard {
         let seen = board.local(&sub_pixel.middle(camera), &[side.clone(), side]);
         let forms = [seen.across[0], seen.across[1], seen.below].into_iter();
         let errors = forms.zip(seen.rads).map(|(form, rad)| {
-            // The factors of extremely small squares may overflow or underflow in `f64`.
+            // If squares are extremely small, the factors of the forms may overflow or underflow in
+            // `f64`. The error is then infinite.
             let size = size(&form);
             let is_known = size.is_finite() && size > 0.0;
             if is_known { rad / size } else { f64::INFINITY }
@@ -240,8 +244,8 @@ impl LocalBoard {
 }
 
 impl Shares {
-    /// Adds the shares of a part of this area; `area` is the part's area as a fraction of the
-    /// whole.
+    /// Adds the shares of `part`, a part of this pixel or sub-pixel. `area` is the part's area as a
+    /// fraction of the whole.
     pub fn add_part(&mut self, part: &Self, area: f64) {
         for &(slot, share) in &part.by_slot {
             self.add(slot, area * share);
@@ -253,7 +257,8 @@ impl Shares {
         match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
             Some((_, share)) => {
                 *share += area;
-                // This is the rounding error of the sum, which is at most 1.
+                // The sum of two shares of a colour is at most 1, so that it is rounded by at most
+                // this.
                 self.bound += f64::UNIT;
             }
             None => self.by_slot.push((slot, area)),

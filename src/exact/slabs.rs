@@ -26,22 +26,23 @@ use super::{
 /// ordered.
 const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
-/// Maximum distance in y, in pixels, between curves that are not separated; the area between them
-/// is added to the error bound. It is a thousand unit roundoffs, and amounts to 10⁻¹³ square
-/// pixels.
+/// Distance in y, in pixels, between neighbouring curves, up to which a slab is not cut although
+/// the curves may cross in it; the area between them is added to the error bound instead. It is a
+/// thousand unit roundoffs, and amounts to 10⁻¹³ square pixels.
 const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 
 /// Minimum width of a slab that is cut, in pixels. In a narrower slab, the area between unseparated
 /// curves is added to the error bound. Not critical: with 2^−50 or 2^−46, the measured bounds
 /// change by at most 2 % and the running time by at most about 10 %.
 const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
-/// Maximum number of slabs, done or queued, in addition to the initial ones. Above it, slabs are
-/// not cut, and their doubtful area is added to the error bound. Not critical: with 1024 or 16,384,
-/// the measured bounds change by at most 2 % and the running time by at most 10 %.
+/// Maximum number of slabs of a sub-pixel, done or queued, in addition to the initial ones. Above
+/// it, slabs are not cut, and their doubtful area is added to the error bound. Not critical: with
+/// 1024 or 16,384, the measured bounds change by at most 2 % and the running time by at most 10 %.
 const MAX_ADDED_SLABS: usize = 4096;
 
-/// Maximum number of steps of the false position method; after them, the last estimate is used. For
-/// comparison, bisection from a pixel's side to the unit roundoff takes 53 steps.
+/// Maximum number of steps of the false position method that searches where two curves cross; after
+/// them, the last estimate is used. For comparison, bisection from a pixel's side to the unit
+/// roundoff takes 53 steps.
 const MAX_STEPS: usize = 60;
 
 /// Maximum rounding error of the area of a region in a slab, divided by the slab's width. It covers
@@ -56,15 +57,16 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     for curve in curves {
         match curve {
             Boundary::Line(line) => {
-                // The factor 3 is derived in `arrangement`, which adds the rounding error to `rad`.
-                // Here, `ROUNDING` counts the rounding error.
+                // The line is at most √2 long and is displaced by at most 2·`line.rad` (see
+                // `arrangement`), and 2·√2 < 3. `ROUNDING` covers the rounding errors of areas.
                 regions.add_doubtful_area(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
                     None => {
                         let [a, b, c] = line.factors;
-                        // If |b| < |a|, the line is nearly vertical and cuts the sub-pixel.
-                        // Otherwise, the line is too far away or degenerate, and is ignored.
+                        // The line is vertical or too steep for a function y(x). If |b| < |a|, it
+                        // cuts the sub-pixel at x = −c/a. Otherwise, it is too far away or
+                        // degenerate, and is ignored.
                         if b.abs() < a.abs() {
                             regions.add_doubtful_area((b / a).abs());
                             cuts.push(-c / a);
@@ -83,8 +85,8 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // If every slab leaves one pair of neighbours unseparated, the doubtful area of all slabs adds
-    // up to the tolerance at most.
+    // With one pair of unseparated neighbours in every slab, the doubtful area of all slabs adds up
+    // to at most the pixel's tolerance.
     let doubtful_limit = regions.budget.tolerance / MAX_ADDED_SLABS as f64;
     let mut all = Slabs {
         lines,
@@ -93,7 +95,8 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
         slabs: 0,
         doubtful_limit,
     };
-    // The widest slab is cut first. If there are too many slabs, only narrow ones remain uncut.
+    // The widest slab is cut first. If the number of slabs reaches its limit, only narrow ones are
+    // left uncut.
     let max_slabs = MAX_ADDED_SLABS + cuts.len();
     let slab = |left: f64, right: f64| ByKey(right - left, [left, right]);
     let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| slab(pair[0], pair[1])).collect();
@@ -113,8 +116,8 @@ struct Slabs<'a> {
     graphs: Vec<ConicGraph>,
     regions: Regions<'a>,
     slabs: usize,
-    /// Maximum area, in square pixels, in which two neighbours may overlap without their slab being
-    /// cut.
+    /// Maximum area, in square pixels, in which two neighbouring curves of a slab may overlap
+    /// without the slab being cut.
     doubtful_limit: f64,
 }
 
@@ -147,8 +150,8 @@ impl Slabs<'_> {
         sections.sort_by(|(_, a), (_, b)| a.y[1].total_cmp(&b.y[1]));
         let place = |y: f64| sections.partition_point(|(_, section)| section.y[1] < y);
         let (first, end) = (place(-0.5), place(0.5));
-        // Curves below and above the pixel are compared with its lower and upper side, and
-        // neighbours inside it with each other.
+        // Curves below the pixel are compared with its lower side and curves above it with its
+        // upper side; curves inside it are compared with their neighbours.
         let [bottom, top] = [-0.5, 0.5].map(|y| (Track::Level(y), Section::straight([y; 3])));
         let below = sections[..first].iter().map(|below| (below, &bottom));
         let above = sections[end..].iter().map(|above| (&top, above));
@@ -226,8 +229,8 @@ fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, r
     };
     let (mut inside, mut gap_in) = (middle, gap_middle);
     let mut last = Ordering::Equal;
-    // This is the Illinois variant of false position: if the same end of the interval is kept
-    // twice, the value at that end is halved.
+    // The crossing is searched by the Illinois variant of false position: if the same end of the
+    // interval is kept twice, the value at that end is halved.
     for _ in 0..MAX_STEPS {
         let mut at = inside - gap_in * (inside - out) / (gap_in - gap_out);
         if !((at > out.min(inside)) && (at < out.max(inside))) {

@@ -17,17 +17,20 @@ use crate::{
     tracer::Hit,
 };
 
+/// Height of the figure, in SVG units.
 const HEIGHT: f64 = 460.0;
 
-/// Maximum length of the drawn ray, relative to the distance from the eye to a corner of the
-/// window. A longer ray is drawn only in part, since the window would otherwise be too small.
+/// Maximum length of a ray that is drawn as far as the visible point, as a multiple of the distance
+/// from the eye to a corner of the window. Of a longer ray, only the first part is drawn, since the
+/// window would otherwise be too small.
 const FARTHEST: f64 = 15.0;
 
-/// Maximum number of objects that are drawn; further ones are left out.
+/// Maximum number of objects that are drawn, boards not counted. Further ones, in the order of the
+/// scene, are left out.
 const MOST_OBJECTS: usize = 60;
 
-/// Maximum number of lines of a board in either direction, about. A board with more squares in the
-/// drawing gets a line only at every second, third, … square.
+/// Approximate maximum number of lines that are drawn on a board in each direction. If a board has
+/// more squares within the drawing, a line is drawn only at every second, third, … square.
 const MOST_LINES: f64 = 14.0;
 
 /// Draws the figure, with the ray through the middle of `pixel`, or of a pixel of the largest
@@ -66,8 +69,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let arrow = 0.13 * (max - min).length();
     points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
 
-    // The camera is seen from the right, from behind and from above, so that the ray runs to the
-    // right.
+    // The observer is to the right of the camera, behind it and above it. In this view, the ray
+    // runs to the right.
     let level = (view.ahead + view.top * 0.2).with_y(0.0);
     let level = level.normalize_or(DVec3::NEG_Z);
     let side = level.cross(DVec3::Y) * 0.72 - level * 0.55 + DVec3::Y * 0.42;
@@ -170,8 +173,9 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     [around.x + around.width / 2, around.y + around.height / 2]
 }
 
-/// Returns the indices of at most [`MOST_OBJECTS`] objects to draw, each with its bounding sphere:
-/// those near the camera that are in front of the eye, or that have the index `hit`.
+/// Returns the objects to draw, at most [`MOST_OBJECTS`] and without boards: index, centre and
+/// radius of the bounding sphere. An object is drawn if it is within about `reach` of the eye and
+/// is in front of it or has the index `hit`.
 fn objects_within(
     scene: &Scene,
     view: &Projection,
@@ -194,9 +198,9 @@ fn objects_within(
     around.filter(is_within).take(MOST_OBJECTS).collect()
 }
 
-/// Returns the lines between the squares of the boards below the drawn `points`. If there would be
-/// too many, returns only every second one, every third one, and so on. Adds the corners of the
-/// drawn part of each board to `points`.
+/// Returns lines between the squares of the boards, up to the extent of the drawn `points` in x and
+/// z. If the squares are many, returns only every second line, every third one, and so on
+/// ([`MOST_LINES`]). Adds the corners of the drawn part of each board to `points`.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

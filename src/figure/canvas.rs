@@ -18,13 +18,14 @@ use crate::{color::Color, editor::viewport::clip, numbers};
 /// wide.
 pub const WIDTH: f64 = 680.0;
 
-/// Font size, in SVG units: 9 points on a page that shows the figure 12 cm wide.
+/// Font size, in SVG units. On a page that shows the figure 12 cm wide, letters have 9 points.
 const LETTERS: f64 = 18.0;
 
-/// Mean width of a letter in wide typefaces such as DejaVu Sans, and height of a line, in SVG
-/// units. The sizes of labels are estimated with them.
+/// Width of a letter and height of a line, in SVG units, from which the sizes of labels are
+/// estimated. The width is the mean in wide typefaces such as DejaVu Sans.
 const LETTER: DVec2 = DVec2::new(10.2, 21.0);
 
+/// Style sheet of every figure, for its CSS classes.
 const STYLE: &str = "\
 text{font:18px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:currentColor;stroke:#fff;stroke-width:5px;stroke-linejoin:round;paint-order:stroke}\
 tspan{font-style:italic}.strong{font-weight:bold}\
@@ -36,12 +37,13 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 @media(prefers-color-scheme:dark){.paper{fill:#15181d}.fill{fill-opacity:.65}text{stroke:#15181d}.ink{color:#eceff4}.faint{color:#a3adb8}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
-/// Cost of a label that covers a mark. For comparison, a step farther away from the label's point
-/// costs 6. A label is placed where its total cost is least.
+/// Cost of a label that covers one segment of a mark. For comparison, moving a label one step
+/// farther away from its point costs 6. A label is placed where its total cost is least.
 const MARK: f64 = 40.0;
 
-/// Cost of a label over each of the diagonals that stand for a filled polygon. A label leaves the
-/// polygon if there is room near it.
+/// Cost of a label that covers one of a filled polygon's diagonals, about four of which stand for
+/// the polygon's area. The cost is a little more than that of one step farther away, so that a
+/// label leaves the polygon if there is room near it.
 const FILL: f64 = 7.0;
 
 /// A drawing that is being built.
@@ -50,7 +52,8 @@ pub struct Canvas {
     marks: String,
     /// Segments that labels should not cover, each with the cost of covering it.
     obstacles: Vec<([DVec2; 2], f64)>,
-    /// Labels beside points: CSS class, point, preferred side and text.
+    /// Labels beside points. For each: CSS class, point, preferred direction from the point to the
+    /// label, and text.
     labels: Vec<(&'static str, DVec2, DVec2, String)>,
 }
 
@@ -90,7 +93,8 @@ impl Canvas {
         self.raw_path(class, &path, more);
     }
 
-    /// Draws a path in SVG notation. Labels may cover it.
+    /// Draws a path, given in SVG notation. `more` contains further attributes of the SVG element.
+    /// Labels may cover the path.
     pub fn raw_path(&mut self, class: &str, path: &str, more: &str) {
         if !path.is_empty() {
             let _ = writeln!(self.marks, "<path class=\"{class}\"{more} d=\"{path}\"/>");
@@ -111,7 +115,7 @@ impl Canvas {
         self.circle(class, at, radius, "");
     }
 
-    /// Draws a dot in a colour of the scene, with a ring around it.
+    /// Draws a dot that is filled with a colour of the scene, and a ring around it.
     pub fn seen(&mut self, color: Color, at: DVec2, radius: f64) {
         self.circle("seen ink", at, radius, &format!(" style=\"fill:{color}\""));
     }
@@ -197,8 +201,9 @@ impl Canvas {
         }
     }
 
-    /// Returns the cost of a label in a rectangle: high outside of the drawing, less over other
-    /// labels, and low over marks.
+    /// Returns the cost of placing a label in `rectangle`: very high if the rectangle is partly
+    /// outside of the drawing, lower for each label in `taken` that it would cover, and much lower
+    /// for each segment in `obstacles`.
     fn cost(&self, rectangle: [DVec2; 2], taken: &[[DVec2; 2]]) -> f64 {
         let [min, max] = rectangle;
         let is_outside = min.cmplt(DVec2::splat(4.0)).any() || max.cmpgt(self.size - 4.0).any();

@@ -9,21 +9,27 @@ use crate::{
     scene::{Count, Method, Sampler, Scene},
 };
 
-/// Maximum number of samples of a pixel in a figure; more are refused, since they would form a grey
-/// area.
+/// Maximum number of samples in a pixel that a figure shows. A figure of more samples is refused,
+/// since the dots would form a grey area.
 const MOST: u64 = 1024;
 
-/// Maximum number of rows or columns of strata whose lines are drawn. More lines would form a grey
-/// area.
+/// Maximum number of rows or of columns of a [`Tiling`] whose lines are drawn. A tiling with more
+/// rows or columns is not drawn, since its lines would form a grey area.
 const MOST_LINES: usize = 64;
 
 /// Side of the square that shows a pixel, in SVG units.
 const SIDE: f64 = 196.0;
 
-/// Distance from the corner of a square to the corner of the next one, in SVG units.
+/// Distance, in SVG units, from the corner of one square to the corner of the next square to the
+/// right, and of the next one below.
 const PITCH: DVec2 = DVec2::new(226.0, 262.0);
 
-/// Returns an error if a figure cannot show `count` samples, since nobody could tell them apart.
+/// Refuses `count` samples if they are too many for a figure ([`MOST`]), since nobody could tell
+/// them apart.
+///
+/// # Errors
+///
+/// Returns a sentence for the user.
 pub fn most(count: u64) -> Result<(), String> {
     if count <= MOST {
         Ok(())
@@ -82,7 +88,7 @@ pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
     ))
 }
 
-/// Describes in words the strata that contain one sample each.
+/// Describes in words the strata of a method with `n` samples, each of which contains one sample.
 fn kept(method: Method, n: u64) -> String {
     let tilings = tilings(method, n);
     if tilings.len() > 3 {
@@ -102,9 +108,10 @@ fn kept(method: Method, n: u64) -> String {
     }
 }
 
-/// Draws the strata of a method as thin lines in a square with the corner `corner` and the given
-/// side. The strata form one or more [`Tiling`]s of the square. The lines of the first tiling are a
-/// little stronger, unless it consists of rows or columns alone.
+/// Draws the strata of the method `method` with `n` samples as thin lines in the square with the
+/// top left corner `corner` and the side `side`. The strata form one or more [`Tiling`]s of the
+/// square. The lines of the first tiling are a little stronger, unless it consists of rows or
+/// columns alone.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };

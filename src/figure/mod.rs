@@ -46,7 +46,8 @@ pub const KINDS: [(&str, Kind); 5] = [
     ("methods", Kind::Methods),
 ];
 
-/// The part of the scene that a figure shows. If a field is `None`, the figure chooses.
+/// The part of the scene that a figure shows. If a field is `None`, the figure chooses a pixel or a
+/// triangle by itself.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
     /// The column and the row of a pixel, for figures of cameras, pixels and methods.

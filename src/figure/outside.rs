@@ -17,12 +17,12 @@ use crate::{
     scene::{Camera, Image, Lens, Scene, Shape, View},
 };
 
-/// Distance of the observer from the middle of the shown points, relative to the radius of a sphere
-/// around them. At this distance, parallel lines look almost parallel.
+/// Distance of the observer from the middle of the shown points, as a multiple of the radius of a
+/// sphere around these points. At this distance, parallel lines look almost parallel.
 const DISTANCE: f64 = 6.0;
 
-/// Maximum absolute value of the coordinates that determine the view. It prevents overflows in sums
-/// and squares.
+/// Maximum absolute value of a coordinate that determines the view, in metres. Larger coordinates
+/// are clamped, so that sums and squares do not overflow.
 const MOST: f64 = 1e100;
 
 /// View of a scene from outside of its camera, in a rectangle of the drawing.
@@ -40,7 +40,7 @@ impl Outside {
     /// direction `side`, with `up` upwards.
     pub fn new(points: &[DVec3], [side, up]: [DVec3; 2], panel: [DVec2; 2]) -> Self {
         let (min, max) = bounds3(points);
-        // Coordinates may be so large that sums would overflow.
+        // Unlimited coordinates could be so large that their sums would overflow.
         let within = |v: DVec3| v.clamp(DVec3::splat(-MOST), DVec3::splat(MOST));
         let (min, max) = (within(min), within(max));
         let radius = ((max - min).length() / 2.0).max(1.0 / MOST);
@@ -134,8 +134,8 @@ pub fn draw_objects(
     }
 }
 
-/// Removes points of a line that are nearer than one unit to the previous point. Otherwise, a scene
-/// with many small spheres would make a large file.
+/// Removes each point of a line that is less than one SVG unit away from the previous point.
+/// Otherwise, a scene with many small spheres would make a large file.
 fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
     let end = line.last().copied();
     line.dedup_by(|next, kept| next.distance_squared(*kept) < 1.0);

@@ -23,11 +23,13 @@ const CORNER: DVec2 = DVec2::new(16.0, 16.0);
 /// Side of the drawn pixel, in SVG units.
 const SIDE: f64 = 360.0;
 
-/// Number of rows and columns of points at which the pixel's regions of one colour are sampled. It
-/// divides [`SIDE`], so that rounding to one decimal leaves no gaps.
+/// Number of rows, and of columns, of the points at which the colours in the pixel are determined.
+/// Each point stands for a small square of the drawing. The number divides [`SIDE`], so that
+/// rounding the squares to one decimal leaves no gaps between them.
 const ROWS: u32 = 120;
 
-/// Maximum number of colours that are listed beside the pixel, those with the largest areas.
+/// Maximum number of colours that are listed beside the pixel. If it shows more, those with the
+/// largest areas are listed.
 const COLORS: usize = 4;
 
 /// Draws the figure of `pixel`, or of a pixel with several colours if it is `None`.
@@ -135,9 +137,9 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     ))
 }
 
-/// Fills the drawn pixel with the visible colours. Returns the indices of at most [`COLORS`] of
-/// them in the world's palette, each with a point of the picture where the colour is visible, the
-/// largest areas first.
+/// Fills the drawn pixel (x, y) with the colours that are visible in it. Returns at most [`COLORS`]
+/// of them, those with the largest areas first. For each: its index in the world's palette, and a
+/// point of the picture where it is visible.
 fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, DVec2)> {
     let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(ROWS) - 0.5;
     let step = SIDE / f64::from(ROWS);
@@ -233,9 +235,10 @@ fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     best.1
 }
 
-/// Returns a score of a pixel from a grid of 8 × 8 points. It is higher for more colours, up to
-/// three, and for more equal shares of the colours (low Simpson index). It is lower for each change
-/// of colour along the points, since there are many changes near the horizon.
+/// Returns a score of how well a pixel suits the figure, from the colours at 8 × 8 points in it.
+/// The score is higher for more colours, up to three, and for more equal shares of the colours (low
+/// Simpson index). It is lower for each change of colour from one point to the next, since there
+/// are many changes near the horizon.
 fn evenness(world: &World, [x, y]: [u32; 2]) -> f64 {
     let at = |i: u32| (f64::from(i) + 0.5) / 8.0 - 0.5;
     let slot = |cell: u32| world.slot_at(x, y, DVec2::new(at(cell % 8), at(cell / 8)));

@@ -13,9 +13,10 @@ use crate::{
     scene::{Camera, Scene},
 };
 
+/// Height of the figure, in SVG units.
 const HEIGHT: f64 = 400.0;
 
-/// Number of segments of the arc that shows the angle.
+/// Number of segments of the polygonal line that is drawn as the arc of the roll's angle.
 const ARC: u32 = 24;
 
 /// Draws the figure.
@@ -35,7 +36,8 @@ pub fn draw(scene: &Scene) -> String {
     )
 }
 
-/// Draws the frames with and without roll over the picture of the camera without roll.
+/// Draws two frames over the picture of the camera without roll: the frame of this picture, and
+/// that of the rolled picture.
 fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     let rolled = |roll: Angle| {
         let camera = Camera {
@@ -46,8 +48,8 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     };
     let (level_camera, level) = rolled(Angle::default());
     let roll = scene.camera.roll;
-    // Returns the point of the picture without roll that shows the same ray as a point of the
-    // rolled picture.
+    // Maps a point of the picture with the roll `roll` to the point of the picture without roll
+    // that shows the same ray.
     let seen = |roll: Angle, point: DVec2| {
         let (_, view) = rolled(roll);
         level.projected(view.at_depth(point, 1.0))

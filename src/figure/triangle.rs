@@ -13,9 +13,10 @@ use crate::{
     tracer::vertices,
 };
 
+/// Height of the figure, in SVG units.
 const HEIGHT: f64 = 430.0;
 
-/// Number of segments of the arc that shows the spin.
+/// Number of segments of the polygonal line that is drawn as the arc of the spin.
 const ARC: u32 = 24;
 
 /// Draws the figure.
@@ -66,8 +67,8 @@ pub fn draw(triangle: &Triangle) -> String {
     if is_spun {
         let [a, b, c] = unspun;
         outside.line(&mut canvas, "faint dash", &[a, b, c, a]);
-        // The arc follows the midpoint between the centroid and the base's right end as the
-        // triangle is spun.
+        // The arc is the path of a point while the triangle is spun. The point is the midpoint
+        // between the centroid and the right end of the base.
         let on_way = |i: u32| {
             let [_, right, _] = spun(spin * (f64::from(i) / f64::from(ARC)));
             outside.at(centroid.midpoint(right))

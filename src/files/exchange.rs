@@ -84,7 +84,7 @@ mod tests {
 
     use super::*;
 
-    /// Index of the last round of [`what_is_saved_meanwhile_stays`].
+    /// Index of the last of the rounds 0, 1, 2, … of the test [`what_is_saved_meanwhile_stays`].
     const LAST: u32 = 400;
 
     /// Another program saves the file, in each round at another moment from before the replacement

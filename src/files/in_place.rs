@@ -17,7 +17,7 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Returns whether `error`, with which replacing a file failed, allows to write the file in place.
+/// Returns whether a file may be written in place after replacing it failed with `error`.
 pub fn is_reason(error: &io::Error) -> bool {
     use io::ErrorKind;
     matches!(

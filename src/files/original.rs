@@ -53,7 +53,7 @@ impl Original {
     /// Fails if the file at `path` is not the file that was read. Does nothing if no file was read.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
-            // If a file exists by then, creating the new one fails.
+            // No file was read. If one exists by the time of writing, creating the new file fails.
             return Ok(());
         };
         let is_same = || {

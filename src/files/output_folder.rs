@@ -20,20 +20,20 @@ use super::{
     write::{Purpose, check_writable, write},
 };
 
-/// File name of the list of Pinhole's files.
+/// Name of the file in which the names and the hashes of Pinhole's files in the folder are listed.
 const LIST: &str = ".pinhole";
 
-/// First line of the list of Pinhole's files.
+/// First line of the file [`LIST`], for people who open it.
 const HEAD: &str = "# Files that pinhole made here, and replaces unless they were changed\n";
 
-/// Maximum length of the list of Pinhole's files, in bytes. A longer list is an error.
+/// Maximum length of the file [`LIST`], in bytes. A longer one is an error.
 const LIST_LIMIT: u64 = 16 << 20;
 
 /// Maximum length, in bytes, of a file that Pinhole wrote into the folder. A longer file cannot be
 /// Pinhole's, so it is not replaced.
 const FILE_LIMIT: u64 = 256 << 20;
 
-/// A folder for the files of a command.
+/// A folder for the output files of a command, in which no file of the user is replaced.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
@@ -151,8 +151,8 @@ impl OutputFolder {
             .map_err(|error| NotWritten { path, error })
     }
 
-    /// Reads the list from the folder, and replaces `hashes` by those in the list. Returns the
-    /// list's file as it was read.
+    /// Reads `.pinhole`, the list of the files that Pinhole wrote into the folder, and sets
+    /// `hashes` to the hashes in it. Returns `.pinhole` as it was read.
     fn read_list(&mut self) -> Result<Original, NotWritten> {
         let path = self.path.join(LIST);
         let list = read_list_file(&path).map_err(|error| NotWritten::new(&path, error))?;
@@ -160,7 +160,8 @@ impl OutputFolder {
         Ok(list)
     }
 
-    /// Writes the list if it has changed. Fails if its file is no longer `original`.
+    /// Writes `hashes` into the list `.pinhole`, unless the file already contains them. Fails if
+    /// the file is no longer `original`.
     fn write_list(&self, original: &Original) -> Result<(), NotWritten> {
         let text = self.list();
         if original.bytes() == Some(text.as_bytes()) {
@@ -238,7 +239,7 @@ fn refused(message: &str) -> io::Error {
 
 const LINK: &str = "it is a symbolic link, and nothing is written outside of the folder";
 
-/// Reads the list's file at a path, if it exists. Fails if the path is a symbolic link.
+/// Reads the file [`LIST`] at `path`, if it exists. Fails if the path is a symbolic link.
 fn read_list_file(path: &Path) -> io::Result<Original> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => return Err(io::Error::other(LINK)),
@@ -249,7 +250,8 @@ fn read_list_file(path: &Path) -> io::Result<Original> {
     Original::read(path, |path| read(path, LIST_LIMIT))
 }
 
-/// Parses the list of Pinhole's files. Returns the hashes of each file by its name.
+/// Parses the content of the file [`LIST`]. Returns the hashes of each file in the list, by its
+/// name.
 fn parse_list(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
     let Some(bytes) = list.bytes() else {
         return Ok(BTreeMap::new());

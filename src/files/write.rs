@@ -149,7 +149,7 @@ fn writing_error(path: &Path, error: io::Error) -> io::Error {
     }
 }
 
-/// Destination of the content.
+/// Kind of destination to which a file's content is written.
 enum WriteTarget {
     File(FileTarget),
     /// A pipe or a device, to which the content is written.

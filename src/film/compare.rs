@@ -1,9 +1,9 @@
-//! The difference of two pictures, and its position.
+//! The differences between two pictures, and the position of the largest.
 //!
 //! In: two films. Out: the root mean square of their differences in linear light, the largest
-//! difference, and the number of pixels that differ by more than a tolerance. The last two are in
-//! steps of 8-bit sRGB, since equal steps look about equally large. A step is 1/255 of the way from
-//! black to white.
+//! difference, and the number of pixels that differ by more than a tolerance. The largest
+//! difference and the tolerance are in steps of 8-bit sRGB, since equal steps look about equally
+//! large. A step is 1/255 of the way from black to white.
 
 use thiserror::Error;
 
@@ -14,16 +14,16 @@ use crate::color::linear_to_srgb;
 const STEPS: f64 = 255.0;
 
 /// Bound of the rounding errors of decoding and encoding a channel, in steps of 8-bit sRGB. A
-/// difference counts as larger than a tolerance only if it exceeds it by more than this bound. It
-/// covers a few roundings of numbers up to 255, and the gap of at most 3e-8 of the range between
-/// the two pieces of the sRGB curve.
+/// difference counts as larger than a tolerance only if it exceeds the tolerance by more than this
+/// bound. The bound covers a few roundings of numbers up to 255, and the gap between the two pieces
+/// of the sRGB curve, which is at most 3e-8 of the range.
 const SLACK: f64 = 1e-5;
 
-/// Maximum slope of the sRGB curve, which it has at black, in steps of 8-bit sRGB per unit of
-/// linear light. It converts a bound of linear light to a bound in steps.
+/// Slope of the sRGB curve at black, where it is steepest, in steps of 8-bit sRGB per unit of
+/// linear light. An error bound in linear light, multiplied by it, is a bound in steps.
 const STEEPEST: f64 = 12.92 * STEPS;
 
-/// Names of a pixel's channels.
+/// Names of a pixel's channels, in the order in which a film stores them.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 /// Largest difference of a channel that still counts as equal.
@@ -48,9 +48,9 @@ impl Tolerance<'_> {
 /// The result of comparing two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Number of columns.
+    /// Number of columns of both pictures.
     pub width: u32,
-    /// Number of rows.
+    /// Number of rows of both pictures.
     pub height: u32,
     /// Root mean square of the differences of all channels of all pixels, in linear light, 0 to 1.
     pub rmse: f64,
@@ -66,17 +66,17 @@ pub struct Comparison {
 /// The largest difference of a channel, and its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Largest {
-    /// The difference, in steps of 8-bit sRGB.
+    /// Difference between the two values of the channel, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// The pixel's column.
+    /// Column of the pixel.
     pub x: u32,
-    /// The pixel's row.
+    /// Row of the pixel.
     pub y: u32,
     /// The channel: 0 for red, 1 for green, 2 for blue.
     pub channel: usize,
-    /// Value in the first picture, in steps of 8-bit sRGB, 0 to 255.
+    /// Value of the channel in the first picture, in steps of 8-bit sRGB, 0 to 255.
     pub a: f64,
-    /// Value in the second picture, in steps of 8-bit sRGB, 0 to 255.
+    /// Value of the channel in the second picture, in steps of 8-bit sRGB, 0 to 255.
     pub b: f64,
 }
 
@@ -212,7 +212,7 @@ pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLar
     Ok(map)
 }
 
-/// Legend of a heat map's colours.
+/// Text that explains the colours of a heat map ([`heat_map`]) to users.
 pub const HEAT_LEGEND: &str =
     "black: within the tolerance; red: 85 steps of 255; yellow: 170; white: 255 (linear)";
 
@@ -222,7 +222,8 @@ fn heat(steps: f64) -> [f64; 3] {
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))
 }
 
-/// Converts linear light to steps of 8-bit sRGB: from 0 to 1 to the range from 0 to 255.
+/// Encodes linear light as sRGB, in 8-bit steps: 0 becomes 0, and 1 becomes 255. The result is not
+/// rounded.
 fn steps(light: f64) -> f64 {
     STEPS * linear_to_srgb(light)
 }

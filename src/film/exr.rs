@@ -36,12 +36,12 @@ use super::{
 };
 use crate::{area::Area, files::Sink};
 
-/// A film of linear light, in either precision.
+/// A film of linear light, in 64-bit or in 32-bit floats.
 #[derive(Clone, Copy, Debug)]
 pub enum LinearFilm<'a> {
-    /// Means in `f64`.
+    /// Means of the pixels as `f64`.
     Means(&'a Film),
-    /// Means rounded to 32-bit floats.
+    /// Means of the pixels, rounded to 32-bit floats.
     Floats(&'a Film<[f32; 3]>),
 }
 

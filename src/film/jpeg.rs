@@ -29,9 +29,9 @@ pub struct Jpeg {
 /// coefficient is rounded to a multiple of its step. The first step belongs to the block's mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
-    /// Square of the first step, which is that of the block's mean.
+    /// Square of the first step, by which the mean of a block is quantized.
     pub first: f64,
-    /// Mean of the squares of the steps.
+    /// Mean of the squares of all 64 steps.
     pub mean: f64,
     /// The steps, row by row.
     pub steps: [u16; 64],
@@ -140,7 +140,7 @@ impl Jpeg {
 /// Returns whether a JPEG continues to its end marker. Decoders fill a truncated file with gray
 /// below the cut, which looks like a picture.
 pub fn is_whole(bytes: &[u8]) -> bool {
-    /// The marker in front of entropy-coded data.
+    /// Second byte of the marker (start of scan) that precedes the entropy-coded data.
     const SCAN: u8 = 0xda;
     const END: u8 = 0xd9;
     // This is the position after the start marker of the file.

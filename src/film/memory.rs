@@ -1,4 +1,4 @@
-//! A check before a picture is allocated whether there is enough memory.
+//! Checks whether there is enough memory for a picture before it is allocated.
 
 use std::path::Path;
 
@@ -14,13 +14,13 @@ use crate::files::read_system_text;
     .available.map_or("more than there is".to_owned(), |there| format!("and {} are available", size(there)))
 )]
 pub struct TooLarge {
-    /// Number of columns of pixels.
+    /// Width of the picture, in pixels.
     pub width: u32,
-    /// Number of rows of pixels.
+    /// Height of the picture, in pixels.
     pub height: u32,
     /// Number of bytes that the picture needs.
     pub needed: u64,
-    /// Number of available bytes; `None` if it is unknown.
+    /// Number of bytes of memory that are available; `None` if it is unknown.
     pub available: Option<u64>,
 }
 
@@ -66,7 +66,7 @@ fn available() -> Option<u64> {
 
 fn machine() -> Option<u64> {
     let table = read_system_text("/proc/meminfo")?;
-    // The table gives numbers of KiB.
+    // The numbers in `/proc/meminfo` are in KiB.
     Some(entry(&table, "MemAvailable:")? * 1024)
 }
 
@@ -96,13 +96,14 @@ fn left(group: &Path) -> Option<u64> {
     Some(limit.saturating_sub(usage.saturating_sub(cache)))
 }
 
-/// Returns the number after `name` in the first line of `table` that begins with `name`.
+/// Returns the number after `name` in the first line of `table` that begins with `name`. `table` is
+/// the text of a system file such as `/proc/meminfo`.
 fn entry(table: &str, name: &str) -> Option<u64> {
     let entry = table.lines().find_map(|line| line.strip_prefix(name))?;
     entry.split_whitespace().next()?.parse().ok()
 }
 
-/// Formats a number of bytes for people.
+/// Formats a number of bytes with a binary unit, such as `1.5 GiB`.
 fn size(bytes: u64) -> String {
     const UNITS: [&str; 7] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
     let power = bytes.max(1).ilog2() / 10;

@@ -1,6 +1,7 @@
 //! Files that are no pictures although one is expected: what they are, and what to do about it.
 
-/// Kinds of files that are no pictures: the first bytes, and the message for users.
+/// Kinds of files that users may give in place of a picture: the first bytes of the file, and what
+/// the error message says about it.
 const BEGINNINGS: [(&[u8], &str); 8] = [
     (
         b"version https://git-lfs",

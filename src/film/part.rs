@@ -3,17 +3,18 @@
 use super::pixels::Film;
 use crate::area::Area;
 
-/// Maximum number of pixels that are compared, summed over all positions. If the part has more,
-/// only some of its pixels are compared, at equal distances.
+/// Maximum number of pixel comparisons in the search for a part's position: pixels of the part
+/// times positions in the whole picture. If all pixels would be more, only some of the part's
+/// pixels are compared, at equal distances.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum ratio of the difference at the best position to the mean difference over all positions.
-/// Above it, the position counts as unknown. Sampling noise leaves a smaller ratio at the right
-/// position.
+/// Maximum ratio of the squared difference between the part and the whole picture at the best
+/// position to the mean squared difference over all positions. Above it, the position counts as
+/// unknown. Sampling noise leaves a smaller ratio at the right position.
 const MAX_LEFT: f64 = 0.2;
 
 /// Minimum ratio of the part's area to that of the whole picture. The position of a smaller part
-/// counts as unknown, since it resembles the picture at too many positions.
+/// counts as unknown, since so few pixels resemble the whole picture at many positions.
 const MIN_SHARE: f64 = 0.05;
 
 /// Finds the position in a whole picture where a part differs far less than elsewhere. Returns the

@@ -13,9 +13,9 @@ pub const DECODED_LIMIT: u64 = 1 << 28;
 /// A picture as a file contains it.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// The means in linear light.
+    /// Mean of each pixel, in linear light.
     pub film: Film,
-    /// The rounding of the file's numbers.
+    /// Format to which the file's numbers are rounded.
     pub rounding: Rounding,
     /// Changes of colours by the file's coding, besides rounding.
     pub coding: Coding,
@@ -50,9 +50,9 @@ pub struct Opacity {
 /// Format to which a file's values are rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// Bytes of sRGB, or fewer bits.
+    /// Bytes of sRGB, or numbers of fewer bits.
     Byte,
-    /// 16 bits of sRGB.
+    /// Words of sRGB, which have 16 bits.
     Word,
     /// Floats of 16 bits, in linear light.
     Half,
@@ -80,7 +80,7 @@ impl Rounding {
 /// The effect of a file's coding on colours besides rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
-    /// No effect.
+    /// No effect: apart from rounding, the file has the colours that the program computed.
     Exact,
     /// JPEG or lossy WebP: colours are changed where this is hardly visible.
     Lossy,
@@ -91,7 +91,7 @@ pub enum Coding {
     OtherCurve,
     /// A PNM behind a byte order mark or lines of text, which are skipped.
     TextBefore,
-    /// A PNM whose numbers are in UTF-16.
+    /// A PNM in UTF-16, as some shells write the output of a program.
     Utf16,
     /// A binary PNM in which every line feed was replaced by two bytes, as in a text file.
     TextMode,
@@ -100,7 +100,7 @@ pub enum Coding {
 }
 
 impl Coding {
-    /// Returns a warning for people who compare such a picture. Returns `None` for
+    /// Returns a warning for users who compare a picture with this coding. Returns `None` for
     /// [`Exact`](Self::Exact).
     pub fn warning(self) -> Option<&'static str> {
         match self {
@@ -180,7 +180,7 @@ pub enum Unreadable {
     /// There is not enough memory for the picture.
     #[error(transparent)]
     TooLarge(#[from] TooLarge),
-    /// A value is infinite or NaN.
+    /// A channel of a pixel is infinite or NaN.
     #[error("its pixel ({x}, {y}) holds a value that is no finite number")]
     NotFinite {
         /// Column of the pixel.

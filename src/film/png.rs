@@ -101,8 +101,8 @@ pub fn write_png<P: AsBytes>(
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     // The rows of flat colours repeat. They compress better unfiltered than as the differences of
-    // neighbours that the format's filters store. Levels above 3 make the files of such pictures
-    // smaller by a few hundredths, but take three times as long.
+    // neighbours that the format's filters store. Compression levels above 3 make the files of such
+    // pictures smaller by a few hundredths, but take three times as long.
     encoder.set_filter(Filter::NoFilter);
     encoder.set_deflate_compression(DeflateCompression::Level(3));
     let mut writer = encoder.write_header()?;

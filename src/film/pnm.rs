@@ -12,8 +12,8 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Maximum number of bytes of other output in front of a picture. A picture that begins later is
-/// not found.
+/// Number of bytes at the start of a file in which a picture is searched for. Text that a program
+/// printed before its picture may be at most this long.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
@@ -21,9 +21,10 @@ const BOM: &[u8] = b"\xef\xbb\xbf";
 /// How a PNM file begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// In bytes; the letter P follows after this number of them: 0, or the 3 of a byte order mark.
+    /// One byte for each character. The number of bytes before the letter P is 0, or 3 if the file
+    /// begins with a byte order mark.
     Plain(usize),
-    /// In UTF-16.
+    /// UTF-16: two bytes for each character.
     Utf16 {
         /// Length of the byte order mark, in bytes.
         mark: usize,
@@ -171,7 +172,7 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     })
 }
 
-/// Size of a raster, and the greatest value of its numbers.
+/// Size of the picture in a PNM, and the number that stands for white in it.
 struct Raster {
     width: usize,
     height: usize,

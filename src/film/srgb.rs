@@ -10,13 +10,14 @@ use std::array;
 
 use crate::color::half_byte;
 
-/// Number of equal intervals of linear light in the table [`Encoder::start`], in which encoding
-/// begins its search.
+/// Number of equal intervals into which the range of linear light is divided. For each interval,
+/// the table [`Encoder::start`] has the byte at which encoding begins its search.
 const PARTS: usize = 4096;
 
-/// An encoder of linear light as bytes.
+/// Encoder of linear light as bytes of sRGB.
 pub struct Encoder {
-    /// For each byte k below 255, the linear light of k + 1/2.
+    /// For each byte k below 255, the linear light whose sRGB value is k + 1/2, in 8-bit steps.
+    /// From this light on, the byte is k + 1.
     thresholds: [f64; 255],
     /// For each interval of linear light, the byte of the light at its dark end.
     start: [u8; PARTS + 1],
@@ -35,7 +36,7 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Encodes a pixel.
+    /// Encodes the channels of a pixel as bytes of sRGB.
     pub fn pixel(&self, light: [f64; 3]) -> [u8; 3] {
         light.map(|channel| self.encode(channel))
     }

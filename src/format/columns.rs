@@ -16,12 +16,12 @@ use super::{
 };
 use crate::schema;
 
-/// Maximum difference in width, in characters, between parts of lines that are aligned. If parts
-/// differ by more, a new column begins.
+/// Maximum difference between the widths, in characters, of parts of lines that are aligned in one
+/// column. At the first part whose width differs by more, a new column begins.
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
-/// Minimum number of consecutive blocks of one kind that form a table, whose rows may be slightly
-/// too wide.
+/// Minimum number of consecutive blocks of one kind, each written on one line, that form a table.
+/// The blocks of a table stay on one line each even if some are slightly wider than `WIDTH`.
 const MIN_TABLE_ROWS: usize = 3;
 
 /// Sets the columns to which the parts of a file's entries are aligned, also within blocks.
@@ -74,7 +74,8 @@ fn is_row_beside(a: &Entry<'_>, b: &Entry<'_>) -> bool {
     }
 }
 
-/// Class of an entry. Entries of the same class in a group are aligned.
+/// Class of an entry, which decides which entries are aligned with each other: those of the same
+/// class in a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Alignment {
     Definition,
@@ -127,10 +128,11 @@ fn is_plain(entry: &Entry<'_>, block: &BlockEntry<'_>) -> bool {
     entry.leading.is_empty() && block.head.len() == words
 }
 
-/// Returns the groups of entries of one class. A group is a list of indices of entries.
+/// Returns the runs of entries that are aligned with each other: in a group, all entries of one
+/// class. A run is a list of indices of entries. `class` returns the class of an entry.
 fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
-    // Class of the last group as long as the group can be extended; then `End`.
+    // Class of the last run as long as entries can be added to it; then `End`.
     let mut open = Alignment::End;
     for (index, entry) in entries.iter().enumerate() {
         if entry.blank {
@@ -153,9 +155,10 @@ fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<us
     runs
 }
 
-/// Splits a list into parts, each as long as possible, whose widths differ by at most
-/// [`MAX_WIDTH_DIFFERENCE`]. Returns each part with its greatest width. Elements without a width
-/// belong to the part before them.
+/// Splits `list`, a run of entries by their indices, into parts in which the widths differ by at
+/// most [`MAX_WIDTH_DIFFERENCE`], each part as long as possible. `width` returns the width of an
+/// entry. Returns each part with its greatest width. Entries without a width belong to the part
+/// before them.
 pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[usize], usize)> {
     let mut parts = Vec::new();
     let (mut from, mut least, mut most) = (0, usize::MAX, 0);
@@ -171,7 +174,7 @@ pub fn shared(list: &[usize], width: impl Fn(usize) -> Option<usize>) -> Vec<(&[
     parts
 }
 
-/// Aligns the second part of each entry: its value, `=` or `{`.
+/// Aligns the second part of each entry of `run`: its value, `=` or `{`.
 fn starts(entries: &mut [Entry<'_>], run: &[usize]) {
     let width = |entry: &Entry<'_>| match &entry.what {
         EntryKind::Definition(head, _) => width(head),
@@ -202,7 +205,8 @@ fn block<'e, 's>(entry: &'e Entry<'s>) -> Option<&'e BlockEntry<'s>> {
     }
 }
 
-/// Aligns the names and braces of objects, and the fields of objects of one kind.
+/// Aligns the objects of `run`: their names, their braces, and the fields of consecutive objects of
+/// one kind.
 fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     let filled = |index: usize| block(&entries[index]).filter(|block| !block.is_empty());
     let parts = shared(run, |index| Some(width(&filled(index)?.head)));
@@ -226,9 +230,9 @@ fn objects(entries: &mut [Entry<'_>], run: &[usize]) {
     }
 }
 
-/// Aligns the fields after the field with index `field` in `rows`, which are objects whose earlier
-/// fields are aligned. Consecutive objects are aligned if they have the same kind and the same name
-/// of the field `field`.
+/// Aligns the objects `rows`, whose first `field` fields are aligned already, from the field with
+/// the index `field` on. Consecutive objects are aligned if they have the same kind and their
+/// fields of this index have the same name.
 fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     let alike = |&a: &usize, &b: &usize| {
         let (a, b) = (cell(&entries[a], field), cell(&entries[b], field));
@@ -251,8 +255,9 @@ fn table(entries: &mut [Entry<'_>], rows: &[usize], field: usize) {
     }
 }
 
-/// Returns an object's kind, and the name and width of its field with index `field`. Returns `None`
-/// if this is the last field.
+/// Returns an object's kind, and the name and the width, in characters, of its field with the index
+/// `field`. Returns `None` if the object has no field after this one, since nothing then has to be
+/// aligned.
 fn cell<'a>(entry: &'a Entry<'_>, field: usize) -> Option<(&'a str, &'a str, usize)> {
     let block = block(entry)?;
     block.entries.get(field + 1)?;

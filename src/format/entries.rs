@@ -73,7 +73,8 @@ impl BlockEntry<'_> {
 }
 
 impl Entry<'_> {
-    /// Returns the width, in characters, of an entry that is part of its block's single line.
+    /// Returns the width, in characters, that an entry takes in the line of a block that is laid
+    /// out on one line.
     pub fn width_in_line(&self) -> usize {
         let comments = self.leading.iter().chain(&self.trailing);
         let comments: usize = comments.map(|comment| comment.chars().count() + 1).sum();
@@ -105,8 +106,9 @@ enum Container {
 }
 
 impl<'s> TokenReader<'_, 's> {
-    /// Returns the entries of `nodes`, which end before the offset `end`, and the comments after
-    /// the `{` on its line.
+    /// Returns the entries of `nodes`, i.e. of a file's items or a block's fields, and of the
+    /// comments between them. They end before the offset `end`. Also returns the comments after a
+    /// block's `{` on its line.
     fn entries<N>(
         &mut self,
         nodes: impl IntoIterator<Item = impl Borrow<N>>,
@@ -195,7 +197,8 @@ impl<'s> TokenReader<'_, 's> {
             Self::field,
         );
         self.skip(close);
-        // The blanks and braces of ` { ` and ` }`, and two blanks between fields, are counted here.
+        // The width of a field includes two blanks, for the space to the next field. The other 3
+        // characters are ` { `; those of ` }` are the two blanks of the last field.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
         let is_empty = entries.is_empty() && after_open.is_empty();
         let width = width(&head) + 3 + fields;
@@ -235,10 +238,10 @@ fn entry(what: EntryKind<'_>) -> Entry<'_> {
 /// The comments of one line, and whether a blank line precedes them.
 type CommentLine<'s> = (bool, Vec<&'s str>);
 
-/// Assigns the comments of `gap`, the text between two tokens, to lines. Comments on the line of
-/// the previous entry are added to that entry. The other comments become entries of their own,
-/// except those of the last line, which are returned, because the next entry may stand on the same
-/// line.
+/// Assigns the comments of `gap`, which stands between two tokens, to entries. Comments on the line
+/// of the previous entry are added to that entry. Each further line of comments becomes an entry,
+/// except the last line. The comments of the last line are returned, because the next entry may
+/// stand on the same line.
 fn comments<'s>(
     gap: Gap<'s>,
     container: Container,

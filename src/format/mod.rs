@@ -60,8 +60,9 @@ pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     (!parsed.is_doubtful || is_right_text(&formatted)).then_some(formatted)
 }
 
-/// Returns whether a formatted text has no syntax errors. In a doubtful text, recovery may decide
-/// by the line ends, so that the new ones cause an error.
+/// Returns whether `text`, a formatted text, has no syntax errors. It may have some if the original
+/// was doubtful ([`Parsed::is_doubtful`]): recovery may decide by the line ends, which formatting
+/// changes.
 fn is_right_text(text: &str) -> bool {
     let source = Source::from_text("", text);
     is_right(&source, &syntax::parse(&source, SourceId::File))
@@ -121,9 +122,10 @@ fn mistakes(source: &Source) -> Vec<Diagnostic> {
     lists.next().unwrap_or_default()
 }
 
-/// Returns `written` with the byte order mark and the line ends of the original `text`. The line
-/// ends are CRLF if all of the original are CRLF, otherwise LF. Blanks at the ends of lines are
-/// removed, also in comments.
+/// Returns the formatted text `written` with the byte order mark and the line ends of the original
+/// `text`: CRLF if all line ends of the original are CRLF, and otherwise LF. Blanks at the ends of
+/// lines are removed, also in comments. `bom` is the length of the original's byte order mark, in
+/// bytes.
 fn with_line_ends(written: &str, text: &str, bom: usize) -> String {
     let mut ends = text.split('\n');
     let last = ends.next_back();

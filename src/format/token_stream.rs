@@ -23,9 +23,10 @@ pub enum Before {
     Nothing,
     /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long. A line is broken first at the words
-    /// with the lowest number. The number grows with the number of parentheses around the word, and
-    /// is greater at products than at sums.
+    /// A blank, or a line end if the line would be too long. Of the words of a line at which it can
+    /// be broken, it is broken at one with the lowest number. The number is 2 for each pair of
+    /// parentheses around the word, and 1 more at the operators of products, so that sums are
+    /// broken first.
     Fold(usize),
     /// A line end.
     Line,

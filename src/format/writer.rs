@@ -22,8 +22,8 @@ pub fn written(entries: &[Entry<'_>]) -> String {
 #[derive(Default)]
 struct LayoutWriter {
     text: String,
-    /// Lines of the current group, each with the comments at its end. They are written, with the
-    /// comments aligned, when the group is complete.
+    /// Lines that are not written yet, each with the comments at its end. They are written when
+    /// their group is complete, since the comments of a group are aligned.
     waiting: Vec<(String, String)>,
 }
 
@@ -94,8 +94,9 @@ impl LayoutWriter {
         self.waiting.push((line, comments));
     }
 
-    /// Writes words, broken into lines where a line end is required or a line would be too long.
-    /// The last line is not ended; it is in `line` afterwards.
+    /// Writes `words` after `line`, the start of the current line. Lines are broken where a line
+    /// end is required or where they would be too long, and the further lines are indented to the
+    /// column `margin`. Afterwards, `line` contains the last line, which has no line end yet.
     fn words(&mut self, line: &mut String, words: &[Word<'_>], margin: usize) {
         let last = self.lines(line, words, margin);
         push_flat(line, last);
@@ -230,7 +231,8 @@ fn push_flat(line: &mut String, words: &[Word<'_>]) {
 }
 
 /// Returns the indices of the words that start new lines. A line that is too long is broken at a
-/// word with the lowest [`Fold`](Before::Fold) number, and of several at the last one that fits.
+/// word with the lowest [`Fold`](Before::Fold) number; if several words have that number, at the
+/// last one that fits. The words start at the column `start`, and new lines at the column `margin`.
 fn line_starts(words: &[Word<'_>], start: usize, margin: usize) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut column = start;

@@ -157,7 +157,7 @@ mod tests {
                 assert_eq!(document.line_column(offset), (0, column));
                 assert_eq!(document.offset((0, column)), offset);
             }
-            // These positions lie after the end of a line, or after the end of the text.
+            // These positions lie after the end of their line, or in a line after the last one.
             for (place, offset) in [((0, 99), 10), ((1, 1), 13), ((2, 0), 14), ((99, 99), 14)] {
                 assert_eq!(document.offset(place), offset);
             }
@@ -182,8 +182,8 @@ mod tests {
         let changes = [
             change([(0, 0), (0, 3)], "🎱"),
             change([(0, 2), (1, 0)], " "),
-            // This range runs backwards, from beyond the line's end. The next one lies in the line
-            // after the last one.
+            // The start of this range is after its end, and beyond the end of the line. The next
+            // range is in the line after the last one.
             change([(0, 99), (0, 3)], "!"),
             change([(2, 0), (2, 0)], "end"),
         ];

@@ -22,8 +22,8 @@ use crate::{
     scene::{Count, Method, Sampler},
 };
 
-/// Maximum number of pixels of a frame; requests for more are refused. A page cannot show more, and
-/// larger pictures are rendered to files.
+/// Maximum number of pixels of a frame. A request for a larger frame is refused: a page cannot show
+/// more pixels, and larger pictures are rendered to files.
 const MOST_PIXELS: u64 = 1 << 24;
 
 /// Queue of the requested frames that are not finished, the oldest first.
@@ -44,12 +44,9 @@ struct Frame {
 }
 
 impl Frames {
-    /// Adds a frame. Returns the requests that it supersedes: the previous request for the same
-    /// frame, or all requests for other versions of the text.
-    ///
-    /// # Errors
-    ///
-    /// Returns an error if the parameters are invalid.
+    /// Adds the frame that a request asks for. Returns the earlier requests that it supersedes: one
+    /// for the same frame of the same version of the text, whose rendering is continued, or else
+    /// all those for other versions of the text.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -139,7 +136,8 @@ impl Frame {
             most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
                 && longest.is_none_or(|longest| width.max(height) <= longest)
         };
-        // With the greatest scale, a frame has one pixel, so some scale always fits.
+        // With the greatest scale, a frame has one pixel, so there is always a scale with which the
+        // frame is small enough.
         let scale = (scale..).find(fits).unwrap_or(u32::MAX);
         let (width, height) = version.size(scale);
         let whole = Area::whole(width, height);

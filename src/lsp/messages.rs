@@ -4,9 +4,9 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response,
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Maximum number of JSON values in a message; a longer message is refused. A JSON object takes
-/// about 400 bytes of memory, but possibly only eight bytes of text. The limit allows 40 000
-/// changes of a text in one message.
+/// Maximum number of JSON values in a message. A message with more values is refused, since an
+/// object takes about 400 bytes of memory, but possibly only eight bytes of text. The limit allows
+/// 40 000 changes of a text in one message.
 const MOST_VALUES: usize = 1 << 19;
 
 /// Error: a text is not a valid message.
@@ -47,7 +47,7 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
         return malformed(Value::Null, ErrorCode::InvalidRequest, message);
     }
     let has = |name: &str| value.get(name).is_some();
-    // Responses are never answered.
+    // A response is never answered, even if it is malformed.
     let is_response = !has("method") && (has("result") || has("error"));
     let id = identifier(value.get("id").cloned());
     match message(value) {
@@ -68,7 +68,7 @@ fn message(mut value: Value) -> Option<Message> {
     let id = match take("id") {
         None => None,
         Some(Value::String(id)) => Some(RequestId::from(id)),
-        // Integers in the protocol have 32 bits.
+        // An integer in the protocol has 32 bits, so a longer identifier is not valid.
         Some(id) => Some(i32::try_from(id.as_i64()?).ok()?.into()),
     };
     let method = match take("method") {

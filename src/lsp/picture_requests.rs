@@ -19,11 +19,12 @@ use crate::{
     scene::Object,
 };
 
-/// Prefix of the methods of Pinhole's own requests.
+/// Prefix of the method names of those requests that Pinhole adds to the protocol.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// Answers the request with the method [`NAMESPACE`] + `about`, except one for a frame. If the text
-/// has errors, most answers are null. `analysis` is computed only if the request needs it.
+/// Answers a request with the method [`NAMESPACE`] + `about`; the method for frames is handled
+/// elsewhere. If the text has errors, so that `version` is `None`, most answers are null.
+/// `analysis` is computed only if the request needs it.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
     params: &Value,
@@ -50,7 +51,8 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     }
 }
 
-/// Answers with the limits of the number at a position. The text may have errors.
+/// Answers with the limits of the number at a position, and of its slider. The text may have
+/// errors.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
     Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
@@ -66,7 +68,8 @@ fn written_limits(limits: editor::Limits) -> Value {
     })
 }
 
-/// Answers with the sliders of all definitions of numbers and angles. The text may have errors.
+/// Answers with the sliders of all definitions whose values are numbers or angles. The text may
+/// have errors.
 fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let sliders = editor::sliders(analysis).into_iter();
     let written = |slider: editor::Slider<'_>| {
@@ -160,7 +163,7 @@ fn label(object: &Object) -> Cow<'_, str> {
     }
 }
 
-/// Answers with the objects that the parameters select, without their outlines.
+/// Answers with a list of the objects that the parameters select, but without their outlines.
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
@@ -238,7 +241,8 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
     }))
 }
 
-/// Returns, in words, the part of the picture in which the first handle of an object is visible.
+/// Returns in words where an object is: the part of the picture that contains its first handle,
+/// such as "top left", or a phrase that says that the handle is not in the picture.
 fn place(outline: &ObjectOverlay, size: [u32; 2]) -> String {
     let at = outline.handles.first().and_then(|(_, at)| *at);
     let size = DVec2::from(size.map(f64::from));

@@ -16,9 +16,9 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of picture sizes for which worlds are cached; for a further size, the oldest
-/// world is dropped. Four suffice for the picture's own size and the sizes of the coarse frames
-/// that are shown until the picture is finished.
+/// Maximum number of picture sizes for which the traced worlds are cached. For a further size, the
+/// oldest world is dropped. Four suffice for the picture's own size and for the coarse frames that
+/// are shown until the picture is finished.
 const WORLDS: usize = 4;
 
 /// A version of a text that has no errors.
@@ -31,8 +31,8 @@ pub struct SceneVersion {
     /// The span of each object's name or, if it has none, of its keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
-    /// The index of the object that was dragged last (`None` for the camera), and the text with
-    /// only this object.
+    /// The object that was dragged last, by its index (`None` for the camera), and the text in
+    /// which it is the only object. It is `None` before the first drag.
     alone: Option<(Option<usize>, Sources)>,
 }
 

@@ -50,9 +50,11 @@ pub struct Server {
     waiting: VecDeque<Request>,
     /// Documents whose diagnostics have to be sent.
     changed: BTreeSet<String>,
-    /// Scenes of the documents whose picture was requested; `None` for a text with errors.
+    /// For each document whose picture was requested, the scene of its current version; `None` if
+    /// that version has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// For each text that has changed since its last version without errors, that version.
+    /// For each text that has been changed since, the scene of its last version without errors.
+    /// Unfinished frames of that version are rendered from it while the text has errors.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
@@ -131,8 +133,8 @@ impl Server {
         outgoing
     }
 
-    /// Answers the waiting requests about the text `wanted`, or those about no text for `None`.
-    /// Also publishes the text's diagnostics if it has changed.
+    /// Answers the waiting requests about the document `wanted`, or those about no document for
+    /// `None`. If the document has changed (`is_changed`), also publishes its diagnostics.
     fn work_on(&mut self, wanted: Option<&Uri>, is_changed: bool) -> Vec<Message> {
         let is_about = |request: &Request| uri(request).as_ref() == wanted;
         let (asked, others): (VecDeque<_>, _) = self.waiting.drain(..).partition(is_about);
@@ -209,11 +211,12 @@ impl Server {
         Some(response(id, answer))
     }
 
-    /// Moves the scene of a changed text to `last`, if the text had no errors, and drops its
-    /// frames. Returns the answers to the requests for these frames.
+    /// Handles a change of a text. If the text had no errors before, moves its scene to `last`,
+    /// drops its frames, and returns the answers to the requests for these frames.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
-            // The unfinished frames show the last version without errors, and are continued.
+            // The text had errors already. Its unfinished frames show the last version without
+            // errors, and are continued.
             return Vec::new();
         };
         self.last.insert(uri.clone(), version);

@@ -57,8 +57,9 @@ pub fn serve(
     Ok(false)
 }
 
-/// Waits for the next message and returns it. Meanwhile, the server works, and its messages are
-/// sent. Returns `None` if the input has ended and no work is left.
+/// Returns the next message, and waits for it if necessary. Meanwhile, the server does its work,
+/// and the messages that result are sent. Returns `None` if the input has ended and no work is
+/// left.
 fn next_message(
     messages: &Receiver<Incoming>,
     server: &mut Server,
@@ -101,8 +102,8 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
     }
 }
 
-/// Maximum length of a message, in bytes. A greater announced length is treated as invalid input,
-/// after which the start of the next message is unknown, so reading ends.
+/// Maximum length of a message, in bytes. If a header announces more, the input is invalid. It is
+/// then unknown where the next message starts, so reading ends.
 const LONGEST: u64 = 1 << 30;
 
 /// Maximum length of a header line, in bytes; a longer line is invalid input. Usual lines have

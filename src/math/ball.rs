@@ -21,13 +21,14 @@ pub struct Ball<T: Real> {
     pub rad: T::Radius,
 }
 
-/// Factor by which a computed radius is multiplied so that it is certainly not too small. Radii are
-/// computed in `f64` with fewer than 2^12 roundings of 2^−53 each, together less than 2^−40.
+/// Factor by which a computed radius of a ball is multiplied so that it is certainly not too small.
+/// Radii are computed in `f64` with fewer than 2^12 roundings of 2^−53 each, together less than
+/// 2^−40.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
-/// Maximum rounding error of a computed number, in [`UNIT`](Real::UNIT)s of this number. The error
-/// is at most one unit of the true number, which is less than two units of the computed one. Twice
-/// as much costs nothing except an occasional decision in the next precision.
+/// Maximum rounding error of a ball's computed midpoint, in [`UNIT`](Real::UNIT)s of this number.
+/// The error is at most one unit of the true number, which is less than two units of the computed
+/// one. Twice as much costs nothing except an occasional decision in the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
@@ -53,7 +54,7 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Computes `a` − `b`.
+    /// Computes the difference `a` − `b` of two exact numbers, as a ball.
     pub fn difference(a: f64, b: f64) -> Self {
         Self::rounded(T::difference(a, b), T::Radius::ZERO)
     }
@@ -68,17 +69,17 @@ impl<T: Real> Ball<T> {
         self.mid.magnitude()
     }
 
-    /// Returns whether the relative error is at most 2^−80, far below the precision of `f64`. A
+    /// Returns whether the ball's relative error is at most 2^−80, far below that of `f64`. A
     /// computation in a higher precision is then not worthwhile: it would help only with decisions
     /// that [`Double`](super::Double) leaves in doubt, and these decisions allow for such an error.
     pub fn is_precise(&self) -> bool {
-        /// Maximum relative error of a precise ball: 2^−80, which is 27 bits below the unit
-        /// roundoff of `f64`.
+        /// Maximum radius of a precise ball, divided by the absolute value of its midpoint: 2^−80,
+        /// which is 27 bits below the unit roundoff of `f64`.
         const PRECISE: f64 = 1.0 / (1u128 << 80) as f64;
         self.rad <= self.size() * PRECISE
     }
 
-    /// Returns whether the sign is certainly positive or certainly negative. Returns `false` for
+    /// Returns whether the sign of the number is certain: positive or negative. Returns `false` for
     /// NaN.
     fn is_clear(&self) -> bool {
         self.size() > self.rad * UP
@@ -110,7 +111,7 @@ impl<T: Real> Ball<T> {
     /// Computes `self` · `power`, where `power` is a power of two.
     #[inline]
     pub fn times_power(&self, power: f64) -> Self {
-        // The product is exact unless it underflows.
+        // The product with a power of two is exact unless it underflows.
         Self {
             mid: self.mid.times(&T::from_f64(power)),
             rad: self.rad * power * UP + T::TINY,
@@ -120,7 +121,7 @@ impl<T: Real> Ball<T> {
     /// Computes `self` · 2^`exponent`.
     pub fn scaled(&self, exponent: i32) -> Self {
         let mid = self.mid.scaled(exponent);
-        // The product is exact unless it underflows.
+        // The product with a power of two is exact unless it underflows.
         let lost = underflow_loss::<T>(self.mid.is_zero());
         Self {
             mid,
@@ -144,9 +145,10 @@ impl<T: Real> Ball<T> {
         Self::rounded(root, inherited)
     }
 
-    /// Returns the floor, that is the greatest integer at most as large, and whether it is odd.
-    /// Returns a [`Doubt`] if an integer lies within the ball. In the highest precision, there is
-    /// never a doubt: a number that cannot be distinguished from an integer counts as this integer.
+    /// Returns the floor, the greatest integer that is not greater than the number, and whether it
+    /// is odd. Returns a [`Doubt`] if an integer lies within the ball. In the highest precision,
+    /// there is never a doubt: a number that cannot be distinguished from an integer counts as this
+    /// integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
         let ceiling = floor.plus(&T::from_f64(1.0));
@@ -196,8 +198,8 @@ impl<T: Real> Ball<T> {
             };
         }
         let mid = self.mid.over(&other.mid);
-        // The denominator is bounded from below: |b'| is at least |b| minus the radius of b. The
-        // error is then at most |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|.
+        // a' and b' are the true numbers, and |b'| is at least `least`, |b| minus the radius of b.
+        // The error is then at most |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|.
         let least = other.size().without(other.rad * UP);
         let lost = underflow_loss::<T>(self.mid.is_zero());
         let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;
@@ -247,8 +249,8 @@ operator!(Sub, sub);
 operator!(Mul, mul);
 operator!(Div, div);
 
-/// Returns the maximum error by an underflow: 0 if the exact result is 0 (`is_zero`), otherwise
-/// [`TINY`](Real::TINY).
+/// Returns the maximum error of an operation by underflow: 0 if its exact result is 0 (`is_zero`),
+/// otherwise [`TINY`](Real::TINY).
 #[inline]
 fn underflow_loss<T: Real>(is_zero: bool) -> T::Radius {
     if is_zero { T::Radius::ZERO } else { T::TINY }
@@ -278,7 +280,8 @@ mod tests {
     use super::*;
     use crate::math::Double;
 
-    /// Computes a few expressions that cancel, divide and take roots.
+    /// Returns the results of a few formulas that subtract nearly equal numbers, divide and take
+    /// roots.
     fn formula<T: Real>(x: f64, y: f64, z: f64) -> Vec<Ball<T>> {
         let [a, b, c] = [x, y, z].map(Ball::<T>::exact);
         let three = Ball::exact(3.0);

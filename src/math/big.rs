@@ -20,13 +20,13 @@ pub(super) type Float = FBig<HalfEven, 2>;
 /// intermediate steps. A difference that 320 bits do not resolve counts as 0.
 pub(super) const PRECISION: usize = 320;
 
-/// Number of additional bits for the few steps that subtract nearly equal numbers. Even if 320 bits
-/// cancel, 320 correct bits remain.
+/// Number of bits that are computed beyond [`PRECISION`] in the few steps that subtract nearly
+/// equal numbers. Even if 320 bits cancel, 320 correct bits remain.
 const GUARD: usize = 320;
 
 impl Big {
-    /// Number of bits of a big number. An integer with more bits is rounded to a multiple of a
-    /// power of two, which is even.
+    /// Number of bits of a [`Big`]. An integer with more bits is rounded to a multiple of a power
+    /// of two, which is even.
     pub const BITS: i32 = PRECISION as i32;
 
     /// Rounds `x` to the nearest big number.
@@ -71,8 +71,8 @@ impl Big {
 }
 
 /// Compares an angle with `half_turns` half turns (180° each). If the angle's part in radians is 0,
-/// degrees are compared exactly. Otherwise, the comparison involves the irrational number π. The
-/// difference is then never zero, and 640 bits are more than can cancel.
+/// degrees are compared exactly. Otherwise, the comparison involves the irrational number π, so
+/// that the difference is never zero. It is computed with 640 bits, more than can cancel.
 pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
     if angle.radians == 0.0 {
@@ -106,7 +106,8 @@ fn sin_cos(angle: Angle, factor: f64) -> (Float, Float) {
     )
 }
 
-/// Converts a finite `f64` to the higher precision that is used for steps that cancel.
+/// Converts a finite `f64` to the precision of 640 bits that is used for steps that subtract nearly
+/// equal numbers.
 fn wide(x: f64) -> Float {
     exact(x).with_precision(PRECISION + GUARD).value()
 }
@@ -114,8 +115,8 @@ fn wide(x: f64) -> Float {
 /// Converts a finite `f64` to a float of unlimited precision, whose sums, differences and products
 /// are exact. Any other number becomes 0.
 pub(super) fn exact(x: f64) -> Float {
-    // The numbers of a scene and of sample points are finite. Any other number would be a bug,
-    // which must not become a panic in a release build.
+    // The numbers of a scene and of sample points are finite. An infinite number or NaN would be a
+    // bug, which must not become a panic in a release build.
     debug_assert!(x.is_finite());
     let x = if x.is_finite() { x } else { 0.0 };
     let float = Float::try_from(x).unwrap_or(Float::ZERO);

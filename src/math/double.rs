@@ -43,8 +43,8 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
 /// splitting).
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> Double {
-    /// Veltkamp's factor 2^27 + 1. It splits a number of 53 bits into an upper part of 26 bits and
-    /// a lower part of 26 bits and a sign.
+    /// Veltkamp's factor 2^27 + 1. A product with it splits a number of 53 bits into an upper part
+    /// of 26 bits, and a lower part of 26 bits and a sign.
     const SPLIT: f64 = ((1u64 << 27) + 1) as f64;
     fn split(x: f64) -> (f64, f64) {
         let scaled = x * SPLIT;
@@ -68,7 +68,8 @@ impl Double {
 impl Real for Double {
     type Radius = f64;
 
-    /// Maximum relative error of one operation: 2^−102. The largest is 10u², that of a quotient.
+    /// Maximum relative error of one operation: 2^−102. The quotient has the largest one, 10u²,
+    /// where u = 2^−53.
     const UNIT: f64 = 1.0 / (1u128 << 102) as f64;
     /// Maximum absolute error of an operation that underflows: 2^−1022. Splitting a number loses
     /// bits below the subnormal numbers, a few times 2^−1074.
@@ -119,7 +120,7 @@ impl Real for Double {
         quick_two_sum(p.hi, p.lo + cross)
     }
     fn over(&self, other: &Self) -> Self {
-        // This is a long division with two digits and a correction.
+        // The quotient is a long division with two digits, each an `f64`, and a correction.
         let first = self.hi / other.hi;
         let rest = self.minus(&other.times(&Self::from_f64(first)));
         let second = rest.hi / other.hi;
@@ -131,7 +132,7 @@ impl Real for Double {
         if self.hi == 0.0 {
             return *self;
         }
-        // One step of Newton's method from the root in `f64`; the residual is in double-double.
+        // One step of Newton's method improves the root in `f64`; the residual is in double-double.
         let root = f64::sqrt(self.hi);
         let rest = self.minus(&two_product(root, root));
         quick_two_sum(root, rest.hi / (2.0 * root))

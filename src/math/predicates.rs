@@ -41,8 +41,8 @@ impl Plane {
     /// Returns whether two planes are exactly equal: their normals are parallel, and the vector
     /// between their points is perpendicular to both normals.
     pub fn equals(&self, other: &Self) -> bool {
-        // Axial planes are compared for many samples if a box stands on a floor, or boxes stand
-        // side by side.
+        // If a box stands on a floor, or boxes stand side by side, axial planes are compared for
+        // many samples. This is the fast way.
         if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
             return a == b && p == q;
         }
@@ -62,7 +62,7 @@ impl Plane {
     }
 }
 
-/// Returns whether the cross product of `up` and `to` − `from` is exactly zero.
+/// Returns whether `up` is exactly parallel to `to` − `from`: their cross product is zero.
 pub fn cross_is_zero(up: DVec3, from: DVec3, to: DVec3) -> bool {
     Dyadic::is_zero(&Dyadic::cross(
         &Dyadic::vector(up),
@@ -84,7 +84,7 @@ pub fn are_on_one_line([a, b, c]: [DVec3; 3]) -> bool {
 }
 
 /// Returns whether three lengths are the sides of a triangle: each is less than the exact sum of
-/// the other two.
+/// the two other lengths.
 pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
     exceeds(b, c, a) && exceeds(c, a, b) && exceeds(a, b, c)
 }
@@ -135,7 +135,8 @@ mod tests {
         assert!(cross_is_zero(DVec3::Y, eye, down));
         let beside = DVec3::new(0.1, -7.0, 0.3_f64.next_up());
         assert!(!cross_is_zero(DVec3::Y, eye, beside));
-        // 0.1 + 1e30 rounds to 1e30, but the difference of the points must not be rounded.
+        // In `f64`, 1e30 − 0.1 would round to 1e30. The difference of the points must not be
+        // rounded.
         let far = DVec3::new(1e30, 1e30, 1e30);
         let near = DVec3::new(0.1, 0.1, 0.2);
         assert!(!cross_is_zero(DVec3::ONE, near, far));
@@ -146,7 +147,8 @@ mod tests {
     #[test]
     fn planes_are_one_or_not_to_the_last_bit() {
         let plane = |normal: [f64; 3], point: [f64; 3]| Plane::across(normal.into(), point.into());
-        // The plane is x + 2y + 3z = 5.25. Small terms must not be lost beside 10^16.
+        // All planes of this case are x + 2y + 3z = 5.25. Small terms must not be lost beside
+        // 10^16.
         let normal = [1.0, 2.0, 3.0];
         let near = plane(normal, [0.0, 0.0, 1.75]);
         let far = [1e16, -5e15, 1.75];
@@ -167,8 +169,8 @@ mod tests {
 
     #[test]
     fn sides_of_triangles() {
-        // In the fourth case, the sum is slightly greater than the third side but rounds to it. In
-        // the fifth, the sum is rounded up to the third side.
+        // In the fourth case, the sum of two sides is slightly greater than the third side but
+        // rounds to it. In the fifth, the sum is rounded up to the third side.
         let little = f64::EPSILON / 4.0;
         for (sides, is_triangle) in [
             ([2.0, 2.0, 1.0], true),

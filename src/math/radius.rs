@@ -14,7 +14,7 @@ pub trait Radius:
     + Div<Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// Radius of an exact number.
+    /// Radius of a number that is known exactly.
     const ZERO: Self;
     /// Radius of a number that is not known at all.
     const INFINITE: Self;
@@ -22,9 +22,10 @@ pub trait Radius:
     fn sqrt(self) -> Self;
     /// Computes `self` · 2^`exponent`.
     fn scaled(self, exponent: i32) -> Self;
-    /// Returns the exponent of the least power of two that is greater than the number; 0 for 0.
+    /// Returns the exponent of the least power of two that is greater than the number. Returns 0 if
+    /// the number is 0.
     fn exponent(self) -> i32;
-    /// Computes `self` − `other`. Requires that `other` is smaller.
+    /// Computes `self` − `other`. `other` must be smaller than `self`.
     fn without(self, other: Self) -> Self;
     /// Converts to `f64`; a number that is too large becomes infinite.
     fn to_f64(self) -> f64;
@@ -73,9 +74,9 @@ pub struct Wide {
 }
 
 impl Wide {
-    /// Maximum exponent difference of two summands. If it is greater, the smaller summand is
-    /// replaced by a number 2^1000 times smaller than the larger. This changes the sum far less
-    /// than [`UP`](super::UP) does, and the mantissa does not underflow.
+    /// Maximum difference between the exponents of two summands. If it is greater, the smaller
+    /// summand is replaced by a number 2^1000 times smaller than the larger. This changes the sum
+    /// far less than [`UP`](super::UP) does, and the mantissa does not underflow.
     const FAR: i64 = 1000;
 
     /// Returns `mantissa` · 2^`exponent`, where the mantissa may be any number that is not
@@ -175,9 +176,9 @@ impl Radius for Wide {
     }
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
-        /// Maximum absolute value of the result. It is far beyond the exponents of `f64`, so that
-        /// scaling by it leaves the range of `f64`, and it can be added and negated without
-        /// overflow.
+        /// Maximum absolute value of the returned exponent. It is far beyond the exponents of
+        /// `f64`, so that scaling by it leaves the range of `f64`, and it can be added and negated
+        /// without overflow.
         const LIMIT: i64 = 1 << 20;
         (self.exponent + of_mantissa).clamp(-LIMIT, LIMIT) as i32
     }
@@ -187,7 +188,8 @@ impl Radius for Wide {
         Self::new(rest.max(0.0), self.exponent)
     }
     fn to_f64(self) -> f64 {
-        /// Maximum absolute value of the exponent. It is beyond those of `f64`, −1074 to 1023.
+        /// Maximum absolute value of the exponent that is passed to `ldexp`. It is beyond the
+        /// exponents of `f64`, −1074 to 1023, so that a greater one gives the same result.
         const LIMIT: i64 = 1100;
         libm::ldexp(self.mantissa, self.exponent.clamp(-LIMIT, LIMIT) as i32)
     }

@@ -17,9 +17,9 @@ use super::{
 /// or `Double` that overflows becomes infinite or NaN, and every decision about it is a
 /// [`Doubt`](super::Doubt).
 pub trait Real: Clone + Debug + Sized {
-    /// Type of error bounds, with at least the range of the numbers themselves.
+    /// Type of the numbers' error bounds, with at least the range of the numbers themselves.
     type Radius: Radius;
-    /// Maximum relative error of one operation.
+    /// Maximum error of the result of one operation, divided by the result.
     const UNIT: f64;
     /// Maximum absolute error of one operation that underflows. It also covers an underflow of the
     /// result's radius.
@@ -34,7 +34,7 @@ pub trait Real: Clone + Debug + Sized {
     fn difference(a: f64, b: f64) -> Self;
     /// Rounds `x` to this precision.
     fn from_big(x: &Big) -> Self;
-    /// Returns the nearest `f64`, or one of the two nearest.
+    /// Converts the number to the nearest `f64`, or to one of the two nearest.
     fn to_f64(&self) -> f64;
     /// Returns the absolute value, rounded.
     fn magnitude(&self) -> Self::Radius;
@@ -62,8 +62,8 @@ pub trait Real: Clone + Debug + Sized {
     fn floor(&self) -> (Self, bool);
 }
 
-/// Number whose addition and subsequent subtraction round an `f64` below 2^51 in absolute value to
-/// an integer. The last bit of the sum is the last bit of that integer.
+/// Number that rounds an `f64` below 2^51 in absolute value to an integer: it is added to the
+/// `f64`, and then subtracted again. The last bit of the sum is the last bit of that integer.
 pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 
 /// Returns the floor of `x`, that is the greatest integer at most as large. Requires |x| < 2^63.
@@ -145,7 +145,7 @@ impl Real for f64 {
     #[inline]
     fn floor(&self) -> (Self, bool) {
         /// Absolute value from which on every `f64` is an even integer: 2^53, because an `f64` has
-        /// 53 bits.
+        /// 53 bits. Such a floor is not odd, and need not fit into an `i64`.
         const ALL_EVEN: f64 = (1u64 << 53) as f64;
         let floor = f64::floor(*self);
         (floor, floor.abs() < ALL_EVEN && floor as i64 & 1 == 1)
@@ -176,7 +176,8 @@ impl Real for Big {
     fn magnitude(&self) -> Wide {
         let repr = self.0.repr();
         let bits = repr.significand().bit_len() as isize;
-        // The fraction is from 1/2 to 1, whatever the number's own exponent is.
+        // `fraction` is the number scaled to an absolute value of 1/2 to 1, so that it does not
+        // overflow as an `f64`.
         let fraction = self.0.clone() >> (repr.exponent() + bits);
         let exponent = (repr.exponent() + bits) as i64;
         Wide::new(fraction.to_f64().value().abs(), exponent)

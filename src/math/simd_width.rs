@@ -13,7 +13,8 @@ pub enum SimdWidth {
     /// The widest vectors that the processor has.
     #[default]
     Widest,
-    /// The vectors that every processor of the architecture has. They are faster for few numbers.
+    /// The vectors that every processor of the architecture has. They are faster if a loop handles
+    /// few numbers.
     Baseline,
 }
 

@@ -8,21 +8,21 @@ use std::{array, ops::Neg, sync::LazyLock};
 
 use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
-/// Maximum angle, in radians, for which double-double series are used; above it, [`Big`] computes
-/// the result, because its π has enough digits for any angle. The limit is less than 2^20 quarter
-/// turns. Up to it, the truncation of π/2 amounts to at most 2^20·2^−163 = 2^−143, which is
-/// negligible beside the unit of double-double, 2^−102.
+/// Maximum absolute value of an angle, in radians, at which its sine and cosine are computed by
+/// series in double-double; above it, [`Big`] computes them, because its π has enough digits for
+/// any angle. The limit is less than 2^20 quarter turns. Up to it, the truncation of π/2 amounts to
+/// at most 2^20·2^−163 = 2^−143, which is negligible beside the unit of double-double, 2^−102.
 const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
-/// Number of terms of the series of the sine and of the cosine. The argument r is at most 0.8, more
-/// than π/4. The first omitted term of the cosine is then r³⁰/30! < 2^−117, and that of the sine,
-/// divided by r, is r³⁰/31! < 2^−122.
+/// Number of terms of the series of the sine, and of that of the cosine. The argument r is at most
+/// 0.8, more than π/4. The first omitted term of the cosine is then r³⁰/30! < 2^−117, and that of
+/// the sine, divided by r, is r³⁰/31! < 2^−122.
 const TERMS: usize = 15;
 /// Maximum truncation error of the series of the sine or of the cosine. The terms alternate and
 /// decrease, so that the error is at most the first omitted term.
 const TRUNCATION: f64 = 1.0 / (1u128 << 116) as f64;
 
-/// Constants for the reduction of angles and for the series.
+/// Constants for the reduction of angles modulo quarter turns, and coefficients of the series.
 struct Constants {
     /// π/2 as the sum of three `f64`. The error is at most half a unit in the last place of the
     /// third, 2^−163.
@@ -47,7 +47,8 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     let reciprocals: [Ball<Double>; 2 * TERMS] = array::from_fn(|n| {
         factorial = factorial.times(&Big::from_f64(n.max(1) as f64));
         let reciprocal = Ball::from_big(&Big::from_f64(1.0).over(&factorial));
-        // The signs are those of i⁰, i¹, i², … (without i itself).
+        // The coefficients have the signs +, +, −, −, and so on, as i⁰, i¹, i², i³ would have them
+        // without their factor i.
         if n % 4 < 2 { reciprocal } else { -reciprocal }
     });
     Constants {
@@ -170,13 +171,13 @@ mod tests {
 
     use super::*;
 
-    /// Maximum radius of a ball, in units of double-double, for angles in degrees, in radians, and
-    /// in both. It follows from the rules of [`Ball`]. The reduced angle r has an error of 8 units
-    /// of r after its product with a rounded constant (degrees), and of at most 12·π/4 units after
-    /// three differences (radians). At |r| = π/4, the series then give 19.9 units of the sine and
-    /// 19.6 of the cosine for degrees, and 23.4 and 22.1 for radians. For angles with both parts,
-    /// two products of numbers that are √½ are added: 2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) =
-    /// 68.1.
+    /// Maximum radius of the ball of a sine or cosine, in units of double-double: for angles in
+    /// degrees, for angles in radians, and for angles with both parts. It follows from the rules of
+    /// [`Ball`]. The reduced angle r has an error of 8 units of r after its product with a rounded
+    /// constant (degrees), and of at most 12·π/4 units after three differences (radians). At |r| =
+    /// π/4, the series then give 19.9 units of the sine and 19.6 of the cosine for degrees, and
+    /// 23.4 and 22.1 for radians. For angles with both parts, two products of numbers that are √½
+    /// are added: 2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];
 
     /// Returns whether the balls of the sine and the cosine contain the true numbers and are no
@@ -220,8 +221,8 @@ mod tests {
 
     #[test]
     fn angles_far_away_and_the_widest_balls_are_right() {
-        // This ball is as wide as possible, because both parts of the angle are 45° from a quarter
-        // turn.
+        // Both parts of this angle are 45° from a quarter turn, so that its balls are as wide as
+        // possible.
         assert!(is_right(-302176.406925716, -675013.4458038831 / 64.0));
         for radians in [1e7, -3e20, MAX_RADIANS, 1e300] {
             assert!(is_right(0.0, radians), "{radians}");

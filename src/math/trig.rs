@@ -35,19 +35,19 @@ fn sin_cos(angle: Angle) -> (Double, Double) {
     (sin, cos)
 }
 
-/// Returns the angle with this sine, from −90 to 90 degrees. Returns NaN if the sine is not within
-/// −1 to 1.
+/// Returns the angle, from −90 to 90 degrees, whose sine is `sine`. Returns NaN if `sine` is not
+/// within −1 to 1.
 pub fn asin(sine: f64) -> Angle {
     Angle::from_radians(libm::asin(sine))
 }
 
-/// Returns the angle with this cosine, from 0 to 180 degrees. Returns NaN if the cosine is not
-/// within −1 to 1.
+/// Returns the angle, from 0 to 180 degrees, whose cosine is `cosine`. Returns NaN if `cosine` is
+/// not within −1 to 1.
 pub fn acos(cosine: f64) -> Angle {
     Angle::from_radians(libm::acos(cosine))
 }
 
-/// Returns the angle with this tangent, from −90 to 90 degrees.
+/// Returns the angle, from −90 to 90 degrees, whose tangent is `tangent`.
 pub fn atan(tangent: f64) -> Angle {
     Angle::from_radians(libm::atan(tangent))
 }
@@ -67,7 +67,7 @@ mod tests {
         for turns in [0.0, 1.0, -1.0, 12.0, -7.0, 1e9] {
             for (quarter, (s, c)) in values.iter().enumerate() {
                 let angle = Angle::from_degrees(turns * 360.0 + quarter as f64 * 90.0);
-                // Bits are compared, because no zero may be negative.
+                // Bits are compared, because a result that is zero must not be −0.
                 let bits = [sin(angle), cos(angle)].map(f64::to_bits);
                 assert_eq!(bits, [*s, *c].map(f64::to_bits), "{angle:?}");
             }

@@ -16,8 +16,9 @@ use crate::lock::{lock, unpoisoned};
 pub struct Latest<T> {
     state: Mutex<SlotState<T>>,
     news: Condvar,
-    /// Whether the value that was taken last is outdated. It is written only while `state` is
-    /// locked, so that it always agrees with `state`.
+    /// Whether the value that was taken last is outdated, since a newer one was put into the slot
+    /// or the slot has ended. It is written only while `state` is locked, so that it always agrees
+    /// with `state`.
     stale: AtomicBool,
 }
 
@@ -93,7 +94,7 @@ impl<T> Latest<T> {
         self.change(|state| state.is_over = true);
     }
 
-    /// Returns whether the slot has ended.
+    /// Returns whether the slot has ended, so that no further values are accepted.
     pub fn is_over(&self) -> bool {
         lock(&self.state).is_over
     }

@@ -36,10 +36,11 @@ use notify::{
 use super::Latest;
 use crate::files;
 
-/// Time without events after which a changed file is read.
+/// Time without events from the file system after which a changed file is read.
 const QUIET_TIME: Duration = Duration::from_millis(10);
 
-/// Maximum time from the first event to reading the file, even if further events come.
+/// Maximum time from the first event of a change to reading the file. The file is then read even if
+/// events still arrive.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
 /// Maximum time to wait for a file that is missing or empty, since a program may be saving it.
@@ -72,7 +73,7 @@ pub fn watch(
     let (sender, events) = mpsc::channel();
     let own_sender = sender.clone();
     let notifier = notify::recommended_watcher(move |event| {
-        // If the receiver is gone, the event is dropped.
+        // If the watching thread has ended, the event is dropped.
         let _ = sender.send(event);
     });
     let mut watcher = Watcher {
@@ -107,7 +108,8 @@ struct Watcher<R> {
     _sender: Sender<notify::Result<Event>>,
     /// The folders that are watched.
     folders: BTreeSet<PathBuf>,
-    /// Names of the file in the watched folders, also that of a link's target.
+    /// File names whose events concern the file: its own name and, for a symbolic link, that of the
+    /// link's target.
     names: Vec<OsString>,
     /// Stamp of the file when it was last read.
     stamp: Option<Stamp>,
@@ -137,8 +139,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
                         self.follow();
                         continue;
                     }
-                    // The file has changed without an event: a watched folder was removed, or does
-                    // not report events.
+                    // The file has changed although no event told so. Either the watch is lost,
+                    // because a watched folder was removed, or the folder does not report events.
                     self.forget_folders();
                 }
             }
@@ -299,7 +301,7 @@ mod tests {
 
     #[test]
     fn a_folder_has_one_name_whether_its_file_is_there_or_not() {
-        // Tests run in the folder of the package.
+        // Tests run in the folder of the package, so this is the path of that folder.
         let here = fs::canonicalize(".").unwrap();
         for path in [
             "Cargo.toml",

@@ -86,8 +86,8 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// Returns the shape. The outline of a triangle is replaced by its vertices, which are then not
-/// computed again for each ray.
+/// Returns the shape, with the vertices of a triangle in place of any other outline. They are then
+/// not computed again for each ray.
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {

@@ -15,7 +15,7 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Number of columns and of rows of a picture, unless a test sets others.
+/// Number of columns and of rows of a scene's picture, unless a test sets others.
 pub const SIZE: u32 = 64;
 
 /// Returns a camera at `eye` that looks at `lookat`. All else is the language's default.

@@ -36,9 +36,9 @@ pub struct TextbookHit {
     pub point: DVec3,
 }
 
-/// Minimum absolute value of the determinant at which a triangle is hit; below it, the triangle
-/// counts as parallel to the ray. Möller and Trumbore's own program uses 10⁻⁶; most later programs
-/// use 10⁻⁸.
+/// Minimum absolute value of the determinant in the triangle test of Möller and Trumbore; below it,
+/// the triangle counts as parallel to the ray and is missed. Their own program uses 10⁻⁶; most
+/// later programs use 10⁻⁸.
 const EPSILON: f64 = 1e-8;
 
 impl Textbook {
@@ -100,7 +100,8 @@ impl Textbook {
     }
 }
 
-/// Returns whether floor(x/square) + floor(z/square) is odd.
+/// Returns whether the point lies in a square of the checkerboard's second colour, that is whether
+/// floor(x/square) + floor(z/square) is odd.
 fn is_odd(point: DVec3, square: f64) -> bool {
     let parity = |x: f64| (x / square).floor().abs() % 2.0;
     parity(point.x) != parity(point.z)

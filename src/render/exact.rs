@@ -15,9 +15,10 @@ use crate::{
     tracer::{GRID, World},
 };
 
-/// Side of the tiles, in pixels. Pixels of a checkerboard are computed in batches of eight similar
-/// pixels, and tiles are large enough to fill most batches: with tiles half as long, figure 9.9
-/// takes 5 % longer. Tiles are small enough that the threads end at about the same time.
+/// Side of the tiles into which an exact picture is divided for the threads, in pixels. Pixels of a
+/// checkerboard are computed in batches of eight similar pixels, and tiles are large enough to fill
+/// most batches: with tiles half as long, figure 9.9 takes 5 % longer. Tiles are small enough that
+/// the threads end at about the same time.
 const TILE: u32 = 2 * GRID;
 
 /// An exactly computed picture, with its error bounds.
@@ -66,8 +67,8 @@ pub(super) fn render_exact_as<P: film::Pixel>(
     render_numbers(&Integrator::new(world), part, control, &|_, _| ())
 }
 
-/// Computes a part of the picture with an integrator of `N` numbers, of which the first three are
-/// the channels. Calls `also` with each tile and all numbers of the tile's pixels.
+/// Computes a part of the picture with an integrator of `N` numbers per colour, of which the first
+/// three are the channels. Calls `also` with each tile and all numbers of the tile's pixels.
 ///
 /// # Errors
 ///
@@ -97,12 +98,12 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                 .iter()
                 .map(|pixel| match pixel.bound {
                     0.0 => 0.0,
-                    // The bound is rounded up. Light is between 0 and 1, so that no bound exceeds
-                    // 1.
+                    // The bound is rounded up to an `f32`. Light is between 0 and 1, so that no
+                    // bound needs to exceed 1.
                     bound => (bound as f32).next_up().min(1.0),
                 })
                 .collect();
-            // Most pixels equal the pixel before, so that its conversion is used again.
+            // Most pixels have the mean of the pixel before, so that its conversion is used again.
             let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
             let means: Vec<P> = pixels
                 .iter()

@@ -47,8 +47,8 @@ pub struct Control<'a> {
     /// Number of threads; `None` for the default number, which is one per processor or the
     /// process's limit.
     pub threads: Option<NonZero<usize>>,
-    /// Called, from any thread, with the number of samples, or exact pixels, finished since the
-    /// last call.
+    /// Function that is called, from any thread, with the number of samples, or of exact pixels,
+    /// finished since its last call.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
@@ -184,7 +184,7 @@ fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area>
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))
 }
 
-/// Returns the result, or [`RenderError::Cancelled`] if the render was cancelled.
+/// Returns the result of a render, or [`RenderError::Cancelled`] if the render was cancelled.
 fn finished<T>(result: Mutex<T>, control: &Control) -> Result<T, RenderError> {
     if control.cancel.load(Ordering::Relaxed) {
         return Err(RenderError::Cancelled);

@@ -27,32 +27,35 @@ use crate::{
     },
 };
 
-/// Minimum number of samples for which the widest vectors are used; they have as many lanes.
+/// Minimum number of a pixel's samples that are traced at a time with the widest vectors, which
+/// have as many lanes. Fewer samples are traced with the baseline vectors.
 const WIDE_SAMPLES: u64 = 8;
 
-/// Maximum number of samples per candidate for which a pixel's samples are traced one by one; with
-/// more, the pixel is prepared and samples are traced many at a time. Not critical: with 1 or 4, a
-/// picture takes up to 2 % longer, as measured.
+/// Maximum number of samples per candidate object at which a pixel's samples are traced one by one;
+/// with more, the pixel is prepared and samples are traced many at a time. Not critical: with 1 or
+/// 4, a picture takes up to 2 % longer, as measured.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
 /// Maximum number of a pixel's samples that are traced between two checks for cancellation. So many
 /// take 40 µs if many are traced at a time, and 0.3 ms one by one.
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
-/// Side of the squares of crowded parts for which nearby objects are searched, in pixels.
+/// Side of the squares into which a crowded part, one with too many candidates to prepare its
+/// pixels, is divided, in pixels. The objects near a square are searched once for all its samples.
 const CROWD_SIDE: u32 = 4;
 
-/// Minimum number of a pixel's samples for which the list of objects near its square is reduced to
-/// those near the pixel. With fewer samples, each is tested against the longer list.
+/// Minimum number of a pixel's samples for which the list of the objects near its square of pixels
+/// ([`CROWD_SIDE`]) is reduced to those near the pixel. With fewer samples, each is tested against
+/// the longer list.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
 /// Data that all tiles of a picture share.
 pub(super) struct Renderer<'a, P> {
     pub(super) world: &'a World,
     pub(super) sampling: &'a Sampling,
-    /// The palette in linear light.
+    /// The colours of the palette in linear light.
     pub(super) colors: &'a [[f64; 3]],
-    /// The palette converted to the film's kind of pixel.
+    /// The colours of the palette, converted to the film's kind of pixel.
     pub(super) shown: &'a [P],
     pub(super) encoder: &'a Encoder,
     pub(super) control: &'a Control<'a>,
@@ -101,7 +104,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
         flow.is_continue().then_some(film.pixels)
     }
 
-    /// Returns `Break` if the render was cancelled.
+    /// Returns `Break` if the render was cancelled, otherwise `Continue`.
     fn go_on(&self) -> ControlFlow<()> {
         if self.control.cancel.load(Ordering::Relaxed) {
             return ControlFlow::Break(());

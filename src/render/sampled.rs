@@ -1,7 +1,8 @@
 //! Renders a part of the picture with samples.
 //!
-//! In: the world, the sampling and the part. Out: the part's means, as light or as bytes. The part
-//! is divided into tiles for the threads; `renderer` renders each tile.
+//! In: the world, the positions of the samples, and the part. Out: the means of the part's pixels,
+//! as light or as bytes. The part is divided into tiles for the threads; `renderer` renders each
+//! tile.
 
 use std::sync::Mutex;
 
@@ -17,8 +18,8 @@ use crate::{
     tracer::{GRID, Quartering, Scratch, World},
 };
 
-/// Approximate number of samples in a tile. They are a few milliseconds of work, so that no thread
-/// waits long for the others at the end.
+/// Approximate number of samples in a tile, the work that a thread takes at a time. They take a few
+/// milliseconds, so that no thread waits long for the others at the end.
 const TILE_SAMPLES: u64 = 1 << 18;
 
 /// Renders a part of the picture with samples, of which the sampling must have some.
@@ -66,8 +67,9 @@ pub(super) fn render_as<P: film::Pixel>(
 /// pixel has.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
-    // The quotient is at most 2^18, so that its root fits into 32 bits. The side is a power of two,
-    // so that no tile crosses a line of the grid.
+    // The quotient is at most 2^18, so that its root fits into 32 bits. The side is a power of two
+    // up to that of the squares with which quartering begins (`GRID`), so that no tile crosses a
+    // border of these squares.
     let side = (pixels.isqrt() as u32).clamp(1, GRID);
     1 << side.ilog2()
 }

@@ -12,14 +12,15 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of samples in a slice: about 10 ms of work for two processors and a few objects.
-/// A pixel with more samples is a slice of its own, because pixels are not divided.
+/// Maximum number of samples in a slice of a picture: about 10 ms of work for two processors and a
+/// few objects. A pixel with more samples is a slice of its own, because pixels are not divided.
 pub const SLICE: u64 = 1 << 20;
 
-/// Work of an exactly computed pixel, in samples that take as long. Measured on figure 9.9.
+/// Work of an exactly computed pixel, as the number of samples that take as long. Measured on
+/// figure 9.9.
 const EXACT_PIXEL_WORK: u64 = 64;
 
-/// A picture that is partly rendered.
+/// A picture of which some slices are rendered.
 #[derive(Debug)]
 pub struct Slices<P> {
     sampling: Sampling,
@@ -38,8 +39,8 @@ impl<P: Pixel> Slices<P> {
     ///
     /// There is not enough memory for the picture.
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
-        // The side of a slice is a power of two. A slice therefore consists of whole squares of the
-        // tracer's grid, or lies within one.
+        // The side of a slice is a power of two. A slice therefore consists of whole squares with
+        // which the tracer's quartering begins, or lies within one of them.
         let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
             film: Film::new(width, height)?,
@@ -89,7 +90,7 @@ impl<P: Pixel> Slices<P> {
     }
 }
 
-/// Returns the work of one pixel, in samples, which is at least 1.
+/// Returns the work of one pixel, as the number of samples that take as long. It is at least 1.
 pub fn pixel_work(sampling: &Sampling) -> u64 {
     if sampling.is_exact() {
         return EXACT_PIXEL_WORK;

@@ -71,11 +71,13 @@ impl Counts {
 /// more than one colour have two, and most of these have the same counts as an earlier pixel.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
-/// Number of cached means. They take 28 KiB and fit into the first-level cache.
+/// Number of means of two colours that are cached. They take 28 KiB and fit into the first-level
+/// cache.
 const CACHED_MEANS: usize = 512;
 
 impl<P: film::Pixel> Means<P> {
-    /// Returns the mean of the counts as a pixel of the film, and resets the counts to 0.
+    /// Returns the mean of a pixel's samples, from the counts of their colours, as a pixel of the
+    /// film. Resets the counts to 0.
     pub(super) fn take(
         &mut self,
         counts: &mut Counts,
@@ -103,7 +105,8 @@ impl<P: film::Pixel> Means<P> {
 
     fn of_two(&mut self, seen: [(usize, u64); 2], colors: &[[f64; 3]], encoder: &Encoder) -> P {
         if self.0.is_empty() {
-            // The counts in `seen` are not 0, so that `seen` never equals an empty entry.
+            // The counts in `seen` are not 0, so that `seen` never equals an empty entry of the
+            // cache.
             self.0.resize(CACHED_MEANS, ([(0, 0); 2], P::default()));
         }
         let [(a, count), (b, other)] = seen;

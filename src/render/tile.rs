@@ -29,8 +29,8 @@ impl SampleCounts {
 }
 
 impl<P: Pixel> Tile<P> {
-    /// Sets the pixels of a part in which all samples see one colour, except pixels without
-    /// samples. Adds the number of samples to `unreported`.
+    /// Sets the pixels of a part in which all samples see the colour `color`, except pixels without
+    /// samples. Adds the part's number of samples to `unreported`.
     pub(super) fn fill(&mut self, part: Area, color: P) {
         for y in part.y..part.y + part.height {
             let start = self.area.index(part.x, y);

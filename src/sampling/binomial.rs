@@ -12,21 +12,22 @@
 
 use rand::{Rng, RngExt};
 
-/// Maximum number of coins for which random bits are counted, 64 per random number. Above it, the
-/// number of heads is drawn by transformed rejection.
+/// Maximum number of fair coins whose heads are drawn by counting random bits, 64 per random
+/// number. Above it, the number of heads is drawn by transformed rejection.
 const MAX_COUNTED: u64 = 512;
 
 /// Draws the number of successes in `n` trials, each with the success probability `part`/`whole`.
 /// Requires `n` ≤ 2^53.
 pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     let (mut open, mut successes) = (n, 0);
-    // `rest`/`whole` is the fraction whose binary digits are the unused digits of p = part/whole.
+    // `rest`/`whole` is the fraction whose binary digits are those digits of p = part/whole that
+    // are not used yet.
     let mut rest = part;
     while open > 0 && rest > 0 {
         let ones = heads(rng, open);
         rest *= 2;
         if rest < whole {
-            // The digit of p is 0. Trials whose random digit is 1 are above p and fail.
+            // The digit of p is 0. Trials whose own random digit is 1 are above p and fail.
             open -= ones;
         } else {
             rest -= whole;
@@ -48,7 +49,8 @@ fn heads(rng: &mut impl Rng, n: u64) -> u64 {
         .sum()
 }
 
-/// Draws the number of heads of `n` fair coins by BTRS with p = 1/2, for large `n`.
+/// Draws the number of heads of `n` fair coins, for large `n`, by transformed rejection (BTRS) with
+/// p = 1/2.
 fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     let deviation = n.sqrt() / 2.0;
     let b = 1.15 + 2.53 * deviation;
@@ -60,8 +62,8 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
         let (u, v) = (rng.random::<f64>() - 0.5, rng.random::<f64>());
         let us = 0.5 - u.abs();
         let k = ((2.0 * a / us + b) * u + n / 2.0 + 0.5).floor();
-        // Values of k farther than n/4 from n/2 are excluded. They occur less than once in 10^27
-        // draws (Hoeffding 1963).
+        // Numbers of heads farther than n/4 from n/2 are excluded. They occur less than once in
+        // 10^27 draws (Hoeffding 1963).
         if (k - n / 2.0).abs() > n / 4.0 {
             continue;
         }
@@ -83,7 +85,7 @@ fn ln_weight(k: f64, n: f64) -> f64 {
     let stirling_error = |n: f64| (1.0 / 12.0 - 1.0 / 360.0 / (n * n)) / n;
     let ratio = (2.0 * k - n) / n;
     let square = ratio * ratio;
-    // This is the series of (1 + r) ln(1 + r) + (1 − r) ln(1 − r) for the ratio r, with |r| ≤ 1/2.
+    // For the ratio r, |r| ≤ 1/2, this is the series of (1 + r) ln(1 + r) + (1 − r) ln(1 − r).
     let (mut sum, mut power) = (0.0, square);
     for double in (2..).step_by(2) {
         let next = sum + 2.0 * power / f64::from(double * (double - 1));
@@ -99,7 +101,8 @@ fn ln_weight(k: f64, n: f64) -> f64 {
 mod tests {
     use super::{super::rng::Key, *};
 
-    /// Checks that the mean and the variance of many draws are within 4 standard errors.
+    /// Checks that the mean and the variance of 20,000 draws of the number of successes in `n`
+    /// trials are within 4 standard errors. A trial succeeds with the probability `part`/`whole`.
     fn check(n: u64, part: u64, whole: u64) {
         const DRAWS: u64 = 20_000;
         let p = part as f64 / whole as f64;
@@ -132,7 +135,7 @@ mod tests {
 
     #[test]
     fn draws_have_the_probabilities_of_the_distribution() {
-        // A χ² test over all outcomes that are expected at least 10 times.
+        // A χ² test compares the counts of all outcomes that are expected at least 10 times.
         for (n, part, whole) in [
             (6_u64, 1_u32, 3_u32),
             (30, 1, 2),

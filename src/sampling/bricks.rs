@@ -12,7 +12,7 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub struct Bricks {
     n: u64,
-    /// Number m of rows.
+    /// Number m of rows of cells.
     rows: u64,
     /// Length of a short row: ⌊n/m⌋ cells.
     short: u64,
@@ -34,10 +34,10 @@ impl Bricks {
     pub fn new(n: u64) -> Self {
         let root = n.isqrt();
         let rows = if n % 2 == 1 {
-            // This is the odd one of ⌊√n⌋ and ⌊√n⌋ + 1, which is within 1 of √n.
+            // `rows` is the odd one of ⌊√n⌋ and ⌊√n⌋ + 1, which is within 1 of √n.
             root | 1
         } else if n - root * root > root {
-            // Here, √n > root + 1/2, because n > root² + root + 1/4.
+            // `n` exceeds root² + root + 1/4, so that √n > root + 1/2 and is nearer to root + 1.
             root + 1
         } else {
             root
@@ -86,9 +86,10 @@ impl Bricks {
         }
     }
 
-    /// Returns the index of the row that contains the cell with index `i`, counted row by row.
+    /// Returns the index of the row that contains the cell with the index `i`. Cells are counted
+    /// row by row.
     fn row_of_cell(&self, i: u64) -> u64 {
-        // The estimate is wrong by about one row, and is corrected step by step.
+        // The estimate `k` of the row is wrong by about one row, and is corrected step by step.
         let mut k = (u128::from(i) * u128::from(self.rows) / u128::from(self.n)) as u64;
         while self.cells_above(k) > i {
             k -= 1;

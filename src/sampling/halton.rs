@@ -10,8 +10,8 @@ use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Maximum number of radical inverses that are stored per base. If a pixel has more points, the
-/// radical inverses are computed for each point.
+/// Maximum number of radical inverses of the Halton sequence that are stored per base. If a pixel
+/// has more points, the radical inverses are computed for each point.
 const MAX_STORED: u64 = 1 << 16;
 
 /// The Halton sequence, with its first radical inverses in base 2 and in base 3.
@@ -29,7 +29,8 @@ impl Halton {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` to `out`, shifted by `key`.
+    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to
+    /// `out`, after a random shift that `key` determines.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let inverses: [fn(u64) -> u64; 2] = [u64::reverse_bits, radical_inverse_3];
@@ -60,7 +61,8 @@ pub fn radical_inverse_3(i: u64) -> u64 {
         power *= 3;
         rest /= 3;
     }
-    // The result fits, because the greatest value, 1 − 3^−40, is more than 2^−64 below 1.
+    // The result fits into 64 bits, because the greatest value, 1 − 3^−40, is more than 2^−64 below
+    // 1.
     (u128::from(mirrored) << 64).div_ceil(u128::from(power)) as u64
 }
 

@@ -18,9 +18,10 @@ pub struct Hammersley {
     n: u64,
     columns: Strata,
     /// The n columns, twice in a row, so that n successive columns can be read from any column on;
-    /// empty if n is large.
+    /// empty if there are too many to be stored.
     turned: Vec<Stratum>,
-    /// y of each point before the shift, in units of 2^−64; empty if n is large.
+    /// The coordinate y of each point before the shift, in units of 2^−64; empty if there are too
+    /// many to be stored.
     heights: Vec<u64>,
 }
 
@@ -37,8 +38,8 @@ impl Hammersley {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` to `x` and `y`, shifted by
-    /// `key`.
+    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
+    /// and `y`, after a random shift that `key` determines.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [columns, within, shift] = [0, 1, 2].map(|index| key.bits(index));
@@ -54,7 +55,7 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // In a column with one place more, the chosen place is the same or the next one.
+        // In a column of `least` + 1 places, the chosen place is `place` or the next one.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

@@ -35,14 +35,15 @@ pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
                 (left, top) = (quadrant_left, quadrant_top);
                 break;
             }
-            // Counts the picture's pixels in the quadrant, which come before the pixel.
+            // All pixels of the quadrant come before the pixel. Counts those that belong to the
+            // picture.
             let columns = picture.width.saturating_sub(quadrant_left).min(side);
             let rows = picture.height.saturating_sub(quadrant_top).min(side);
             rank += u64::from(columns) * u64::from(rows);
             step += 1;
         }
-        // In the first and the last quadrant, the curve is mirrored. In the last one, it is also
-        // rotated by half a turn.
+        // Within the first and the last quadrant, the curve is mirrored. Within the last one, it is
+        // also rotated by half a turn.
         mirrored ^= step == 0 || step == 3;
         turned ^= step == 3;
     }

@@ -9,14 +9,14 @@ use super::{
     rng::{Key, scale},
 };
 
-/// The cells, and the strata along their sides.
+/// Cells of equal area in a pixel, and the strata along their sides.
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,
-    /// Divisions of the pixel's width: into the columns of a short row, and into those of a longer
-    /// row.
+    /// Divisions of the pixel's width into columns: those of a short row of cells, and those of a
+    /// longer row.
     columns: [Strata; 2],
-    /// Division of the pixel's height into n parts; a row of n_k cells is n_k parts tall.
+    /// Division of the pixel's height into n parts; a row of k cells is k parts tall.
     rows: Strata,
 }
 
@@ -31,8 +31,8 @@ impl Jittered {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` to `x` and `y`. Points are
-    /// counted row by row.
+    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
+    /// and `y`. Points are counted row by row.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [short, _] = self.bricks.lengths();

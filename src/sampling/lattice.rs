@@ -7,13 +7,14 @@
 
 use super::rng::{scale, scale_by_parts};
 
-/// Number of possible offsets along one axis.
+/// Number of possible random offsets of a sample from its pixel's centre along one axis.
 const PLACES: u64 = 1 << 53;
 
-/// Maximum number of strata that are stored; with more, each stratum is computed when it is used.
+/// Maximum number of strata of a pixel's side that are stored; with more, each stratum is computed
+/// when it is used.
 pub const MAX_STORED: u64 = 1 << 16;
 
-/// Returns the offset with the index `place`, 0 to 2^53 − 1.
+/// Returns the random offset with the index `place`, 0 to 2^53 − 1.
 #[inline(always)]
 pub fn offset(place: u64) -> f64 {
     debug_assert!(place < PLACES);
@@ -42,7 +43,7 @@ pub struct Strata {
     n: u64,
     /// Minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
     least: u64,
-    /// All strata, and the one that would follow the last; empty if n is large.
+    /// All strata, and the one that would follow the last; empty if n exceeds [`MAX_STORED`].
     stored: Vec<Stratum>,
 }
 
@@ -58,13 +59,15 @@ impl Stratum {
         self.0 >> 1
     }
 
-    /// Returns the number of places beyond ⌊2^53/n⌋: 1 or 0.
+    /// Returns the number of places that the stratum has beyond the ⌊2^53/n⌋ places of each of the
+    /// n strata: 1 or 0.
     #[inline(always)]
     pub fn more(self) -> u64 {
         self.0 & 1
     }
 
-    /// Chooses an offset in the stratum by 64 random bits; `least` is ⌊2^53/n⌋.
+    /// Chooses an offset in the stratum by 64 random bits. `least` is ⌊2^53/n⌋, the number of
+    /// places of a stratum without the one that it may have more.
     #[inline(always)]
     pub fn choose(self, least: u64, bits: u64) -> f64 {
         offset(self.start() + scale_by_parts(bits, least + self.more()))
@@ -110,15 +113,15 @@ impl Strata {
     }
 }
 
-/// Computes the stratum with the index `i` of `n`. The index `n` gives the one that would follow
-/// the last.
+/// Computes the stratum with the index `i` of the `n` strata of a pixel's side. The index `n` gives
+/// the one that would follow the last.
 fn stratum(i: u64, n: u64) -> Stratum {
     let more = start(i + 1, n) - start(i, n) - PLACES / n;
     Stratum(2 * start(i, n) + more)
 }
 
-/// Returns the first place in the stratum with the index `i` of `n`: the least k ≥ 0 with (2k +
-/// 1)/2^54 ≥ i/n.
+/// Returns the first place in the stratum with the index `i` of the `n` strata of a pixel's side:
+/// the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
 fn start(i: u64, n: u64) -> u64 {
     let (i, n) = (u128::from(i), u128::from(n));
     (i << 54).saturating_sub(n).div_ceil(2 * n) as u64

@@ -60,7 +60,7 @@ use crate::{
 #[derive(Debug)]
 pub struct Sampling {
     method: Method,
-    /// Key of the seed and the method, from which a pixel's own key is derived.
+    /// Random key of the seed and the method, from which a pixel's own key is derived.
     key: Key,
     total: u64,
     picture: Area,
@@ -69,8 +69,8 @@ pub struct Sampling {
     count: u64,
     /// Number of pixels that have one sample more than the minimum.
     extra: u64,
-    /// Patterns of `count` points and of `count` + 1 points. For `scatter`, each pattern serves for
-    /// any number of points.
+    /// Patterns of `count` points and of `count` + 1 points in a pixel. For `scatter`, each pattern
+    /// serves for any number of points.
     patterns: Box<[PointPattern; 2]>,
 }
 
@@ -96,8 +96,8 @@ impl Sampling {
     ///
     /// The picture has no pixels.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
-        // The key contains the method's index in its enum. The indices must not change, because
-        // pictures depend on them.
+        // The key contains the method's position in the enum `Method`. The positions must not
+        // change, because pictures depend on them.
         let key = Key::new(sampler.seed, sampler.method as u64);
         let pixels = u64::from(width) * u64::from(height);
         let total = match sampler.count {
@@ -159,7 +159,8 @@ impl Sampling {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
             None if self.method == Method::Scatter => {
-                // No pixel has the part number `u64::MAX`.
+                // The key of this part is not that of any pixel, because no pixel has the number
+                // `u64::MAX`.
                 let key = self.key.part(u64::MAX);
                 scatter::counts(key, self.total, self.picture, part)
             }
@@ -226,7 +227,8 @@ impl PointPattern {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` to `out`.
+    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to
+    /// `out`.
     #[inline(always)]
     fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         match self {

@@ -17,8 +17,8 @@ use super::{
     shuffle::{EMPTY_BUFFER, Shuffle},
 };
 
-/// Number of points that are placed at a time. Most pixels have no more points. A larger number
-/// would take time, because the buffer is cleared for every pixel.
+/// Number of a pixel's points that are placed at a time. Most pixels have no more points. A larger
+/// number would take time, because the buffer is cleared for every pixel.
 const BATCH: usize = 16;
 
 /// A grid of cells, and the fine strata along its sides.
@@ -56,8 +56,8 @@ impl MultiJittered {
         [self.columns, self.rows]
     }
 
-    /// Writes the offsets of the points whose indices are in `range` to `out`. Points are counted
-    /// row by row.
+    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to
+    /// `out`. Points are counted row by row.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let mut buffers = [EMPTY_BUFFER; 2];

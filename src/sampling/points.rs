@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-/// Number of lanes of the widest vectors. Lists of coordinates are padded to a multiple of this.
+/// Number of lanes of the widest SIMD vectors. Lists of sample points' coordinates are padded to a
+/// multiple of this.
 const LANES: usize = 8;
 
 /// Points of a pixel, as one list per coordinate, so that loops over the points are vectorized. One

@@ -9,10 +9,12 @@ use std::{convert::Infallible, ops::Range};
 
 use rand::{SeedableRng, TryRng};
 
-/// Step of SplitMix64: the odd number nearest to 2^64/φ, where φ is the golden ratio.
+/// Step from one state of SplitMix64 to the next: the odd number nearest to 2^64/φ, where φ is the
+/// golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Number of pairs of random numbers that [`Key::pairs`] generates at a time.
+/// Number of pairs of random numbers that [`Key::pairs`] generates for each call of its parameter
+/// `each`.
 const BATCH: usize = 64;
 
 /// The purpose of random numbers: a hash of a seed, a method, and parts such as a pixel or an axis.
@@ -25,8 +27,8 @@ impl Key {
         Self(mix(mix(seed.wrapping_add(GOLDEN)) ^ method))
     }
 
-    /// Returns the key of a part of this purpose, such as a pixel or an axis. Distinct parts have
-    /// distinct keys.
+    /// Returns the key of a part of this key's purpose, such as a pixel or an axis. Distinct parts
+    /// have distinct keys.
     pub fn part(self, part: u64) -> Self {
         Self(mix(self.0 ^ mix(part.wrapping_add(GOLDEN))))
     }
@@ -115,9 +117,9 @@ pub fn scale_by_parts(bits: u64, n: u64) -> u64 {
     const LOW: u64 = u32::MAX as u64;
     let (high, low) = (bits >> 32, bits & LOW);
     let (n_high, n_low) = (n >> 26 & LOW, n & ((1 << 26) - 1));
-    // The product is high·n_high·2^58 + high·n_low·2^32 + low·n_high·2^26 + low·n_low. None of the
-    // four products of parts exceeds 2^59. Each shift drops only bits below the unit of the next
-    // term.
+    // The product `bits`·`n` is high·n_high·2^58 + high·n_low·2^32 + low·n_high·2^26 + low·n_low.
+    // None of the four products of parts exceeds 2^59. Each shift drops only bits below the unit of
+    // the next term.
     let rest = low * n_high + ((low * n_low) >> 26);
     let rest = high * n_low + (rest >> 6);
     (high * n_high + (rest >> 26)) >> 6

@@ -13,7 +13,7 @@ const SHORT: usize = 64;
 /// entries right after they are written stalls processors.
 pub type Buffer = [u16; SHORT];
 
-/// A buffer without entries.
+/// Buffer to which no entries are written yet: all zeros.
 pub const EMPTY_BUFFER: Buffer = [0; SHORT];
 
 /// A permutation of 0 … n − 1 that a key determines.
@@ -71,11 +71,13 @@ impl<'a> Shuffle<'a> {
     }
 }
 
-/// Fills `entries` with a permutation (Durstenfeld 1964, "inside out").
+/// Fills `entries` with a random permutation of 0 … n − 1, where n is their number, by the shuffle
+/// of Fisher and Yates (Durstenfeld 1964, "inside out").
 #[inline(always)]
 fn fisher_yates(entries: &mut [u16], key: Key) {
     for i in 0..entries.len() {
-        // With 32 random bits, the relative bias of each choice is at most 2^12/2^32 = 2^−20.
+        // With 32 random bits, the relative bias of the choice of each j is at most 2^12/2^32 =
+        // 2^−20.
         let j = (((key.bits(i as u64) >> 32) * (i as u64 + 1)) >> 32) as usize;
         entries[i] = entries[j];
         entries[j] = i as u16;
@@ -120,7 +122,8 @@ mod tests {
                 .or_insert(0_u32) += 1;
         }
         assert_eq!(hits.len(), 24);
-        // The standard deviation is √1000 = 32.
+        // Each permutation is expected 24,000/24 = 1000 times, with a standard deviation of √1000 =
+        // 32.
         assert!(hits.values().all(|&n| n.abs_diff(1000) < 150), "{hits:?}");
     }
 
@@ -134,8 +137,8 @@ mod tests {
             sum += shuffle.get(17) as f64;
             neighbours += u32::from(shuffle.get(17).abs_diff(shuffle.get(18)) == 1);
         }
-        // The mean is 3003, and its standard deviation 6007/√12/√2000 = 39. Two entries are
-        // neighbours once in 3000 cases.
+        // The mean of the 2000 entries is expected to be 3003, with a standard deviation of
+        // 6007/√12/√2000 = 39. Two successive entries are neighbouring numbers once in 3000 cases.
         assert!((sum / 2000.0 - 3003.0).abs() < 160.0, "{}", sum / 2000.0);
         assert!(neighbours < 8, "{neighbours}");
     }

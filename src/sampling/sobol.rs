@@ -18,13 +18,13 @@ use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Number of levels of the scrambling tree that one hash decides. Six levels have 2^6 − 1 nodes,
-/// and a hash has 64 bits.
+/// Number of levels of the tree of Owen's scrambling that one hash decides. Six levels have 2^6 − 1
+/// nodes, and a hash has 64 bits.
 const LEVELS: u32 = 6;
 
-/// Maximum number of points whose unscrambled bits are stored. They differ in at most 12 bits, so
-/// that two hashes decide a point's scrambling. If a pixel has more points, the bits are computed
-/// for each point.
+/// Maximum number of Sobol' points whose bits before the scrambling are stored. They differ in at
+/// most 12 bits, so that two hashes decide a point's scrambling. If a pixel has more points, the
+/// bits are computed for each point.
 const MAX_STORED: u64 = 1 << (2 * LEVELS);
 
 /// A prefix of the Sobol' sequence, prepared for scrambling.
@@ -32,8 +32,8 @@ const MAX_STORED: u64 = 1 << (2 * LEVELS);
 pub struct Sobol {
     /// The least m for which the number of points is at most 2^m.
     depth: u32,
-    /// The m topmost bits of both coordinates of each point, where m is `depth`; empty for more
-    /// than 4096 points.
+    /// The m topmost bits of both coordinates of each point before the scrambling, where m is
+    /// `depth`; empty for more than 4096 points.
     tops: Vec<[u16; 2]>,
 }
 
@@ -51,8 +51,8 @@ impl Sobol {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` to `x` and `y`, scrambled by
-    /// `key`.
+    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
+    /// and `y`, after the scrambling that `key` determines.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let axes = [
@@ -61,7 +61,8 @@ impl Sobol {
         ];
         if !self.tops.is_empty() {
             let tops = &self.tops[range.start as usize..range.end as usize];
-            // `at_leaves` first clears a list of this length, so that a shorter list saves time.
+            // `at_leaves` first clears a list whose length is its parameter, so that a shorter list
+            // saves time.
             return match self.depth {
                 0..=6 => at_leaves::<{ 1 << 6 }>(&axes, tops, [x, y]),
                 7..=9 => at_leaves::<{ 1 << 9 }>(&axes, tops, [x, y]),
@@ -99,7 +100,7 @@ fn pascal(mut bits: u64) -> u64 {
     bits ^ (bits >> 32)
 }
 
-/// The scrambling of one axis in one pixel.
+/// Owen's scrambling of one axis in one pixel.
 struct Owen {
     key: Key,
     depth: u32,
@@ -120,8 +121,8 @@ impl Owen {
         }
     }
 
-    /// Returns the scrambled offset of each combination of the topmost `depth` bits. `depth` must
-    /// be at most 12, so that two hashes decide each combination.
+    /// Returns the scrambled offset of each combination of the topmost `depth` bits of a
+    /// coordinate. `depth` must be at most 12, so that two hashes decide each combination.
     #[inline(always)]
     fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
         let mut prefixes = [0; MOST];
@@ -145,7 +146,8 @@ impl Owen {
         let count = 1 << self.depth;
         let hashes = (count..2 * count).map(|index| self.key.bits(index));
         for ((leaf, &prefix), hash) in leaves.iter_mut().zip(&prefixes).zip(hashes) {
-            // There are two shifts, because a single shift by 64 bits, for depth 0, would overflow.
+            // A single shift by 64 bits, for depth 0, would overflow. There are therefore two
+            // shifts.
             let bits = u64::from(prefix) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
             *leaf = lattice::offset_of_bits(bits);
         }

@@ -54,11 +54,12 @@ pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
         }
         Method::NRooks => vec![columns, rows],
         Method::MultiJittered => vec![MultiJittered::new(n).grid(), columns, rows],
-        // Only if n is a power of 2 are the heights multiples of 1/n, shifted by one amount.
+        // The heights of the points are multiples of 1/n, all shifted by one amount, only if n is a
+        // power of 2.
         Method::Hammersley if is_power_of(2) => vec![columns, rows],
         Method::Hammersley => vec![columns],
-        // Each axis is divided evenly by powers of its base, 2 or 3. The shift breaks the boxes of
-        // both axes.
+        // The points divide an axis evenly if their number is a power of the axis's base, 2 in x or
+        // 3 in y. The shift breaks up every grid of both columns and rows.
         Method::Halton if is_power_of(2) => vec![columns],
         Method::Halton if is_power_of(3) => vec![rows],
         Method::Halton => vec![],
@@ -72,7 +73,7 @@ pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
         Method::Sobol => vec![],
     };
     let mut grids: Vec<_> = grids.into_iter().map(Tiling::grid).collect();
-    // A grid may equal the columns or the rows.
+    // A grid that equals the columns or the rows is listed once.
     grids.dedup();
     grids
 }

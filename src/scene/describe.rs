@@ -97,7 +97,7 @@ fn block_page(row: &BlockRow) -> String {
     text
 }
 
-/// Describes a kind of block and its fields.
+/// Describes a kind of block: its help line and a list of its fields.
 pub fn about_block(row: &BlockRow) -> String {
     let mut text = format!("`{}`: {}\n", row.name, row.help);
     for field in row.fields {

@@ -70,8 +70,8 @@ impl Diagnostic {
         self.code.strip_prefix("pinhole::") == Some(code)
     }
 
-    /// Returns whether the diagnostic is of a kind that suggests a name or a call in place of an
-    /// undefined name.
+    /// Returns whether the diagnostic has a code with which a name or a call may be suggested in
+    /// place of an undefined name.
     pub(super) fn is_of_suggestion(&self) -> bool {
         self.is_of_name() || self.is("function_without_arguments")
     }

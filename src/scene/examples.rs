@@ -16,6 +16,7 @@ use crate::{
 /// Returns an example for `field` that does not contradict the values of the other fields, which
 /// `given` returns by name. Returns the field's own example if no tried value fits.
 pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -> String {
+    // Names of the fields for points. An example may lie beside the value of such a field.
     const POINTS: [&str; 7] = [
         BOX.max.name,
         BOX.min.name,
@@ -26,6 +27,7 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         TRIANGLE.v2.name,
     ];
     const DIRECTIONS: [&str; 2] = [CAMERA.direction.name, CAMERA.up.name];
+    // Steps from a point to an example beside it, in the order in which they are tried.
     const STEPS: [DVec3; 6] = [
         DVec3::NEG_Z,
         DVec3::X,
@@ -35,13 +37,14 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         DVec3::ONE,
     ];
     let others = POINTS.iter().filter_map(|name| match given(name)? {
-        // The example for a direction does not depend on the points.
+        // The field's own value is left out. For a direction, all points are, so only steps from
+        // the origin are tried.
         _ if DIRECTIONS.contains(&field.name) || *name == field.name => None,
         Value::Vector(point) => Some(point),
         _ => None,
     });
-    // The first tried step is −z, the direction in which a camera usually looks. From `lookat` to
-    // `eye`, the steps are therefore reversed.
+    // The first step that is tried is −z, the direction in which a camera usually looks, from `eye`
+    // to `lookat`. For an example of `eye`, each step goes from `lookat` in the opposite direction.
     let sign = if field.name == CAMERA.eye.name {
         -1.0
     } else {
@@ -63,7 +66,8 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
     }
 }
 
-/// Returns whether the known vectors of a block do not contradict each other.
+/// Returns whether the given vectors of a block do not contradict each other. Vectors that are not
+/// given contradict nothing.
 fn fits(given: &dyn Fn(&str) -> Option<Value>) -> bool {
     let vector = |name: &str| match given(name)? {
         Value::Vector(vector) => Some(vector),

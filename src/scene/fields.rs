@@ -46,8 +46,8 @@ impl FieldOwner {
         Some(self)
     }
 
-    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
-    /// rounding error of a limit may be misjudged.
+    /// Returns whether all fields meet the language's conditions. These are checked in `f64`, so a
+    /// value within rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         match self {
             Self::Image(_) => true,

@@ -9,7 +9,8 @@ use crate::{
     source::{LineColumn, Source, SourceId, Sources},
 };
 
-/// A text after its errors were fixed.
+/// Result of [`fix_all`]: the corrected text, the applied fixes, and the numbers of errors that
+/// remain.
 #[derive(Clone, Debug)]
 pub struct Fixed {
     /// The text.
@@ -19,10 +20,11 @@ pub struct Fixed {
     /// Number of remaining errors that only unsafe fixes correct: these choose among meanings, or
     /// remove or change something.
     pub held_back: usize,
-    /// Number of remaining errors whose fixes insert only a placeholder, i.e. a made-up value.
+    /// Number of remaining errors whose fixes insert only a placeholder, i.e. a made-up value, and
+    /// so are never applied.
     pub placeholders: usize,
-    /// Number of remaining errors whose fixes were allowed but not applied: the text has too many
-    /// errors for one call, or contains bytes that are not UTF-8, which would be lost.
+    /// Number of remaining errors whose fixes were allowed but not applied: there were too many for
+    /// one call, or the text contains bytes that are not UTF-8, which would be lost.
     pub waiting: usize,
 }
 
@@ -35,16 +37,17 @@ pub struct Done {
     pub title: String,
 }
 
-/// Corrects the errors of a file by fixes of at most the applicability `most`; placeholders are
-/// never applied. Errors in `--set` arguments remain, and so do warnings, because a warning may be
-/// intended.
+/// Corrects the errors of a file by safe fixes and, if `most` is not [`Applicability::Safe`], by
+/// unsafe ones too. Fixes with placeholders are never applied. Errors in `--set` arguments remain,
+/// and so do warnings, because what a warning reports may be intended.
 pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let most = most.min(Applicability::Unsafe);
-    /// Maximum number of rounds of fixes. A fix may reveal a hidden mistake, but no text hides so
-    /// many mistakes behind one another. Errors that are left then are counted as `waiting`.
+    /// Maximum number of rounds of fixes. A fix may reveal a hidden mistake, which is fixed in the
+    /// next round, but no text hides so many mistakes behind one another. Errors that have a fix
+    /// after the last round are counted as `waiting`.
     const ROUNDS: usize = 1000;
-    /// Maximum total number of bytes that all rounds read, which bounds the time. A long text with
-    /// more mistakes than one reading reports may keep some.
+    /// Maximum number of bytes that all rounds read together, which bounds the time. A long text
+    /// therefore has fewer rounds, and may keep mistakes that one reading does not report.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
@@ -122,8 +125,8 @@ impl Problem {
     }
 }
 
-/// The first applicable fixes of all errors, joined into one. If two fixes would change the same
-/// place, only the first is included; the other is left for the next round.
+/// The fixes of one round: the first applicable fix of each error, joined into one. If two fixes
+/// would change the same place, only the first is included; the other is left for the next round.
 struct Round {
     fix: Fix,
     /// Fixes that lengthen the text, each mapped to the problems that offer it. If all problems of

@@ -68,7 +68,8 @@ pub struct Camera {
     pub roll: Angle,
     /// The field of view.
     pub lens: Lens,
-    /// The height of the window in the view plane, > 0.
+    /// The height of the window in metres, > 0. The window is the part of the view plane that the
+    /// picture shows.
     pub view_height: f64,
     /// Depth of the near plane in metres, ≥ 0; nothing nearer is visible.
     pub near: f64,
@@ -90,9 +91,9 @@ pub enum View {
 /// or +y if up is parallel to z.
 ///
 /// Such a camera shows the same picture as one that first looked along the level direction and was
-/// then tilted. Its picture's top lies in the direction of the level direction's component
-/// perpendicular to up if the camera looks against up, and opposite to this component if it looks
-/// along up.
+/// then tilted. Let h be the component of the level direction that is perpendicular to up. The top
+/// of the picture lies in the direction h if the camera looks against up, and in the direction −h
+/// if it looks along up.
 pub fn level_direction(up: DVec3) -> DVec3 {
     if up.x == 0.0 && up.y == 0.0 {
         DVec3::Y
@@ -166,7 +167,7 @@ impl Object {
         }
     }
 
-    /// Returns whether two objects come from the same repeated block.
+    /// Returns whether two objects come from the same block, i.e. are repetitions of one object.
     pub fn is_beside(&self, other: &Self) -> bool {
         !self.indices.is_empty() && self.span == other.span
     }
@@ -180,7 +181,9 @@ impl Scene {
 }
 
 impl View {
-    /// Returns two points, the second of which lies in the view direction from the first.
+    /// Returns two points on a line in the view direction, which leads from the first to the
+    /// second: the eye and the point that is looked at, or the origin and the tip of the
+    /// `direction`.
     pub fn ends(&self, eye: DVec3) -> (DVec3, DVec3) {
         match *self {
             Self::Lookat(point) => (eye, point),

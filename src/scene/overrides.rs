@@ -189,9 +189,9 @@ impl<'s> Override<'s> {
         false
     }
 
-    /// Returns whether the value has no errors at `place`: `Ok` with a field, or `Err` with the
-    /// name of a `let`, which may use only the names defined before it. Returns `false` if the
-    /// budget of comparisons is spent.
+    /// Returns whether the argument's value can be evaluated at `place` and suits it: `Ok` with the
+    /// field that it is for, or `Err` with the name of a `let`, whose value may use only the names
+    /// defined before it. Returns `false` if the budget of comparisons is spent.
     fn suits(
         &self,
         place: Result<&schema::FieldRow, &str>,
@@ -255,8 +255,9 @@ fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }
 
-/// Returns whether an argument with the block `target` sets fields of `block`. `setting` is the row
-/// of `target` if that is a kind of block rather than an object's name.
+/// Returns whether an argument with the block `target` sets fields of `block`. `target` is an
+/// object's name or the keyword of a block that is no object, such as `camera`; in the second case,
+/// `setting` is the row of that kind.
 fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>) -> bool {
     match (row(block), setting) {
         (Some(row), Some(setting)) => row.kind == setting.kind,
@@ -287,10 +288,10 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
     names.collect()
 }
 
-/// Help that explains the possible targets.
+/// Help for a target that the scene does not have: which targets are possible.
 const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
 
-/// Maximum number of names that a help text lists; longer lists are left out.
+/// Maximum number of names that a help text lists. If there are more, the help lists none of them.
 const FEW: usize = 8;
 
 /// Returns the error that a target's block is neither in the file nor can be added.

@@ -20,7 +20,8 @@ use crate::{
     },
 };
 
-/// Parts of a scene. A part with errors is `None`, or missing among the objects.
+/// Parts of a scene. An image, camera or sampler with errors is `None`, and an object with errors
+/// is left out.
 #[derive(Clone, Debug)]
 pub struct Parts {
     /// The picture.

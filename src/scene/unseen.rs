@@ -25,8 +25,8 @@ use crate::{
 /// and all other errors are smaller.
 const MARGIN: f64 = 1e-8;
 
-/// Minimum sine of the angle between up and the view direction. Below it, the rounding error of the
-/// camera's axes may exceed [`MARGIN`], so visibility is not judged.
+/// Minimum sine of the angle between up and the view direction for which visibility is judged. If
+/// it is less, the rounding error of the camera's axes may exceed [`MARGIN`].
 pub const LEAST_SINE: f64 = 1e-6;
 
 /// Reason why no object is in the picture.
@@ -36,7 +36,7 @@ pub enum WhyUnseen {
     Behind,
     /// All objects are beside the window, or behind the camera.
     Outside,
-    /// An object would be visible without this field, `near` or `far`.
+    /// No object is in the picture, but one would be without this field, `near` or `far`.
     Clipped(&'static str),
 }
 
@@ -162,7 +162,8 @@ pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) ->
     frustum.may_see_plane(board.y, camera.near, far) && frustum.are_lost(board)
 }
 
-/// Pyramid with its apex in the eye through the camera's window.
+/// Pyramid of everything that the camera would see without a near and a far plane: its apex is the
+/// eye, and its edges pass through the corners of the window.
 struct Frustum {
     eye: DVec3,
     /// The view direction, of length 1.
@@ -182,7 +183,7 @@ impl Frustum {
         // If two points are close to each other but far from the origin, their difference has few
         // correct digits.
         let is_precise = from.distance(to) > LEAST_SINE * (from.length() + to.length());
-        // The negation also returns if a length is NaN.
+        // The condition is negated so that the function also returns `None` if a length is NaN.
         if !(is_precise && right.length() > LEAST_SINE) {
             return None;
         }
@@ -264,8 +265,8 @@ impl Frustum {
     }
 
     /// Returns whether nearly all rays hit the board too many squares away from the eye to tell
-    /// squares apart. The number of squares then has so few significant bits that it is always
-    /// even.
+    /// squares apart. The coordinate of such a hit, counted in squares, is so large that it has no
+    /// digit left for single squares, and so always counts as even.
     ///
     /// A ray r hits a board at the vertical distance h from the eye at the distance |r_x|·h/|r_y|
     /// along x, and likewise along z. In the window, |r_x| is at most its `extent`, and it is less

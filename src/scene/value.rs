@@ -84,8 +84,8 @@ pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     })
 }
 
-/// Reduces the numbers to one with `choose`, pair by pair. Returns `None` if there is no number or
-/// if a value is not a number.
+/// Combines all numbers to one by applying `choose`, such as the minimum, to the result so far and
+/// the next number. Returns `None` if there is no number or if a value is not a number.
 fn fold(numbers: &[Value], choose: impl Fn(f64, f64) -> f64) -> Option<f64> {
     let mut chosen = None;
     for number in numbers {
@@ -112,8 +112,8 @@ fn normalize(v: DVec3) -> DVec3 {
 }
 
 /// Scales a vector by a power of two so that its greatest absolute coordinate is in [1, 2). Returns
-/// the scaled vector and the inverse of the power. Only coordinates that are negligible compared
-/// with the greatest are rounded.
+/// the scaled vector, and the factor that undoes the scaling. Only coordinates that are negligible
+/// compared with the greatest are rounded.
 fn to_unit_scale(v: DVec3) -> (DVec3, f64) {
     let greatest = v.abs().max_element();
     if greatest == 0.0 || !greatest.is_finite() {

@@ -9,8 +9,7 @@ use Condition::{
 };
 use Condition::{NotZero, Whole};
 
-/// Defines the fields of a kind of block: a table row and a typed handle for each.
-///
+/// Defines the fields of a kind of block: for each field, a row of the table and a [`FieldHandle`].
 /// A line holds a field's name, type, preset and help, and then any other columns of its row.
 macro_rules! fields {
     ($kind:ident $handles:ident $constant:ident {
@@ -49,7 +48,8 @@ macro_rules! fields {
     };
 }
 
-/// Template of a row, without choices or additional words. The table's rows override parts of it.
+/// Template of a row of [`BLOCKS`], without choices or additional words. A row states the columns
+/// in which it differs.
 const BLOCK: BlockRow = BlockRow {
     kind: BlockKind::Image,
     name: "",
@@ -360,7 +360,7 @@ const CHECKERBOARD_ROW: BlockRow = BlockRow {
     ..BLOCK
 };
 
-/// Conditions on the width or height of the picture in pixels.
+/// Conditions on the `width` and the `height` of the picture, which are in pixels.
 const PIXELS: &[Condition] = &[Whole, AtLeast(1.0), AtMostTwoTo(20)];
 
 /// Condition on a length, which must be positive.

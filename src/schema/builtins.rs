@@ -46,9 +46,9 @@ pub struct Function {
     pub name: &'static str,
     /// The types of the arguments.
     pub takes: &'static [Type],
-    /// Names of the arguments; empty if the types explain them.
+    /// Names of the parameters, for the signature in editors; empty if the types explain them.
     pub parameters: &'static [&'static str],
-    /// Whether more arguments, of the type of the last one, may follow.
+    /// Whether more arguments than those of `takes` may follow, all of the last type in it.
     pub more: bool,
     /// The type of the result.
     pub gives: Type,
@@ -79,7 +79,7 @@ impl Function {
         self.takes.get(index).or(last).copied()
     }
 
-    /// Returns example arguments in the language's notation.
+    /// Returns example arguments for the function, in the language's notation.
     pub fn example(&self) -> &'static [&'static str] {
         use Type::{Angle, Number, Vector};
         match self.takes {

@@ -28,7 +28,8 @@ macro_rules! methods {
         /// Every sampling technique, with a line of help.
         pub const METHODS: &[(Method, &str)] = &[$((Method::$method, $help)),*];
 
-        /// Words that people use by mistake for each technique, separated by spaces.
+        /// Words that people use by mistake for each technique. The words for one technique are
+        /// separated by spaces.
         const ALSO_TRIED: &[(Method, &str)] = &[$((Method::$method, $tried)),*];
     };
 }
@@ -97,7 +98,7 @@ pub fn nearest_method(written: &str) -> Option<&'static str> {
     tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
-/// Returns whether the technique named `near` is the only one that `written` can mean.
+/// Returns whether `written` can mean no other technique than the one that is named `near`.
 pub fn is_sure_method(written: &str, near: &str) -> bool {
     let mut tried = ALSO_TRIED.iter();
     tried.any(|(method, words)| method.name() == near && is_among(written, words))

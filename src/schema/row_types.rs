@@ -47,7 +47,8 @@ pub struct BlockRow {
     pub fields: &'static [FieldRow],
     /// Groups of fields that express the same thing in different ways and exclude each other.
     pub choices: &'static [Choice],
-    /// Conditions that relate several fields, as formulas with the fields' names.
+    /// Conditions that relate several fields to each other, as formulas in words with the fields'
+    /// names, such as `near < far`.
     pub together: &'static [&'static str],
     /// Words that people use by mistake to give several fields at once.
     pub several: &'static [Several],
@@ -59,8 +60,8 @@ pub struct BlockRow {
     pub parted: &'static [(&'static str, &'static [&'static str])],
     /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,
-    /// Words of other programs that correspond to no field, each with the help, which says what to
-    /// write instead.
+    /// Words of other programs that correspond to no field of the block, each with the help, which
+    /// says what to write instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
 }
 
@@ -75,8 +76,8 @@ pub struct Choice {
     pub why: &'static str,
 }
 
-/// Words that people use by mistake to give several fields at once, followed by a list of the
-/// values.
+/// Words that people use by mistake to give several fields at once. A list with the values of these
+/// fields follows the word, as in `resolution (640, 480)`.
 #[derive(Debug)]
 pub struct Several {
     /// The words, separated by spaces.
@@ -100,8 +101,8 @@ pub struct FieldRow {
     pub help: &'static str,
     /// Words that people use by mistake for the field, separated by spaces.
     pub also_tried: &'static str,
-    /// Words that people use by mistake both for this field and for others, so that the meaning is
-    /// uncertain.
+    /// Words that people use by mistake both for this field and for other fields of the block, so
+    /// that the meaning is uncertain.
     pub perhaps: &'static str,
     /// Words that people use by mistake for twice the field's value, such as `diameter` for a
     /// radius.
@@ -244,7 +245,8 @@ impl BlockRow {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns all fields that `written` may stand for, if its meaning is uncertain.
+    /// Returns all fields of the block for which people use `written` by mistake, if there are
+    /// several, so that its meaning is uncertain.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
@@ -275,7 +277,7 @@ impl BlockRow {
         others.flat_map(|way| way.iter().copied())
     }
 
-    /// Returns the conditions in [`Self::together`] that contain a field's name.
+    /// Returns those conditions in [`Self::together`] that contain the name of the field `field`.
     pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
         self.together.iter().copied().filter(move |rule| {
             let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');

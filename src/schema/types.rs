@@ -55,7 +55,8 @@ impl Type {
         }
     }
 
-    /// Returns a help text with an example value of the type.
+    /// Returns the help for a missing or wrong value of the type, with an example, such as "write a
+    /// number, such as `2`".
     pub fn such_as(self) -> &'static str {
         match self {
             Self::Number => "write a number, such as `2`",

@@ -24,11 +24,11 @@ use subtle::ConstantTimeEq as _;
 
 use crate::lock::lock;
 
-/// Path of the WebSocket.
+/// Path of the host's address at which pages connect by a WebSocket.
 pub const SOCKET: &str = "/socket";
 
-/// Lifetime of the token in the address with which the host starts a browser; later, the token is
-/// refused. Even on a slow machine, a browser starts within this time.
+/// Lifetime of the token in the address with which the host starts a browser. A page that shows it
+/// later is refused. Even on a slow machine, a browser starts within this time.
 const LIFETIME: Duration = Duration::from_secs(60);
 
 /// Returns the status and the reason if a request to the host at `port` must be refused, whether it
@@ -42,7 +42,7 @@ pub fn refusal(
     let host = only(headers, &HOST).unwrap_or_default();
     let origin = only(headers, &ORIGIN);
     let is_own = ["127.0.0.1", "localhost"].iter().any(|name| {
-        // Browsers leave out the default port.
+        // Browsers leave out the port 80, the default, in the header `Host`.
         host == format!("{name}:{port}") || (port == 80 && host == *name)
     });
     if !is_own || uri.authority().is_some() {
@@ -107,8 +107,8 @@ pub struct Pass {
 }
 
 impl Pass {
-    /// Returns whether the connection must end, because a second page has used the address with
-    /// which this one began.
+    /// Returns whether the connection must end because a second page has shown the same token,
+    /// which was valid once.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::SeqCst)
     }

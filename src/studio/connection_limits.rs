@@ -28,18 +28,18 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum number of connections without a token; for a further one, the oldest is closed. A page
-/// has up to three while it loads, and one until it has shown its token.
+/// Maximum number of open connections that have not shown a token; for a further one, the oldest is
+/// closed. A page has up to three while it loads, and one until it has shown its token.
 const MOST: usize = 64;
 
-/// Lifetime of a connection without a token, which is then closed. It suffices for a request and
-/// the start of the response, or for the handshake of a WebSocket and the token. On one machine,
-/// these take milliseconds.
+/// Time after which a connection that has not shown a token is closed. It suffices for a request
+/// and the start of the response, or for the handshake of a WebSocket and the token. On one
+/// machine, these take milliseconds.
 const LIFETIME: Duration = Duration::from_secs(5);
 
-/// Maximum number of bytes that a connection may send before its token. A connection that sends
-/// more fails. A browser's request has about 1 KiB, unless other programs on this machine have set
-/// many cookies.
+/// Maximum number of bytes that a connection may send before it has shown a token. A connection
+/// that sends more fails. A browser's request has about 1 KiB, unless other programs on this
+/// machine have set many cookies.
 const LONGEST: usize = 32 << 10;
 
 /// State of a connection, shared by the connection and its request handlers.
@@ -78,7 +78,7 @@ pub struct Door {
 }
 
 impl Door {
-    /// Makes a listener with limits from a plain one.
+    /// Makes a listener with limits from a listener without them.
     pub fn new(listener: TcpListener) -> Self {
         Self {
             listener,
@@ -123,7 +123,7 @@ impl Listener for Door {
 pub struct Connection {
     stream: TcpStream,
     visitor: Visitor,
-    /// Number of bytes that may still be sent before the token.
+    /// Number of bytes that may still be sent before the token is shown.
     left: usize,
     /// Future that becomes ready when the connection's time is over or a newer connection needs its
     /// place; `None` after that.

@@ -39,23 +39,23 @@ use crate::{
 /// a machine.
 pub const LONGEST: usize = 64 << 20;
 
-/// Time to wait for the socket before the file and the picture are checked. A user does not notice
-/// a delay of this length.
+/// Maximum time to wait for a message of the page before the scene's file and the picture are
+/// checked again. A user does not notice a delay of this length.
 const WAIT: Duration = Duration::from_millis(50);
 
 /// Maximum time to wait for a page to receive a message. After that, the connection ends. A browser
 /// on this machine receives messages at once, unless it is stopped.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Interval between two progress messages of a download.
+/// Minimum time between two messages that tell the page the progress of a download.
 const PROGRESS: Duration = Duration::from_millis(200);
 
 /// Maximum time to wait for the page's answer to a close frame. It is shorter than the time for
 /// which the host, when it ends, waits for its connections.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// Serves the page until it disconnects, its pass is over, or the host ends. The tasks of `runtime`
-/// transport the messages.
+/// Serves the page until it disconnects, its [`Pass`] is over, or the host ends. The tasks of
+/// `runtime` transport the messages.
 pub fn converse(
     runtime: Handle,
     socket: WebSocket,
@@ -94,16 +94,16 @@ struct Conversation<'a> {
     server: Server,
     /// The scene's file, which all pages share.
     file: &'a Mutex<SceneFile>,
-    /// Version of the file that the page has received; 0 before the first one.
+    /// Version of the file's content that the page has received; 0 before the first one.
     known: u64,
     download: Option<Download>,
 }
 
-/// A picture's file that another thread renders.
+/// A picture's file that is rendered on another thread for the page.
 struct Download {
     request: Value,
     watch: Arc<Watch>,
-    /// Time of the last progress message.
+    /// Time of the last message about the progress.
     last_progress: Instant,
     thread: JoinHandle<Message>,
 }
@@ -335,7 +335,7 @@ impl Conversation<'_> {
         }
     }
 
-    /// Cancels the download of a request, or any download for `None`.
+    /// Cancels the download that the request `wanted` has started, or any download if it is `None`.
     fn cancel(&self, wanted: Option<&Value>) {
         if let Some(download) = &self.download
             && wanted.is_none_or(|wanted| *wanted == download.request)
@@ -345,8 +345,8 @@ impl Conversation<'_> {
     }
 }
 
-/// Returns the code with which the socket must be closed, because the host ends or the page's pass
-/// is over; otherwise `None`.
+/// Returns the code with which the socket must be closed if the host ends or the page's [`Pass`] is
+/// over, and otherwise `None`.
 fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
     if *ending.borrow() {
         return Some(close_code::AWAY);

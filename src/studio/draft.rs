@@ -18,23 +18,24 @@ use crate::files;
 /// A function that reads a file up to the maximum length of a scene.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
-/// Time for which a draft is stored: 30 days.
+/// Time after its last change for which the file with the drafts of a scene is stored: 30 days.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
-/// Maximum number of drafts of a scene. If there are more, the oldest are removed.
+/// Maximum number of drafts that are stored for a scene. If there are more, the oldest are removed.
 const MOST: usize = 10;
 
-/// A text that is not saved.
+/// Draft: a text that a page has not saved.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Unsaved {
-    /// The key under which the page stores the draft.
+    /// The key under which a page stores the draft. Each page has a key of its own.
     pub id: String,
-    /// The name of the scene.
+    /// The name of a new scene's file, if the page has chosen one.
     pub name: Option<String>,
     pub text: String,
-    /// Content of the file when the page began to edit it; `None` for a new scene.
+    /// Content of the scene's file when the page began to edit it; `None` for a new scene, which
+    /// has no file.
     base: Option<String>,
-    /// Time of the draft, in seconds since 1970.
+    /// Time at which the draft was made, in seconds since 1970.
     time: u64,
 }
 

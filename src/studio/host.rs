@@ -33,15 +33,16 @@ use super::{
     scene_file::SceneFile,
 };
 
-/// Maximum time for connections to finish a save and to close when the host ends. The host then
-/// ends in any case, even during a save on a disk that does not respond.
+/// Maximum time that the host waits, when it ends, for its connections to finish a save and to
+/// close. After that, the host ends in any case, even during a save on a disk that does not
+/// respond.
 const FAREWELL: Duration = Duration::from_millis(500);
 
-/// The page's HTML.
+/// HTML of Studio's page, as `npm run build` writes it.
 const INDEX: &str = include_str!("../../studio/page/dist/index.html");
-/// The page's script.
+/// Script of Studio's page, as `npm run build` writes it.
 const SCRIPT: &[u8] = include_bytes!("../../studio/page/dist/studio.js");
-/// The page's style sheet.
+/// Style sheet of Studio's page, as `npm run build` writes it.
 const STYLE: &[u8] = include_bytes!("../../studio/page/dist/studio.css");
 
 /// The host of a page on this machine, and the scene that the page edits.
@@ -210,7 +211,8 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
             let reason = "".into();
             let goodbye = Message::Close(Some(CloseFrame { code, reason }));
             let _ = socket.send(goodbye).await;
-            // Unread messages would reset the connection before the code arrives.
+            // Messages that are still unread would reset the connection before the code arrives, so
+            // they are read here.
             while let Some(Ok(_)) = socket.recv().await {}
         }
     }

@@ -14,8 +14,8 @@ use crate::{
     source::Source,
 };
 
-/// Content at a path: the text, or `None` if there is no file. The error is the reason why the file
-/// cannot be read as text; such a file must not be overwritten.
+/// What is at a path: a text, or `None` if there is no file. The error is the reason why a file
+/// there cannot be read as text; such a file must not be overwritten.
 pub type FileText = Result<Option<String>, String>;
 
 /// The file of a scene, or a new scene that has no file yet.
@@ -25,11 +25,12 @@ pub struct SceneFile {
     /// The folder in which a new scene is saved.
     folder: PathBuf,
     path: Option<PathBuf>,
-    /// Content at the time when the file was last read or saved.
+    /// Content of the file when it was last read or saved.
     content: FileText,
-    /// Number of contents so far, which increases with each change.
+    /// Number of the content, which increases by one with each change of `content`.
     version: u64,
-    /// Watches the file for changes. If it is `None`, a change is found only on saving.
+    /// Slot with the file's content after each change of the file. If it is `None`, a change by
+    /// another program is found only on saving.
     watch: Option<Arc<Latest<FileContent>>>,
     drafts: Drafts,
     /// New scenes in the same folder that pages have saved, and may save again.
@@ -256,7 +257,8 @@ fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
     let bytes = bytes?;
     let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
-    // In UTF-16, about half of the bytes are zero.
+    // In UTF-16, about half of the bytes are zero, so a text without zero bytes need not be tested
+    // further.
     if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
         return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
     }

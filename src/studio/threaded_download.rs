@@ -26,7 +26,7 @@ use crate::{
 #[derive(Debug, Default)]
 pub struct Watch {
     pub cancel: AtomicBool,
-    /// Number of samples, or of exact pixels, that are done.
+    /// Number of samples, or of pixels of an exact picture, that are done.
     done: AtomicU64,
     expected: AtomicU64,
 }

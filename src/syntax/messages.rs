@@ -29,6 +29,7 @@ pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "{0}", "not 
 /// Message about the indices in an object's head, `for INDEX < COUNT`, if no more specific message
 /// applies.
 pub const REPEATED: &str = "an object is repeated by `for INDEX < COUNT`";
+/// Help for the message [`REPEATED`].
 pub const REPEATED_SO: &str = "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first";
 pub const MISPLACED_INDICES: Message = Message::new(["bad_repetition", "indices stand in the head of an object", "not in its block", "write them before the `{`, as in `sphere for i < 8 {`"]);
 pub const COUNT_WITH_LAST: Message = Message::new(["bad_repetition", "an index ends before its count, and is never equal to it", "not written so", ""]);
@@ -66,8 +67,8 @@ pub const BAD_COLOR_CODE: Message = Message::new(["bad_color_code", "`{0}` is no
 pub const BAD_NUMBER: Message = Message::new(["bad_number", "`{0}` is no number", "{1}", "write a number such as `2`, `0.5` or `1e-3`"]).safe();
 pub const SPACED_UNIT: Message = Message::new(["spaced_unit", "a unit stands right behind its number", "no space between the two", "{0}"]).safe();
 
-/// Statements of other languages. A row holds the words that start such a statement, the plural
-/// noun for messages, and the help.
+/// Statements of other languages. A row holds the words that start such statements, separated by
+/// spaces; a plural noun that completes the message "the language has no …"; and the help.
 const STATEMENTS: &[[&str; 3]] = &[
     ["if else switch case", "conditions", "write what holds; `min` and `max` choose between two numbers"],
     ["for while loop repeat foreach", "loops", "an object is repeated by its head, as in `sphere for i < 8 { center (i, 1, 0) }`"],
@@ -77,24 +78,26 @@ const STATEMENTS: &[[&str; 3]] = &[
     ["function fn def fun lambda return class struct", "functions of one's own", "give each result a name with `let NAME = VALUE`"],
 ];
 
-/// Returns the plural noun and the help for the statements of other languages that start with
-/// `word`. Returns `None` if there are none.
+/// Returns the plural noun and the help from the row of [`STATEMENTS`] that contains `word`.
+/// Returns `None` if `word` starts no statement of another language.
 pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
 }
 
-/// Addition to the help if the file comes from a program with left-handed coordinates, whose z axis
-/// points away from the viewer.
+/// Addition to the help of [`FOREIGN_FILE`] for a file of a program with left-handed coordinates,
+/// whose z axis points away from the viewer.
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
-/// Patterns that recognize files of other programs. The columns of a row:
+/// Patterns that recognize files of other programs. A file matches a row if it starts as the row
+/// says, contains enough of the row's strings, and none of its characters. The columns of a row:
 ///
 /// - the name of the format;
-/// - the possible first characters, except white space;
+/// - the possible beginnings of the file, of at most five characters, white space left out,
+///   separated by spaces;
 /// - the strings to count in the file, separated by `|`;
-/// - the minimum number of these strings;
-/// - characters that must not occur in the file;
+/// - the minimum total count of these strings;
+/// - the characters that must not occur in the file;
 /// - an addition to the help.
 pub const FOREIGN_FILES: &[(&str, &str, &str, usize, &str, &str)] = &[
     ("XML", "<?xml", "<", 1, "", ""),

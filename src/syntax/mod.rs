@@ -49,11 +49,12 @@ pub struct Parsed<'s> {
     pub comments: Vec<Span>,
     /// The syntax problems.
     pub problems: Vec<Diagnostic>,
-    /// Whether a mistake, such as an unclosed comment, hides a part of the text. Nothing is then
-    /// reported as missing.
+    /// Whether a mistake, such as an unclosed comment, hides a part of the text. No missing block
+    /// or field is then reported, since the hidden part may contain it.
     pub is_cut: bool,
-    /// Whether the text follows the grammar somewhere but probably means something else, as with a
-    /// field that its block does not have. If its line ends were changed, the text could be a
-    /// syntax error.
+    /// Whether an item follows the grammar but was probably meant otherwise, such as a block with a
+    /// field that it does not have, and recovery found no better reading. Recovery may decide that
+    /// by the line ends, so a formatted copy of such a text must be parsed again to see whether it
+    /// has syntax errors.
     pub is_doubtful: bool,
 }

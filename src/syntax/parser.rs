@@ -51,13 +51,14 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::sign))
 });
 
-/// Stack size of the threads that parse, in bytes. Without optimization, pest and recovery use tens
-/// of kilobytes of stack for each of the [`NESTING_LIMIT`](super::NESTING_LIMIT) levels.
+/// Stack size, in bytes, of the threads that parse. Without optimization, pest and recovery use
+/// tens of kilobytes of stack for each level of nesting, and there are at most 256 levels
+/// ([`NESTING_LIMIT`](super::NESTING_LIMIT)). All levels together fit into half of this size.
 pub const STACK_BYTES: usize = 64 << 20;
 
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
-/// shorter value is parsed on the caller's stack: each level of nesting takes at least one byte, so
-/// it cannot nest deep. Most defaults of fields are shorter.
+/// shorter value cannot nest deep, since each level takes at least one byte, so it is parsed on the
+/// caller's stack. That saves most of the threads for the defaults of fields, which are short.
 const SHORT_VALUE_BYTES: usize = 32;
 
 /// Minimum number of bytes that pest reads at a time; it reads on to the next split point of the
@@ -111,8 +112,8 @@ fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> u
     recovery.item(at)
 }
 
-/// Returns the first element of the ascending `places` that is at least `offset`. Returns `None` if
-/// all are less.
+/// Returns the first element of `places` that is at least `offset`. The elements must be in
+/// ascending order. Returns `None` if all are less.
 pub fn first_from(places: &[usize], offset: usize) -> Option<usize> {
     let first = places.partition_point(|&place| place < offset);
     places.get(first).copied()

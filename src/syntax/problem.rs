@@ -38,7 +38,8 @@ impl Message {
         self
     }
 
-    /// Returns whether the problem is a superfluous token.
+    /// Returns whether the code of the problem says that a token is superfluous, as in
+    /// `needless_comma`.
     pub fn is_needless(&self) -> bool {
         self.texts[0].starts_with("needless") || self.texts[0] == "plus_sign"
     }
@@ -97,8 +98,8 @@ pub fn further_places(more: usize) -> String {
     }
 }
 
-/// Merges all reports about one unknown character, such as each `−` of a text, into the first
-/// report. The merged report has the edits of all places.
+/// Merges all reports of the same unknown operator, such as `−` for `-`, into the first of them.
+/// The fix of that report then has the edits for all places.
 pub fn merge_sign_reports(problems: &mut Vec<Diagnostic>) {
     // Maps a message to the index of its first report in `kept` and the number of further reports.
     let mut firsts: BTreeMap<String, (usize, usize)> = BTreeMap::new();

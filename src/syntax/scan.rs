@@ -17,9 +17,9 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Minimum distance, in bytes, between two [`Scan::split_points`]; nearer ones are left out. It is
-/// small compared with [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), the length that pest reads at a
-/// time.
+/// Minimum distance, in bytes, between two [`Scan::split_points`]; a nearer point is left out,
+/// which saves memory. The distance is small compared with
+/// [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), the number of bytes that pest reads at a time.
 const SPLIT_SPACING_BYTES: usize = 256;
 
 /// Result of scanning a text.
@@ -27,9 +27,9 @@ const SPLIT_SPACING_BYTES: usize = 256;
 pub struct Scan {
     /// All comments, in the order of the text.
     comments: Vec<Span>,
-    /// Offsets where more parentheses and minuses are open than a value may have. Subtraction signs
-    /// are counted as if they were negations, so the count may be too high. Recovery reads the
-    /// items at these offsets and counts exactly.
+    /// Offsets where more parentheses and minuses are open than [`NESTING_LIMIT`] allows in a
+    /// value. Subtraction signs are counted as if they were negations, so the count may be too
+    /// high. Recovery reads the items at these offsets and counts exactly.
     pub deep: Vec<usize>,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a
     /// `let`. Two of them are at least [`SPLIT_SPACING_BYTES`] apart.

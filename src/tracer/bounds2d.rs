@@ -27,18 +27,18 @@ pub struct Extent {
     pub nearest: f64,
 }
 
-/// Fraction of its value by which a bound that is a quotient is widened: 2^−40. The few rounding
-/// errors of such a bound amount to 2^−50.
+/// Amount by which a bound of an object that is computed as a quotient is widened, as a fraction of
+/// the bound's value: 2^−40. The few rounding errors of such a bound amount to 2^−50.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum of a divisor; with a smaller one, the object counts as unbounded. The rounding error of
-/// a smaller number, 2^−53 of it, might be below the normal numbers of `f64`, which end at about
-/// 1e-308.
+/// Minimum of a divisor in the bounds of an object; with a smaller one, the object counts as
+/// unbounded. The rounding error of a smaller number, 2^−53 of it, might be below the normal
+/// numbers of `f64`, which end at about 1e-308.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
-    /// Prepares an object, or only the face `face` of a box. Returns it with its bounds, or with
-    /// `None` if the object is certainly not seen in the camera's window.
+    /// Prepares an object, or only the face `face` of a box. Returns the object with its bounds, or
+    /// with `None` instead of them if the object is certainly not seen in the camera's window.
     pub fn with_extent(
         double: &Camera<Double>,
         fast: &Camera<f64>,
@@ -58,7 +58,8 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
         let hull = match (&object, shape) {
-            // In such a wide view, products with Z (`ahead`) may underflow and lose digits.
+            // In a view so wide that Z (`ahead`) is below this limit, products with Z may underflow
+            // and lose digits.
             _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), _) => of_sphere(sphere, ahead),
             (_, Shape::Box(shape)) => of_corners(&cuboid::corners(fast, shape), ahead),
@@ -80,7 +81,7 @@ impl Object<f64> {
     }
 }
 
-/// Position and bounds of a convex hull.
+/// Position of a convex hull relative to the eye, and its bounds in the view plane.
 enum Hull {
     /// All of the hull is behind the eye.
     Behind,
@@ -92,8 +93,8 @@ enum Hull {
 }
 
 impl Extent {
-    /// Returns whether the ends of each range are in order and the inverse depth is not negative.
-    /// Returns `false` if an overflow has left NaN.
+    /// Returns whether the ends of each range are in ascending order and the inverse depth is not
+    /// negative. Returns `false` if an overflow has left NaN.
     fn is_sound(&self) -> bool {
         self.across.iter().all(|range| range.low <= range.high) && self.nearest >= 0.0
     }
@@ -149,7 +150,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
                 ball.rad.to_f64() * UP + middle.abs() * QUOTIENT_SLACK,
             )
         });
-        // NaN is excluded first, since `min` and `max` ignore it.
+        // NaN is excluded first, since `f64::min` and `f64::max` ignore it.
         let is_finite = |range: &Interval| range.low.is_finite() && range.high.is_finite();
         if ![x, y, z].iter().all(is_finite) {
             return Hull::Unbounded;
@@ -166,7 +167,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     if greatest < 0.0 {
         return Hull::Behind;
     }
-    // This comparison also fails if an overflow has left NaN.
+    // This condition is also true if an overflow has left NaN.
     if !(least > SMALLEST && greatest >= least) {
         return Hull::Unbounded;
     }

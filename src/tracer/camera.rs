@@ -13,8 +13,8 @@ use crate::{
     scene::{self, Image, Lens, Scene, View, pixel_size},
 };
 
-/// The camera's axes and scale, computed exactly from the scene's numbers and rounded only at the
-/// end.
+/// The axes and the scale of a scene's camera, computed exactly from the scene's numbers and
+/// rounded only at the end.
 #[derive(Clone, Debug)]
 pub struct Basis {
     /// Unit vector to the picture's right.
@@ -23,11 +23,12 @@ pub struct Basis {
     pub v: [Big; 3],
     /// Unit vector against the view direction.
     pub w: [Big; 3],
-    /// Side of a pixel at depth 1: view_height/(height · d), with the picture's height in pixels.
+    /// Side of a pixel at depth 1: view_height/(height · d), with the picture's height in pixels
+    /// and the distance d of the view plane.
     pub pitch: Big,
     /// Distance from the eye to the view plane, in metres.
     pub d: Big,
-    /// Exact sign of the view direction's y coordinate.
+    /// Exact sign of the y coordinate of the view direction: `Greater` if the camera looks up.
     pub looks: std::cmp::Ordering,
 }
 
@@ -38,8 +39,8 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
 }
 
 /// Returns a + b, or 0 if the sum does not exceed the errors of a and b, at most four roundings
-/// each. With a roll of 45 degrees, components that should be 0 are such differences of equal
-/// numbers.
+/// each. With a roll of 45 degrees, components of u and v that should be 0 are such sums of
+/// opposite numbers.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -172,7 +173,7 @@ impl<T: Real> Camera<T> {
     pub fn new(basis: &Basis, scene: &Scene, reach: DVec2) -> Self {
         let (eye, image) = (scene.camera.eye, scene.image);
         let widest = basis.pitch.times(&Big::from_f64(reach.max_element()));
-        // A wide view is scaled by the power of two that brings the greatest X or Y below 1.
+        // A wide view is scaled by a power of two that makes the greatest X or Y at most 1.
         let exponent = widest.magnitude().exponent();
         let exponent = if widest.to_f64() <= 1.0 { 0 } else { exponent };
         let pitch = basis.pitch.scaled(-exponent);
@@ -205,7 +206,7 @@ impl<T: Real> Camera<T> {
     /// row `y`.
     #[inline]
     pub fn sample_point(&self, x: u32, y: u32, offset: DVec2) -> PicturePoint {
-        // Half-integers below 2^21 are exact.
+        // The coordinates of pixels' centres are half-integers below 2^21, which are exact.
         PicturePoint {
             x: (f64::from(x) + 0.5 - self.half.x, offset.x),
             y: (f64::from(y) + 0.5 - self.half.y, offset.y),
@@ -255,7 +256,7 @@ impl<T: Real> Camera<T> {
         [0, 1, 2].map(|axis| self.relative_coordinate(axis, point[axis]))
     }
 
-    /// Returns the coordinate number `axis` of point − eye along the axes of the world, multiplied
+    /// Returns the difference point − eye in the coordinate number `axis` of the world, multiplied
     /// by 2 to the power [`exponent`](Camera::exponent). `at` is the point's coordinate.
     pub fn relative_coordinate(&self, axis: usize, at: f64) -> Ball<T> {
         Ball::difference(at, self.eye[axis]).scaled(self.exponent)
@@ -267,13 +268,14 @@ impl<T: Real> Camera<T> {
     }
 }
 
-/// Range of the binary exponent of a scene's greatest length; outside of the range, all lengths are
-/// scaled. Squares of lengths from 2^−500 to 2^400 are well within the range of `f64`, 2^−1022 to
-/// 2^1024. The lower end, −300, leaves room for lengths 2^−200 times the greatest.
+/// Range of the binary exponent of the greatest length in a scene; if the exponent is outside of
+/// the range, all lengths are multiplied by a power of two. Squares of lengths from 2^−500 to 2^400
+/// are well within the range of `f64`, 2^−1022 to 2^1024. The lower end, −300, leaves room for
+/// lengths 2^−200 times the greatest.
 const LENGTHS: std::ops::RangeInclusive<i32> = -300..=400;
 
 /// Returns the binary logarithm of the factor that brings the greatest length of a scene into the
-/// range [`LENGTHS`]. Returns 0 if the length is already within this range.
+/// range of the binary exponents [`LENGTHS`]. Returns 0 if the length is already within this range.
 fn exponent_of_lengths(scene: &Scene) -> i32 {
     let shapes = scene.objects.iter().map(|object| &object.shape);
     let farthest = shapes.map(|shape| shape.greatest_length(scene.camera.eye));

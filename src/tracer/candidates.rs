@@ -25,7 +25,8 @@ use super::{
 pub struct VisibilityCandidate {
     /// The object's index in the file.
     pub object: usize,
-    /// Whether every ray through the part hits the object between the near and the far plane.
+    /// Whether every ray through the part of the picture hits the object between the near and the
+    /// far plane.
     pub is_whole: bool,
     /// Interval that contains the inverse depths of everything that may be seen of the object.
     pub(crate) inverse_depth: Interval,
@@ -90,8 +91,8 @@ pub fn within(
     true
 }
 
-/// Returns the ranges of the inverse depths of the near and the far plane over a patch, with `None`
-/// for a plane that the scene does not have.
+/// Returns the ranges of the inverse depths of the near and the far plane over a patch. An entry is
+/// `None` if the scene does not have this plane.
 pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Interval>; 2] {
     [&world.geometry.fast.near, &world.geometry.fast.far]
         .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
@@ -122,8 +123,8 @@ fn visible_of(
 ) {
     out.clear();
     let [near, far] = clips_over(world, patch);
-    // `hidden` is the greatest minimum of the inverse depth among the objects that every ray hits.
-    // An object whose maximum is below it is hidden.
+    // `hidden` is the greatest minimum of the inverse depth among the objects that every ray
+    // through the patch hits. An object whose maximum inverse depth is below it is hidden.
     let mut hidden = f64::NEG_INFINITY;
     for (object, bounds) in among {
         let Some(mut candidate) = cover(world, object, patch, near, far) else {
@@ -168,7 +169,7 @@ pub(super) fn cover(
     {
         let behind = match object.behind(patch) {
             Some(behind) => behind.or_all(),
-            // The object has a single surface, and the near plane removes it wholly or in part.
+            // The object has a single surface, and the near plane removes all of it.
             None if candidate.inverse_depth.low > near.high => return None,
             None => candidate.inverse_depth,
         };
@@ -194,9 +195,9 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects that the nearest flat object hides in the whole patch, although the ranges
-/// of their depths overlap. Of parallel layers, only the nearest remains. Of objects in one plane,
-/// only the first in the file remains.
+/// Removes flat objects of `candidates` that the nearest flat object hides in the whole patch,
+/// although the ranges of their depths overlap. Of parallel layers, only the nearest remains. Of
+/// objects in one plane, only the first in the file remains.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);
@@ -230,7 +231,8 @@ pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) ->
     let ahead = |i: usize, j: usize| {
         let (front_face, back_face) = (&a.firsts()[i], &b.firsts()[j]);
         front_face.minus(back_face).over(patch).low > 0.0
-            // If the forms differ in `f64`, the planes are certainly not the same.
+            // Planes whose forms differ in `f64` are certainly not the same, so that the exact test
+            // is not needed.
             || front < back && front_face.equals(back_face) && {
                 let parts = ((front, a.part(i)), (back, b.part(j)));
                 depth_order::is_one_plane(&world.geometry, parts.0, parts.1)

@@ -24,31 +24,34 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// Minimum ratio of a quotient's denominator l to its error f; below it, the quotient's error is
-/// not bounded. For ratios from 4 on, (a ± e)/(l ± f) differs from a/l by at most 4/3 · (e +
-/// f·|a/l|)/l. The error bound uses the factor 4 instead of 4/3.
+/// Minimum ratio of the form ℓ in a board coordinate N/ℓ ([`CheckerForms`]) to the error bound f of
+/// ℓ; with a smaller ratio, the coordinate's error counts as unbounded. With e the error bound of
+/// N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ for ratios from 4 on. The
+/// error bound uses the factor 4 instead of 4/3.
 const MIN_CLEARANCE: f64 = 4.0;
 
-/// Maximum error of a board coordinate, in squares; with a larger error, the squares are not
-/// computed. At 1/4, corners are certain only in the middle half of a square's width.
+/// Maximum error of a board coordinate, in squares; with a larger error, the squares that a pixel
+/// shows are not computed. At 1/4, the square that a pixel's corner lies in is certain only if the
+/// corner lies in the middle half of that square's width.
 const MAX_ERROR: f64 = 0.25;
 
-/// Maximum side of a block of pixels, in pixels. It is also the side of the squares with which
-/// quartering begins.
+/// Maximum side of a block of pixels at whose corners the board's squares are computed together, in
+/// pixels. It is also the side of the squares with which quartering begins.
 pub(super) const SIDE: usize = 32;
 
-/// Number of corners in a row of a block: 33 are needed, rounded up to whole vectors of eight.
+/// Number of entries for the pixel corners in a row of a block: there are 33 corners, rounded up to
+/// whole vectors of eight.
 const LANES: usize = 40;
 
-/// The squares of a board that one pixel shows, known by those at its corners.
+/// The squares of a board that one pixel shows, known from the squares at the pixel's corners.
 #[derive(Clone, Copy, Debug)]
 pub struct CheckerPixel {
     pub(crate) squares: CheckerForms,
-    /// The squares at the four corners, in x and in z. The order is top left, top right, bottom
-    /// left, bottom right.
+    /// The squares at the pixel's four corners, by their indices in x and in z. The order of the
+    /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
-    /// Whether the corners certainly lie in the squares `corners`. If not, they lie in these
-    /// squares of a board whose lines are displaced by at most the error bounds of `squares`.
+    /// Whether the pixel's corners certainly lie in the squares `corners`. If not, they lie in
+    /// these squares of a board whose lines are displaced by at most the error bounds of `squares`.
     pub(crate) is_certain: bool,
 }
 
@@ -59,13 +62,14 @@ struct BoardBlock {
     /// Minimum distance of a corner from the edges of its square, in x and in z, in squares. At a
     /// smaller distance, the square of the corner is uncertain.
     slack: [f64; 2],
-    /// The x of each column of corners, measured from the block's centre in units of its width.
+    /// The position x of each column of pixel corners, measured from the block's centre in units of
+    /// the block's width.
     columns: [f64; LANES],
 }
 
 /// The squares at one row of pixel corners in a block.
 struct CornerRow {
-    /// The square of each corner, in x and in z; NaN if the square is uncertain.
+    /// The square of each corner, by its indices in x and in z; NaN if the square is uncertain.
     squares: [[f64; LANES]; 2],
     /// The parity of each corner's square: 1 if the sum of its two indices is even, −1 if it is
     /// odd.
@@ -122,15 +126,15 @@ impl CornerRow {
         }
     }
 
-    /// Returns the indices in x and z of the square at the corner in column `column`.
+    /// Returns the indices in x and z of the square at the pixel corner in column `column`.
     fn at(&self, column: usize) -> [f64; 2] {
         [self.squares[0][column], self.squares[1][column]]
     }
 }
 
 impl BoardBlock {
-    /// Prepares a block. Returns `None` if the board is too far away for its squares to be
-    /// distinguished.
+    /// Prepares a block of pixels. Returns `None` if the board is too far away for its squares to
+    /// be distinguished.
     fn new(squares: CheckerForms, block: Area) -> Option<Self> {
         let CheckerForms { across, .. } = squares;
         let least = squares.least()?;
@@ -231,8 +235,9 @@ impl BoardBlock {
         ControlFlow::Continue(())
     }
 
-    /// Returns the squares in which a pixel's corners lie, with certainty or probably. Returns
-    /// `None` if the index of a square is not finite.
+    /// Returns the squares in which the pixel's corners lie. They are uncertain (`is_certain` is
+    /// `false`) if a corner is too close to a line. Returns `None` if the index of a square is not
+    /// finite.
     fn checks(
         &self,
         row: u32,
@@ -258,8 +263,8 @@ impl BoardBlock {
         let [width, height] = [width, height].map(f64::from);
         let local = |block: &LocalForm| {
             let [a, b, c] = block.factors;
-            // The error bound of the block's form counts once for the factors and once for the
-            // value at the pixel's centre.
+            // The error bound of the block's form counts twice: once for the factors, and once for
+            // the value at the pixel's centre.
             LocalForm::new([a / width, b / height, a * x + b * y + c], 2.0 * block.rad)
         };
         let CheckerForms { across, below, odd } = &self.squares;
@@ -282,9 +287,10 @@ impl BoardBlock {
         })
     }
 
-    /// Replaces each uncertain square (NaN) in `corners` by the one in which the corner probably
-    /// lies. Returns the squares, and for x and z the maximum distance, in squares, between an
-    /// uncertain corner and the nearest line. Returns `None` if a quotient is not finite.
+    /// Replaces the index of each uncertain square (NaN) in `corners` by that of the square in
+    /// which the corner probably lies. Returns the squares, and for x and z the maximum distance,
+    /// in squares, between an uncertain corner and the nearest line. Returns `None` if a quotient
+    /// is not finite.
     #[cold]
     fn probable(
         &self,
@@ -300,7 +306,8 @@ impl BoardBlock {
                 if corner[axis].is_nan() {
                     corner[axis] =
                         floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
-                    // The computed quotient and the true one both lie within `slack` of the line.
+                    // The corner is uncertain, so its computed coordinate is within `slack` of a
+                    // line. The true coordinate is within `slack` of the computed one.
                     doubt[axis] = 2.0 * self.slack[axis];
                 }
             }
@@ -338,8 +345,8 @@ fn corners_simd(board_block: &BoardBlock, y: f64, length: usize, out: &mut Corne
     board_block.evaluate(y, length, out);
 }
 
-/// Writes to `out` the parity sign (1 or −1) of each pixel whose corners all lie in one square, and
-/// 0 for each other pixel.
+/// Writes to `out`, for each pixel of a row, the parity sign (1 or −1) of its square if all its
+/// corners lie in one square, and 0 otherwise.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",
@@ -363,7 +370,8 @@ pub(crate) struct CheckerForms {
     pub(crate) odd: bool,
 }
 
-/// Offsets of the corners of a rectangle from its centre, in units of its sides.
+/// Offsets of the four corners of a rectangle from its centre, in units of its sides, x to the
+/// right and y down.
 const CORNERS: [(f64, f64); 4] = [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)];
 
 impl CheckerForms {
@@ -386,8 +394,8 @@ impl CheckerForms {
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)
     }
 
-    /// Returns an upper bound of the error of `across`/ℓ, whose absolute value is at most
-    /// `greatest`. ℓ must be at least `least`.
+    /// Returns an upper bound of the error of the board coordinate `across`/ℓ, whose absolute value
+    /// is at most `greatest`. The value of ℓ must be at least `least`.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
         let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
@@ -400,7 +408,7 @@ impl CheckerForms {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));
         let [x, z] = self.across.each_ref().map(|across| {
-            // A ratio of linear forms takes its extremes at corners.
+            // A ratio of linear forms takes its extremes at the rectangle's corners.
             let values: [f64; 4] = array::from_fn(|i| {
                 let (x, y) = CORNERS[i];
                 across.at(x, y) * inverse[i]

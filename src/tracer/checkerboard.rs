@@ -18,8 +18,9 @@ use crate::{
     scene,
 };
 
-/// Maximum number of squares by which the origin of a board is moved. Above it, the origin is not
-/// moved, because a rounded quotient need not be the nearest whole number.
+/// Maximum number of squares by which the origin of a board's coordinates is moved to the part of
+/// the board that a rectangle shows ([`Checkerboard::local`]). If it is farther away, the origin is
+/// not moved, because a rounded quotient of this size need not be the nearest whole number.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -27,11 +28,13 @@ const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 pub struct Checkerboard<T: Real> {
     /// The board's plane. A ray hits it if the plane's inverse depth ℓ is positive along the ray.
     pub plane: Convex<T>,
-    /// Inverse depth ℓ of the board's plane as a form, scaled by the power of two that brings the
-    /// height of the eye above the plane to about 1. `across` has the same scale.
+    /// Inverse depth ℓ of the board's plane, a linear form ([`Form`]) over the view plane. It is
+    /// scaled by the power of two that brings the height of the eye above the plane to about 1.
+    /// `across` has the same scale.
     pub below: Form<T>,
-    /// Numerators N of the board's coordinates x and z as forms. N/ℓ, where ℓ is `below`, is the
-    /// coordinate in squares, measured from the line between squares that is nearest to the eye.
+    /// Numerators N of the board's coordinates x and z, linear forms ([`Form`]) over the view
+    /// plane. N/ℓ, where ℓ is `below`, is the coordinate in squares, measured from the line between
+    /// squares that is nearest to the eye.
     pub across: [Form<T>; 2],
     /// Whether the sum of the indices of the two lines nearest to the eye, in x and in z, is odd.
     pub odd: bool,
@@ -49,9 +52,10 @@ pub struct LocalBoard {
     pub across: [[f64; 3]; 2],
     /// Factors of x, y and 1 in ℓ.
     pub below: [f64; 3],
-    /// Error bounds of the values of N₀, N₁ and ℓ, except for the rounding of the factors.
+    /// Error bounds of the values of N₀, N₁ and ℓ in the rectangle, without the rounding of the
+    /// factors to `f64`.
     pub rads: [f64; 3],
-    /// Whether the square [0, 1)² has the second colour.
+    /// Whether the square from (0, 0) to (1, 1) has the second colour.
     pub odd: bool,
 }
 
@@ -73,7 +77,9 @@ impl<T: Real> Checkerboard<T> {
             EyeOffset::new(camera.eye.z, square),
         );
         let numerator = |axis: usize, from_square: &EyeOffset| {
-            // x = e_x + λ r_x, so x/square = e_x/square + (r_x/square)/ℓ, all over ℓ = r_y/h.
+            // With e the eye, r the ray's direction and h the board's height relative to the eye, x
+            // = e_x + λ·r_x, so that x/square = e_x/square + (r_x/square)/ℓ. All of it is brought
+            // over the denominator ℓ = r_y/h.
             let along = camera.turned(&axis_vector(axis));
             let exponent = -libm::frexp(square).1;
             let side = Ball::exact(square).scaled(exponent);
@@ -130,7 +136,7 @@ impl<T: Real> Checkerboard<T> {
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
             // The error bound of ℓ covers at least 12 roundings. Twice the bound therefore also
-            // covers the roundings of the product and of the difference.
+            // covers the roundings of the multiple of ℓ and of its difference from N₀ or N₁.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];

@@ -19,7 +19,7 @@ use super::{
 };
 use crate::math::{Double, Doubt, Radius, Real, UP};
 
-/// A face: the number of its plane, and its inverse depth as a form.
+/// A face of a convex object: the number of its plane, and its inverse depth as a linear form.
 pub type Face<T> = (u8, Form<T>);
 
 /// A convex object with flat faces, prepared for one picture.
@@ -30,12 +30,13 @@ pub struct Convex<T: Real> {
     forms: Vec<Form<T>>,
     /// Number of edges.
     edges: u8,
-    /// Number of edges and first faces together.
+    /// Number of edges and first faces together: the index in `forms` of the first of the second
+    /// faces.
     firsts: u8,
     /// Number of each face's plane: those of the first faces, then those of the second faces.
     planes: [u8; 6],
-    /// Whether the eye is inside. A ray then first hits the nearest of the first faces' planes; if
-    /// the eye is outside, the farthest.
+    /// Whether the eye is inside the object. A ray then first hits the nearest of the first faces'
+    /// planes; if the eye is outside, the farthest.
     is_inside: bool,
 }
 
@@ -93,8 +94,8 @@ impl<T: Real> Convex<T> {
         &self.forms[..usize::from(self.firsts)]
     }
 
-    /// Returns whether the eye is inside. A ray then first hits the nearest of the first faces'
-    /// planes.
+    /// Returns whether the eye is inside the object. A ray then first hits the nearest of the first
+    /// faces' planes.
     pub fn is_inside(&self) -> bool {
         self.is_inside
     }
@@ -105,8 +106,8 @@ impl<T: Real> Convex<T> {
         SurfacePart::Plane(self.planes[face])
     }
 
-    /// Returns the inverse depth of the face `part` as a form. Returns `None` if the object does
-    /// not have this face.
+    /// Returns the inverse depth of the face `part` as a linear form. Returns `None` if the object
+    /// does not have this face.
     pub fn face(&self, part: SurfacePart) -> Option<&Form<T>> {
         let mut faces = self.forms[usize::from(self.edges)..].iter().enumerate();
         faces.find_map(|(face, form)| (self.part(face) == part).then_some(form))
@@ -145,15 +146,15 @@ impl<T: Real> Convex<T> {
         Ok(is_met.then_some(crossing))
     }
 
-    /// Returns the crossing behind the first one. The ray must hit the object. Returns `None` if
-    /// the object has no second faces.
+    /// Returns the ray's crossing with the object behind the first one. The ray must hit the
+    /// object. Returns `None` if the object has no second faces.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }
 
-    /// Returns the crossing with one of `faces` that has the least inverse depth, or the greatest
-    /// if `which` is `Greater`. `start` is the index of the first of `faces` among all faces.
-    /// Returns `None` if there are no faces.
+    /// Returns the crossing of the ray with that one of the planes of `faces` that has the least
+    /// inverse depth, or the greatest if `which` is `Greater`. `start` is the index of the first of
+    /// `faces` among all faces. Returns `None` if there are no faces.
     ///
     /// If two inverse depths are not clearly different, the centre of the returned ball may differ
     /// from the exact extreme, by at most the larger of the two radii. The crossing then belongs to
@@ -179,7 +180,8 @@ impl<T: Real> Convex<T> {
             if !difference.is_zero() && difference.is_negative() == which.is_lt() {
                 extreme = other;
             }
-            // NaN, which an overflow leaves, does not count as clear.
+            // If an overflow has left NaN, the comparison fails, and the difference does not count
+            // as clear.
             let is_clear = distance > rad * (2.0 * UP);
             if !is_clear {
                 extreme.part = SurfacePart::Edge;

@@ -30,8 +30,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         let outside = if is_upper { order } else { order.reverse() };
         let faces = match outside {
             _ if eye == at => {
-                // A face whose plane contains the eye is seen edge-on and bounds no depth. A ray on
-                // the outer side of the plane misses the box.
+                // A face whose plane contains the eye is seen edge-on and gives no depth. Its form
+                // becomes an edge: a ray on the outer side of the plane misses the box.
                 let inward = if is_upper { -1.0 } else { 1.0 };
                 let normal = normal.map(|x| x.times_power(inward));
                 edges.push(Form::new(camera, &camera.turned(&normal)));
@@ -44,8 +44,9 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         faces.push((plane, inverse_depth(camera, &normal, &height)));
     }
     for (i, front) in &fronts {
-        // Every ray passes between two parallel faces, so that these have no common edge. A single
-        // face is bounded only by its own edges; they imply the others.
+        // An edge of the box's silhouette lies between a front face and a back face that are not
+        // parallel. If only one face is prepared, only that face's own edges are needed; they imply
+        // the others.
         let is_bound = |j: &u8| i / 2 != j / 2 && only.is_none_or(|only| [*i, *j].contains(&only));
         let bounding = backs.iter().filter(|(j, _)| is_bound(j));
         edges.extend(bounding.map(|(_, back)| front.minus(back)));
@@ -53,8 +54,9 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
     let Some(only) = only else {
         return Convex::new(edges, fronts, backs);
     };
-    // A ray enters through the farthest of the front planes, and leaves through the nearest of the
-    // back planes. These comparisons bound the face against the other faces on its side of the box.
+    // A ray enters the box through the farthest of the front planes, and leaves it through the
+    // nearest of the back planes. The face is therefore bounded by comparisons of its plane with
+    // the others on its side of the box.
     for (mut faces, is_nearest) in [(fronts, false), (backs, true)] {
         let Some(at) = faces.iter().position(|(number, _)| *number == only) else {
             continue;
@@ -72,7 +74,7 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
     Convex::nothing()
 }
 
-/// Returns the eight corners relative to the eye, in the camera's axes.
+/// Returns the eight corners of a box relative to the eye, in the camera's axes.
 pub fn corners<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid) -> [Ball3<T>; 8] {
     let (min, max) = (camera.relative(shape.min), camera.relative(shape.max));
     array::from_fn(|corner| {

@@ -13,9 +13,9 @@ use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
-/// Minimum error of a line, in units of its greatest slope, at which the line is computed again in
-/// a higher precision than double-double. The value is eight unit roundoffs of `f64`; the line's
-/// factors alone have three.
+/// Minimum error of a boundary line ([`BoundaryLine::rad`]) at which the line is computed again in
+/// a higher precision than double-double. The line's greatest factor is 1, so that the value means
+/// eight unit roundoffs of `f64`; the line's factors alone have three.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A curve that separates objects in a pixel.
@@ -66,9 +66,9 @@ pub enum Crossings {
     Both,
 }
 
-/// A linear form: factors of x, y and 1.
+/// A linear form of the point (x, y) of a sub-pixel: factors of x, y and 1.
 type Linear<T> = [Ball<T>; 3];
-/// A quadratic form: factors of x², 2xy, y², 2x, 2y and 1.
+/// A quadratic form of the point (x, y) of a sub-pixel: factors of x², 2xy, y², 2x, 2y and 1.
 type Quadratic<T> = [Ball<T>; 6];
 
 /// A sub-pixel's position in the view plane, in one precision.
@@ -84,7 +84,7 @@ impl<T: Real> SubPixelFrame<T> {
     /// Places a sub-pixel in the view plane of a camera.
     pub fn new(camera: &Camera<T>, sub_pixel: SubPixel) -> Self {
         let r = sub_pixel.middle(camera);
-        // A coordinate has five roundings, and the side fewer.
+        // A coordinate of the direction has five roundings, and the side fewer.
         let ball = |mid: T| Ball {
             rad: mid.magnitude() * (8.0 * T::UNIT) + T::TINY,
             mid,
@@ -147,8 +147,9 @@ impl<T: Real> SubPixelFrame<T> {
             | (InverseDepth::Sphere(sphere), InverseDepth::Plane(plane)) => {
                 let (c, square) = sphere.parts();
                 let (factors, rad) = self.local(plane);
-                // The factors are converted to the sphere's unit of inverse depth. The sphere's
-                // scale is within the range of `f64`; the inverse of the scale need not be.
+                // The factors of the plane are converted to the sphere's unit of inverse depth. The
+                // sphere's scale is within the range of `f64`; the inverse of the scale need not
+                // be.
                 let exponent = -(libm::frexp(sphere.scale()).1 - 1);
                 let linear = factors.map(|mid| Ball { mid, rad }.scaled(exponent));
                 Some(self.circle(&c, &square, &linear, &Ball::exact(1.0)))
@@ -165,7 +166,8 @@ impl<T: Real> SubPixelFrame<T> {
     /// with the centres c and c', and C = c·c − R². Returns `None` for concentric spheres.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
         let ((c, square), (d, other)) = (a.parts(), b.parts());
-        // Both spheres must have one unit of length.
+        // The two spheres have units of length of their own. The lengths of one are converted to
+        // the unit of the other.
         let exponent = libm::frexp(a.scale()).1 - libm::frexp(b.scale()).1;
         let d = d.map(|x| x.scaled(exponent));
         let other = other.scaled(2 * exponent);
@@ -242,10 +244,10 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // The rounding errors of the quotients and of their conversion to `f64`.
+    // Unit of the rounding errors of the quotients and of their conversion to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-    // The quotient of the error bound and the conversion of the slope to `f64` are rounded, too.
+    // The error bound covers the roundings of the quotient and of the slope's conversion to `f64`.
     let rad = rad.scaled(exponent).to_f64() / slope.to_f64().abs() * (1.0 + 8.0 * f64::UNIT);
     Boundary::Line(BoundaryLine {
         factors,
@@ -276,7 +278,8 @@ fn conic<T: Real>(factors: &Quadratic<T>) -> Boundary {
         .iter()
         .fold(T::Radius::ZERO, |size, x| size.max(x.size()));
     let exponent = -size.exponent();
-    // The errors of the factors are added, because |x| and |y| are at most 1/2.
+    // The errors of the factors are added, because no term of the form exceeds its factor for |x|
+    // and |y| of at most 1/2.
     let rad = factors.iter().fold(T::Radius::ZERO, |rad, x| rad + x.rad);
     Boundary::Conic(Conic {
         factors: factors.each_ref().map(|x| double(&x.mid.scaled(exponent))),
@@ -312,7 +315,7 @@ impl Conic {
         if gradient > 0.0 {
             area = area.min(16.0 * self.rad / gradient);
         }
-        // The determinant's error is at most two roundings of its products.
+        // The rounding errors of the determinant are at most two roundings of its products.
         let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
         if determinant > 0.0 {
             area = area.min(7.0 * self.rad / determinant.sqrt());
@@ -348,7 +351,8 @@ impl Conic {
         let determinant = a * c - b * b;
         hold((b * e - c * d) / determinant, (b * d - a * e) / determinant);
         let size = 0.25 * (a.abs() + 2.0 * b.abs() + c.abs()) + d.abs() + e.abs() + f.abs();
-        // The form is a sum of six terms of three roundings each.
+        // The form is a sum of six terms, of three roundings each; 16 roundings of `size` cover
+        // them.
         let rad = self.rad + 16.0 * f64::UNIT * size;
         Interval {
             low: range.low - rad,

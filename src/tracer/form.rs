@@ -13,17 +13,18 @@ use crate::math::{Ball, Ball3, Double, Real, UP};
 pub struct Form<T: Real> {
     /// The factors a, b and c of X, Y and 1.
     factors: [T; 3],
-    /// Error bound of a computed value.
+    /// Error bound of a computed value of the form in the camera's window.
     rad: T::Radius,
-    /// Error bounds per unit of |X|, |Y| and |Z| of a ray; only in the highest precision, big
-    /// numbers. The bound `rad` holds in the whole window, and in the middle of a very wide view it
-    /// is far greater than a ray's own error. Other precisions can afford this, because the next
-    /// precision decides what they leave in doubt.
+    /// Error bounds of a value per unit of |X|, |Y| and |Z| of the ray's direction; only in the
+    /// highest precision, big numbers. The bound `rad` holds in the whole window, and in the middle
+    /// of a very wide view it is far greater than a ray's own error. Other precisions can afford
+    /// this, because the next precision decides what they leave in doubt.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
-/// Number of roundings in a value of a form: five in a coordinate, one in its product, two in the
-/// sum, and half as many again for the products of rounding errors.
+/// Number of roundings in a value of a linear form ([`Form`]): five in a coordinate, one in its
+/// product with a factor, two in the sum, and half as many again for the products of rounding
+/// errors.
 const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
@@ -36,8 +37,8 @@ impl<T: Real> Form<T> {
             v[2].mid.times(&camera.z),
         ];
         let inherited = v[0].rad * window.x + v[1].rad * window.y + v[2].rad * window.z;
-        // In the widest views, Z is below the normal numbers, so that its rounding error is
-        // absolute.
+        // In the widest views, Z may be so small that it is not a normal number. Its rounding error
+        // is then a fixed amount instead of a fraction of it.
         let lost = v[2].size() * T::TINY;
         let rad = (inherited + lost + rounding(&factors, window)) * UP;
         let by_component = |x: &Ball<T>| (x.rad + x.size() * (FORM_ROUNDINGS * T::UNIT)) * UP;
@@ -64,12 +65,12 @@ impl<T: Real> Form<T> {
         }
     }
 
-    /// Returns the factors of X, Y and 1.
+    /// Returns the factors a, b and c of X, Y and 1.
     pub fn factors(&self) -> &[T; 3] {
         &self.factors
     }
 
-    /// Returns the error bound of a computed value.
+    /// Returns the error bound of a computed value of the form in the camera's window.
     pub fn rad(&self) -> T::Radius {
         self.rad
     }
@@ -80,8 +81,8 @@ impl<T: Real> Form<T> {
         let sum = sizes[0] + sizes[1] + sizes[2];
         Self {
             factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
-            // The bound of the difference's own roundings assumes that |X|, |Y| and Z are at most
-            // 1.
+            // This bound of the rounding errors of the difference assumes that |X|, |Y| and Z are
+            // at most 1.
             rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
             // The error bounds of a form contain the rounding errors of its factors. Twice the sum
             // of the two forms' bounds therefore also covers the rounding errors of the difference.
@@ -119,13 +120,13 @@ fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius 
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
     (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
         + T::TINY * (a + b)
-        // Each of fewer than 16 products may be below the normal numbers, and then loses at most
-        // half of the least number.
+        // Each of fewer than 16 products may be too small for a normal number, and then has an
+        // error of at most half of the least positive number.
         + T::TINY * 8.0
 }
 
-/// Returns the inverse depth of the plane n·q = h as a form. The normal n is given along the axes
-/// of the world, and the points q are relative to the eye.
+/// Returns the inverse depth of the plane n·q = h as a linear form. The normal n is given along the
+/// axes of the world, and the points q are relative to the eye.
 pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> Form<T> {
     let n = camera.turned(n).map(|component| component / h);
     Form::new(camera, &n)

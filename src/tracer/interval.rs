@@ -20,7 +20,7 @@ pub struct Cover {
     pub inverse_depth: Interval,
 }
 
-/// Position of an interval relative to 0.
+/// Position of an interval of numbers relative to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Side {
     Above,
@@ -78,7 +78,8 @@ impl Interval {
     /// each interval of `ranges`. `which` is `f64::max` for the greatest and `f64::min` for the
     /// least. Returns `None` if `ranges` is empty.
     pub fn fold(ranges: impl Iterator<Item = Self>, which: fn(f64, f64) -> f64) -> Option<Self> {
-        // NaN is replaced first, because `max` and `min` would return the other interval's end.
+        // An interval with a NaN end is replaced first by that of all numbers, because `f64::max`
+        // and `f64::min` ignore NaN.
         ranges.map(Self::or_all).reduce(|a, b| Self {
             low: which(a.low, b.low),
             high: which(a.high, b.high),

@@ -18,15 +18,16 @@ use crate::{
 };
 
 /// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
-/// values of its factors. It counts one rounding for each factor, one for its division by the error
-/// bound, and two for products and sums, because offsets are at most ½.
+/// values of the form's factors. It counts one rounding for each factor, one for the factor's
+/// division by the error bound ([`LocalForm::line`]), and two for products and sums, because
+/// offsets are at most ½.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
-/// absolute values of its factors. Each of the six terms has at most five roundings; 16 roundings
-/// of the sum cover them.
+/// absolute values of the form's factors. Each of the six terms has at most five roundings; the
+/// terms' products and sums stay within 16 roundings of that sum.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
-/// Error bound of products below the normal numbers. Each of at most 16 products loses at most half
-/// of the least number.
+/// Error bound for underflow in the value of a form: each of its at most 16 products may be too
+/// small for a normal number, and then loses at most half of the least positive number.
 const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
@@ -46,8 +47,8 @@ pub struct LocalForm {
     pub rad: f64,
 }
 
-/// A linear form divided by its error bound, as factors of x, y and 1. Its sign is certain where
-/// its value is above 1 or below −1.
+/// A linear form divided by its error bound, as factors of x, y and 1. The sign of the form is
+/// certain where the quotient is above 1 or below −1.
 pub type ScaledLine = [f64; 3];
 
 /// A quadratic form of the offset (x, y) from the centre of a [`Patch`], in units of its sides. It
@@ -59,7 +60,7 @@ pub struct LocalQuadratic {
 }
 
 impl Patch {
-    /// Returns the rectangle of an area of pixels.
+    /// Returns the rectangle that an area of pixels occupies in the view plane.
     pub fn new(camera: &Camera<f64>, area: Area) -> Self {
         Self {
             center: camera.direction(&camera.middle(area)),
@@ -67,7 +68,7 @@ impl Patch {
         }
     }
 
-    /// Returns the square of a sub-pixel.
+    /// Returns the square that a sub-pixel occupies in the view plane.
     pub fn of_sub_pixel(camera: &Camera<f64>, sub_pixel: SubPixel) -> Self {
         Self {
             center: sub_pixel.middle(camera),
@@ -75,7 +76,7 @@ impl Patch {
         }
     }
 
-    /// Returns the rectangle of the whole window of a camera.
+    /// Returns the rectangle of a camera's whole window, which contains all sample points.
     pub fn window(camera: &Camera<f64>) -> Self {
         let window = camera.window;
         Self {
@@ -109,8 +110,8 @@ impl Form<f64> {
 }
 
 impl LocalForm {
-    /// Builds a form from its factors. `inherited` is the error of its values from the errors of
-    /// the factors; the rounding errors of the evaluation are added.
+    /// Builds a form from its factors. `inherited` is the error that the form's values have from
+    /// the errors of the factors; the rounding errors of the evaluation are added.
     #[inline]
     pub fn new(factors: [f64; 3], inherited: f64) -> Self {
         let [a, b, c] = factors.map(f64::abs);
@@ -145,15 +146,15 @@ impl LocalForm {
             .map(|i| self.factors[i].abs() + (k * other.factors[i]).abs())
             .sum();
         let factors = [0, 1, 2].map(|i| self.factors[i] - k * other.factors[i]);
-        // The product and the difference are rounded once each.
+        // The product k·`other` and the difference are rounded once each.
         let inherited = self.rad + k.abs() * other.rad + sizes * (2.0 * f64::UNIT);
         Self::new(factors, inherited)
     }
 }
 
 impl LocalQuadratic {
-    /// Builds a form from its factors. `inherited` is the error of its values from the errors of
-    /// the factors; the rounding errors of the evaluation are added.
+    /// Builds a form from its factors. `inherited` is the error that the form's values have from
+    /// the errors of the factors; the rounding errors of the evaluation are added.
     pub fn new(factors: [f64; 6], inherited: f64) -> Self {
         let sizes: f64 = factors.iter().map(|factor| factor.abs()).sum();
         let rad = (inherited + sizes * LOCAL_ROUNDING + UNDERFLOW_ERROR) * UP;
@@ -176,8 +177,8 @@ impl LocalQuadratic {
         }
     }
 
-    /// Returns the form divided by its error bound. The sign of the result is certain where its
-    /// value is above 1 or below −1.
+    /// Returns the form divided by its error bound. The sign of the form is certain where the
+    /// quotient is above 1 or below −1.
     pub fn certain(&self) -> Self {
         Self {
             factors: self.factors.map(|factor| factor / self.rad),

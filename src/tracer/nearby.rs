@@ -12,8 +12,9 @@ use super::{
 };
 use crate::area::Area;
 
-/// Returns the objects that rays through a part of the picture may hit, the nearest first. Returns
-/// `None` if there are so many that searching the quadtree for each ray is faster.
+/// Returns the objects that rays through a part of the picture may hit, the nearest first by their
+/// nearest points. Returns `None` if there are so many that searching the quadtree for each ray is
+/// faster.
 pub fn nearby(world: &World, part: Area) -> Option<Vec<BoundedObject>> {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     world.quadtree.nearby(&patch)
@@ -32,7 +33,8 @@ pub fn in_part(
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let rectangle = world.quadtree.rectangle(&patch)?;
     let [near, far] = candidates::clips_over(world, &patch);
-    // `front` fills the part and has the greatest minimum of the inverse depth, `hidden`.
+    // `front` is an object that every ray through the part hits, and of all these the one with the
+    // greatest minimum of the inverse depth, which is `hidden`.
     let (mut front, mut hidden) = (None, Nearness::NONE);
     for item in nearby {
         if item.nearest <= hidden {

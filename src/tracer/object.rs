@@ -83,8 +83,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the crossing behind the first one. The ray must hit the object. Returns `None` if
-    /// there is no second crossing.
+    /// Returns the ray's crossing with the object behind the first one. The ray must hit the
+    /// object. Returns `None` if there is no second crossing.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.second(r),
@@ -102,8 +102,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the inverse depth of the surface part `part` as a form. Returns `None` for a sphere,
-    /// or if the object does not have this part.
+    /// Returns the inverse depth of the surface part `part` as a linear form. Returns `None` for a
+    /// sphere, or if the object does not have this part.
     pub fn plane(&self, part: SurfacePart) -> Option<&Form<T>> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.face(part),
@@ -111,8 +111,8 @@ impl<T: Real> Object<T> {
         }
     }
 
-    /// Returns the boundary of the rays that hit the object. The form of each line is ≥ 0 on the
-    /// object's side.
+    /// Returns the boundary of the region of rays that hit the object. The form of each line is ≥ 0
+    /// on the object's side.
     pub fn outline(&self, frame: &SubPixelFrame<T>) -> Vec<Boundary> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.bounds().iter().map(|f| frame.line(f)).collect(),

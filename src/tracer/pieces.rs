@@ -21,7 +21,7 @@ pub(super) enum Faces {
 }
 
 /// For each object of the divided scene, the index in the file of the object from which it comes,
-/// and the number of its face if it is one. Empty if no object was divided.
+/// and the face's number if it is a face of a box. Empty if no object was divided.
 #[derive(Debug, Default)]
 pub(super) struct Pieces(Vec<(usize, Option<u8>)>);
 
@@ -48,7 +48,8 @@ impl Pieces {
             };
             cuboid.faces = None;
             let fronts = fronts(&cuboid, scene.camera.eye);
-            // From inside, no face is a front face, and rays first hit the back faces.
+            // If the eye is inside the box, no face is a front face, and rays first hit the back
+            // faces. None are left out then.
             let only_fronts = only_fronts && fronts.contains(&true);
             for (face, is_front) in (0..).zip(fronts) {
                 if only_fronts && !is_front {

@@ -86,8 +86,7 @@ pub fn ray(world: &World, pixels: DVec2) -> (DVec3, Vec<Hit>) {
 /// in file order.
 fn sort(geometry: &Geometry, crossings: &mut [(usize, bool, Crossing<Big>)]) {
     // First, crossings are sorted by their computed depths, which have a total order. Then
-    // neighbours whose depths are equal, compared as the tracer compares them, are put into file
-    // order.
+    // neighbours that the tracer cannot distinguish by depth are put into file order.
     crossings.sort_by(|(.., a), (.., b)| {
         let difference = b.inverse_depth.mid.minus(&a.inverse_depth.mid);
         difference.to_f64().total_cmp(&0.0)

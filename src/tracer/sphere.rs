@@ -36,10 +36,11 @@ pub struct Sphere<T: Real> {
     rad_square: T::Radius,
     /// C = c·c − R², with a small relative error however close the eye is to the surface.
     power: Ball<T>,
-    /// The exact sign of C: `Greater` if the eye is outside, `Equal` if it is on the surface,
-    /// `Less` if it is inside.
+    /// The exact sign of C: `Greater` if the eye is outside the sphere, `Equal` if it is on the
+    /// surface, `Less` if it is inside.
     side: Ordering,
-    /// Power of two that converts an inverse depth in the sphere's unit to the world's unit.
+    /// Power of two by which an inverse depth in the sphere's own unit is multiplied to give the
+    /// inverse depth in the world's unit.
     scale: f64,
     /// Error bound of Q in the window.
     rad_q: T::Radius,
@@ -47,8 +48,8 @@ pub struct Sphere<T: Real> {
     rad_b: T::Radius,
 }
 
-/// Number of roundings of a value of Q, in units of [`Real::UNIT`]: twelve in the value of a linear
-/// form, twice as many in its square, and eight in the sum of squares.
+/// Number of roundings of a value of Q ([`Sphere`]), in units of [`Real::UNIT`]: twelve in the
+/// value of a linear form, twice as many in its square, and eight in the sum of squares.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -60,8 +61,8 @@ impl<T: Real> Sphere<T> {
             .iter()
             .map(Ball::size)
             .fold(radius_ball.size(), Radius::max);
-        // The scale is limited to powers of two in the range of `f64`. A factor of 2^74 too much or
-        // too little does no harm.
+        // The exponent is limited so that the power of two is within the range of `f64`. A factor
+        // of 2^74 too much or too little does no harm.
         let exponent = (-greatest.exponent()).clamp(-1000, 1000);
         let from_eye = from_eye.map(|x| x.scaled(exponent));
         let radius_ball = radius_ball.scaled(exponent);
@@ -97,7 +98,7 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns Q and c·r for the ray of direction `r`.
+    /// Returns Q and c·r, as in [`Sphere`], for the ray of direction `r`.
     #[inline]
     fn discriminant(&self, r: &Direction<T>) -> (Ball<T>, Ball<T>) {
         let [cx, cy, cz] = &self.center;
@@ -106,8 +107,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // No other precision follows. The errors are therefore bounded for this ray alone: in
-            // the middle of the widest views, they are far smaller than elsewhere.
+            // This is the highest precision, after which no other is tried. The errors are
+            // therefore bounded for this ray alone: in the middle of the widest views, they are far
+            // smaller than elsewhere.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
@@ -150,8 +152,8 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns the crossing behind the first one. The ray must hit the sphere. Returns `None` if
-    /// the eye is not outside the sphere.
+    /// Returns the ray's crossing with the sphere behind the first one. The ray must hit the
+    /// sphere. Returns `None` if the eye is not outside the sphere.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         if self.side != Ordering::Greater {
             return None;
@@ -160,8 +162,9 @@ impl<T: Real> Sphere<T> {
         Some(self.exit(&q, &b, r))
     }
 
-    /// Returns the crossing where the ray leaves the sphere. Of the two formulas for the root, this
-    /// uses the one without cancellation.
+    /// Returns the crossing where the ray leaves the sphere, given Q (`q`) and c·r (`b`) as in
+    /// [`Sphere`]. Of the two formulas for its inverse depth, this uses the one without
+    /// cancellation.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
@@ -192,7 +195,7 @@ impl Sphere<f64> {
     /// Returns the centre and the radius of a ball that certainly contains the sphere, in the
     /// sphere's own unit of length. Returns `None` if the eye is not outside the sphere.
     pub fn ball(&self) -> Option<([f64; 3], f64)> {
-        // The factor covers three roundings, of 2^−53 each.
+        // Factor that covers the rounding errors of the radius, three roundings of 2^−53 each.
         const ROOT_SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
         let radius = (self.square + self.rad_square).sqrt() + 2.0 * self.rad_c;
         (self.side == Ordering::Greater).then_some((self.center, radius * ROOT_SLACK))
@@ -244,12 +247,12 @@ impl Sphere<f64> {
     }
 
     /// Returns the range of the inverse depths at which rays leave the sphere, from the ranges of Q
-    /// and of b = c·r over a rectangle.
+    /// and of b = c·r ([`Sphere`]) over a rectangle.
     ///
     /// 1/λ = r·r/(b + √Q) = (√Q − b)/(−C)
     ///
-    /// falls as b grows. If b may be ≤ 0 and the eye is inside, the second formula gives the upper
-    /// bound.
+    /// falls as b grows, where λr is the crossing. If b may be ≤ 0 and the eye is inside, the
+    /// second formula gives the upper bound.
     fn exits(&self, q: Interval, b: Interval, patch: &Patch) -> Interval {
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
@@ -277,7 +280,7 @@ impl Sphere<f64> {
         }
     }
 
-    /// Expands Q and c·r about the centre of a rectangle.
+    /// Expands Q and c·r, as in [`Sphere`], about the centre of a rectangle.
     ///
     /// The factors of Q consist of the same products as Q, and the rectangle lies within the
     /// window. Q's error bound therefore counts eight times: once for the value at the centre,
@@ -306,10 +309,10 @@ impl Sphere<f64> {
         (q, LocalForm::new(b, 2.0 * self.rad_b))
     }
 
-    /// Returns the factor by which c·r + √Q is multiplied to give the inverse depth of the near
-    /// side, and the factor's relative error. Returns `None` if the eye is not outside, or if C has
-    /// a relative error of 1/4 or more. Below 1/4, the relative error of an inverse is at most
-    /// twice that of the number.
+    /// With c, r, Q and C as in [`Sphere`], the near side has the inverse depth (c·r + √Q)/C.
+    /// Returns 1/C in the world's unit, and a bound on its relative error. Returns `None` if the
+    /// eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4, the relative
+    /// error of 1/C is at most twice that of C.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
@@ -318,7 +321,8 @@ impl Sphere<f64> {
     /// Converts a range of inverse depths to the world's unit, and widens it by more than all
     /// rounding errors so far.
     fn widened(&self, range: Interval) -> Interval {
-        // The factor covers a few roundings of 2^−53, and a relative error of C of at most 2^−30.
+        // Factor by which the ends of a range are widened. It covers a few roundings of 2^−53, and
+        // a relative error of C of at most 2^−30.
         const WIDER: f64 = 1.0 + 1.0 / (1u64 << 30) as f64;
         let power = self.power.rad / self.power.size();
         // For an eye on the surface, C is 0 and its relative error does not matter.
@@ -353,12 +357,13 @@ impl<T: Real> Sphere<T> {
         self.scale
     }
 
-    /// Returns whether the eye lies on the surface. It then sees the sphere only where c·r > 0.
+    /// Returns whether the eye lies on the surface. It then sees the sphere only where c·r > 0,
+    /// with c and r as in [`Sphere`].
     pub fn is_at_eye(&self) -> bool {
         self.side == Ordering::Equal
     }
 
-    /// Returns whether the eye is outside.
+    /// Returns whether the eye is outside the sphere.
     pub fn is_outside(&self) -> bool {
         self.side == Ordering::Greater
     }
@@ -392,8 +397,8 @@ impl Sphere<Double> {
     }
 }
 
-/// Computes C = c·c − R² with a small relative error, multiplied by the square of 2^`exponent`.
-/// Returns it with the exact sign of C.
+/// Computes C = c·c − R² ([`Sphere`]) with a small relative error, multiplied by the square of
+/// 2^`exponent`. Returns it with the exact sign of C.
 fn power<T: Real>(
     eye: DVec3,
     center: DVec3,
@@ -415,9 +420,9 @@ fn power<T: Real>(
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Returns upper bounds of the errors of Q and c·r for rays whose |X|, |Y| and |Z| are at most `[x,
-/// y, z]`. `[cx, cy, cz]` are the absolute values of the centre's coordinates, and `rad_c` is their
-/// error; `square` is R², and `rad_square` its error.
+/// Returns upper bounds of the errors of Q and c·r ([`Sphere`]) for rays whose |X|, |Y| and |Z| are
+/// at most `[x, y, z]`. `[cx, cy, cz]` are the absolute values of the centre's coordinates, and
+/// `rad_c` is their error; `square` is R², and `rad_square` its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,
@@ -428,7 +433,8 @@ fn radii<T: Real>(
     let unit = SPHERE_ROUNDINGS * T::UNIT;
     let mut rad_q = T::Radius::ZERO;
     let mut cross = T::Radius::ZERO;
-    // Each component of c × r is a difference of two products.
+    // Each component of c × r is a difference of two products. `size` bounds the sum of the
+    // products' absolute values, and `reach` is the factor by which the centre's error counts.
     for (size, reach) in [
         (cy * z + cz * y, y + z),
         (cz * x + cx * z, x + z),
@@ -441,8 +447,8 @@ fn radii<T: Real>(
     let r_square = x * x + y * y + z * z;
     rad_q = rad_q + rad_square * r_square + (square * r_square + cross) * unit;
     let rad_b = rad_c * (x + y + z) + (cx * x + cy * y + cz * z) * unit;
-    // Errors of numbers below the normal numbers: no coordinate of the centre is greater than 2,
-    // and the error of Z may be `TINY`.
+    // Numbers that are too small for normal numbers have errors of up to `TINY`, also Z. No
+    // coordinate of the centre is greater than 2.
     let tiny = T::TINY * 64.0;
     ((rad_q + tiny) * UP, (rad_b + tiny) * UP)
 }

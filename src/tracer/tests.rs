@@ -43,7 +43,7 @@ impl SceneGenerator {
         dvec3(one(), one(), one())
     }
 
-    /// Returns a length from very small to very large.
+    /// Returns a random length from very small to very large.
     fn length(&mut self) -> f64 {
         libm::exp2(self.within(-12.0, 4.0))
     }
@@ -87,8 +87,8 @@ impl SceneGenerator {
                 0 if !shapes.is_empty() => shapes[self.below(shapes.len())],
                 _ => self.shape(eye),
             };
-            // Most objects that hide everything else are left out, because they would leave nothing
-            // to decide.
+            // Most objects that would hide everything else are left out, because little would be
+            // left to compare.
             let hides = matches!(shape, Shape::Sphere(shape) if shape.radius > 3.0);
             if !hides || self.below(8) == 0 {
                 shapes.push(shape);
@@ -113,13 +113,13 @@ impl SceneGenerator {
 /// The column and row of a pixel, and an offset from its centre.
 type Sample = (u32, u32, DVec2);
 
-/// Returns the slot that is seen at a point, by the plain loop over all objects.
+/// Returns the palette slot that is seen at a sample point, by the plain loop over all objects.
 fn plain(world: &World, (x, y, offset): Sample) -> usize {
     world.slot_among(x, y, offset, 0..world.object_count())
 }
 
-/// Returns the slot that is seen at a point, decided in one precision alone. Returns `None` if that
-/// precision leaves doubt.
+/// Returns the palette slot that is seen at a sample point, decided in the precision `T` alone.
+/// Returns `None` if that precision leaves doubt.
 fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize> {
     let point = world.geometry.fast.camera.sample_point(x, y, offset);
     let r = T::frame(&world.geometry).camera.direction(&point);
@@ -149,8 +149,8 @@ fn the_quadtree_changes_nothing() {
         let scene = random.scene(3 + seed as usize * 4);
         let world = World::new(&scene);
         let mut points: Vec<_> = (0..150).map(|_| random.point()).collect();
-        // The samples include points on the edges of the bounds, within the last bits of their
-        // coordinates.
+        // The samples include points on the edges of the objects' bounds, within the last bits of
+        // their coordinates.
         for Extent { across, .. } in extents(&world, &scene).into_iter().flatten() {
             for _ in 0..2 {
                 let [x, y] = across.map(|range| match random.below(3) {
@@ -278,7 +278,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
             assert!(all_found);
             let patch = Patch::new(camera, part);
             candidates::visible_among(&world, &patch, 0..world.object_count(), &mut all);
-            // The quadtree's bounds may exclude more objects, but never include additional ones.
+            // The quadtree's bounds may exclude objects that the plain loop includes, but not the
+            // reverse.
             let objects = |candidates: &[VisibilityCandidate]| -> Vec<_> {
                 candidates
                     .iter()
@@ -301,9 +302,9 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
     assert!(seen > 1000, "{seen} points show an object");
 }
 
-/// If objects lie in one plane, nearly every sample point needs a test whether they do. If objects
-/// were prepared in a higher precision for this test, a point would cost as much as in a scene with
-/// too many objects for the cache.
+/// If objects lie in one plane, the tracer tests at nearly every sample point whether two of them
+/// do. This test must not prepare objects in a higher precision: a point would then cost as much as
+/// in a scene with too many objects for the cache.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![

@@ -45,11 +45,12 @@ fn by_vertices<T: Real>(
     Some((triangle, corners))
 }
 
-/// Returns the normal a × b of the plane through the eye and the edge from a to b; `corner` is a
-/// relative to the eye. The normal may have any scale, because only the sign of its form matters.
+/// Returns the normal a × b of the plane through the eye and the edge from a to b; `corner` is the
+/// position of a relative to the eye. The normal may have any scale, because only the sign of its
+/// form matters.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
-        // a × b = a × (b − a)
+        // a × b = a × (b − a), and the difference b − a is computed without cancellation.
         let along: Ball3<T> = array::from_fn(|i| Ball::difference(b[i], a[i]));
         let along = camera.turned(&scaled_to_one(&along));
         let normal = cross(&scaled_to_one(corner), &along);
@@ -85,9 +86,9 @@ fn by_centroid<T: Real>(
     let sum = |c: &Ball3<T>, o: &Ball3<T>, exponent: i32| -> Ball3<T> {
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
-    // Lengths may be scaled, because only the signs of the edges' forms matter. With a = c + o and
-    // b = c + p, a × b is computed as c × (p − o) + o × p. Computed from the corners themselves, it
-    // would lose most digits if the triangle is small and far away.
+    // Only the signs of the edges' forms matter, so that lengths may be scaled. With the corners a
+    // = c + o and b = c + p, a × b is computed as c × (p − o) + o × p. Computed from the corners
+    // themselves, it would lose most digits if the triangle is small and far away.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);
@@ -216,7 +217,8 @@ fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
     let [x, y, z] = normal.to_array();
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));
     if x == 0.0 && z == 0.0 {
-        // (0, 0, −1) × (0, ±1, 0) = (±1, 0, 0), and (0, ±1, 0) × (±1, 0, 0) = (0, 0, −1).
+        // The normal is parallel to the y axis. (0, 0, −1) × (0, ±1, 0) = (±1, 0, 0), and (0, ±1,
+        // 0) × (±1, 0, 0) = (0, 0, −1).
         let right = [Ball::exact(1f64.copysign(y)), zero.clone(), zero.clone()];
         return (right, [zero.clone(), zero, -one]);
     }

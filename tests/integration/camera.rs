@@ -25,9 +25,10 @@ fn rolled(roll: Angle) -> Camera {
     }
 }
 
-/// In the view direction (1, 1, 1), the x components of u and v have the ratio sin 60° : cos 60°.
-/// In the rotated u, the two products cancel exactly. If they were rounded before they are
-/// subtracted, an error would remain.
+/// In the view direction (1, 1, 1), the camera's right and up axes, u and v, have x components in
+/// the ratio sin 60° : cos 60°. If u is rolled by 60°, the two products in its x component
+/// therefore cancel exactly. If they were rounded before they are subtracted, an error would
+/// remain.
 #[test]
 fn a_roll_into_a_coordinate_plane_is_exact() {
     for (x, degrees) in [(1.0, 60.0), (1.0, -120.0), (-1.0, -60.0)] {
@@ -41,7 +42,8 @@ fn a_roll_into_a_coordinate_plane_is_exact() {
 #[test]
 fn views_along_the_up_vector_are_oriented_like_a_map() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
-    // Each case maps (direction, up) to the expected (right, top). Here, up is along the y axis.
+    // Each case maps the view direction and the up vector (direction, up) to the expected axes of
+    // the picture in the world (right, top). Here, up is along the y axis.
     let cases = [
         ((-y, y), (x, -z)),
         ((y, y), (x, z)),

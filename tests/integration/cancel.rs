@@ -1,5 +1,5 @@
-//! Cancellation: reading a long text (by every reader of texts) and building a world of many
-//! objects both end soon after they are cancelled.
+//! Cancellation: reading a long text, by every function that reads scenes, and building a world of
+//! many objects both end soon after they are cancelled.
 
 use std::{
     fmt::Write,

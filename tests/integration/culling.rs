@@ -32,8 +32,8 @@ use crate::{
     table::rows,
 };
 
-/// Compares the picture of `scene` with the one traced sample by sample. Returns its number of
-/// colours.
+/// Asserts that the picture of `scene` has the same bits as the picture traced sample by sample.
+/// Returns the number of different colours in the picture.
 #[track_caller]
 fn compare(scene: &Scene, method: Method, count: Count) -> usize {
     let scene = with_samples(scene, method, count);
@@ -137,8 +137,8 @@ fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     }
 }
 
-/// Renders overlapping triangles in a tilted plane and in the board's plane. There are more
-/// triangles than the cache of higher precisions holds.
+/// Renders overlapping triangles in a tilted plane and in the board's plane. The second scene has
+/// more triangles than the cache of objects in higher precision (`CACHE_SLOTS`) has room for.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);
@@ -175,8 +175,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     assert_eq!(few.pixels(), many.pixels());
 }
 
-/// Returns the text of `count` spheres of different colours. Each coordinate of a centre is at most
-/// `reach` from 0, and the radii are from `low` to `high`.
+/// Returns the text of `count` spheres of different colours. Each coordinate of a centre is from
+/// −`reach` to `reach`, and the radii are from `low` to `high`.
 pub fn spheres(random: &mut Random, count: u32, reach: f64, [low, high]: [f64; 2]) -> String {
     let sphere = |index| {
         let DVec3 { x, y, z } = random.vector(reach);

@@ -141,7 +141,8 @@ fn diagnostic_fixtures_match_their_annotations() {
     }
 }
 
-/// Returns every code in the source files of the stages. The prefix `pinhole::` is removed.
+/// Returns the code of every diagnostic that occurs in the sources of the parser and of the
+/// lowering (`src/syntax/messages.rs` and `src/scene`). The prefix `pinhole::` is removed.
 pub fn all_codes() -> BTreeSet<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut codes = BTreeSet::new();

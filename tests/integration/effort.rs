@@ -31,7 +31,8 @@ impl Effort {
         table.into_iter().take(count)
     }
 
-    /// Scales `whole`, a length or a number of repetitions: to 1/64 of it for [`Self::Sample`].
+    /// Returns the length of a text or the number of repetitions that a test tries: `whole / 64`
+    /// for [`Self::Sample`], else `whole`.
     pub fn part_of(self, whole: usize) -> usize {
         match self {
             Self::Sample => whole / 64,

@@ -22,7 +22,7 @@ use crate::{
     table::rows,
 };
 
-/// Returns the folder of the pages.
+/// Returns the folder that contains the explain page of each code.
 fn folder() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes"))
 }

@@ -24,18 +24,20 @@ use crate::{
     table::list,
 };
 
-/// Number of scenes in an exhaustive run, unless `PINHOLE_SCENES` overrides it.
+/// Number of generated scenes in an exhaustive run, unless `PINHOLE_SCENES` overrides it. A normal
+/// run has an eighth of them.
 const SCENES: usize = 1200;
 
-/// Number of random samples per pixel, whose mean is compared with the exact mean.
+/// Number of random samples per pixel, whose mean is compared with the exact mean. See [`FAR`].
 const SAMPLES: u64 = 64;
 
-/// Maximum distance between the mean of a pixel's samples and the exact mean. By Hoeffding's
-/// inequality for numbers from 0 to 1, only one mean of 10^13 is farther off, so a greater distance
-/// is an error.
+/// Maximum difference between the mean of a pixel's [`SAMPLES`] samples and the exact mean. By
+/// Hoeffding's inequality for numbers from 0 to 1, only one mean in 10^13 differs by more, so a
+/// greater difference is an error of the program.
 const FAR: f64 = 0.49;
 
-/// Percentages of a scene's numbers that may have any magnitude, one per kind of scenes.
+/// Percentages of a scene's numbers that may have any magnitude ([`Numbers::Wild`]). A quarter of
+/// the generated scenes has each percentage.
 const WILD: [u64; 4] = [0, 5, 30, 100];
 
 fn assert_light(film: &Film, text: &str) {
@@ -163,8 +165,9 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
         );
         let exact = exact(&read(&text));
         let bound = f64::from(exact.bounds[0]);
-        // With the eye at the height h above the surface, the horizon is √(2h/R) above the middle
-        // of a view plane whose distance equals its height.
+        // The eye is h = 1/4 below the lowest point of the sphere, whose radius is R. In a view
+        // plane whose distance equals its height, the edge of the sphere is seen √(2h/R) heights
+        // above the middle.
         let above = libm::sqrt(0.5 / radius.parse::<f64>().unwrap());
         for channel in exact.film.pixels()[0] {
             assert!(

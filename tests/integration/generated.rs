@@ -16,8 +16,7 @@ pub enum Numbers {
     /// planes and pass through corners and along edges; faces lie in common planes, or at the near
     /// and far depths.
     MultiplesOf(f64),
-    /// Whole, round and other numbers. A percentage of them, which is given, may have any
-    /// magnitude.
+    /// Whole, round and other numbers. The given percentage of them may have any magnitude.
     Wild(u64),
 }
 
@@ -42,12 +41,14 @@ pub fn generated(
 struct Generator {
     random: Random,
     numbers: Numbers,
-    /// Numbers that occur in several parts of a scene, so that parts coincide.
+    /// Numbers that several parts of a scene use, so that for example a vertex lies in the plane of
+    /// a face.
     shared: [f64; 3],
 }
 
 impl Generator {
-    /// Returns a number from `-size` to `size`, or at random one of any magnitude.
+    /// Returns a random number of the kind `self.numbers`. Its magnitude is at most `size`, except
+    /// for those numbers of [`Numbers::Wild`] that may have any magnitude.
     fn number(&mut self, size: f64) -> f64 {
         let ordinary = self.random.within(-size, size);
         let wild = match self.numbers {

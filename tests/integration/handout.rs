@@ -1,4 +1,4 @@
-//! The handout: its card is made of the language's own table, and its page of the handout's files.
+//! Compares the handout's card with the tables of the language, and its HTML page with its files.
 
 use std::{
     fs,
@@ -26,8 +26,8 @@ fn path(name: &str) -> PathBuf {
     folder.join(name)
 }
 
-/// The handout as one HTML page, which prints as a booklet. Links between its files become links
-/// within the page, and links to other documents lead out of the folder as before.
+/// The page contains all files of the handout, to be printed as a booklet. Links between the files
+/// become links within the page; links to other documents stay as they are.
 #[test]
 fn the_page_is_that_of_the_files() {
     let mut page = String::from(

@@ -177,7 +177,8 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // In the widest view, the part of a pixel that the box covers is too small for an `f64`.
+        // In the widest view, the part of a pixel that the box covers is too small for an `f64`, so
+        // the output has `null` in place of four numbers.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }
@@ -213,8 +214,8 @@ fn inspect_reports_what_is_visible_of_each_object() {
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
         // The sphere's silhouette is an ellipse from 41.5 to 29.2 pixels left of the picture's
-        // centre. In a view plane at 1 m, where 1 m is 50 pixels, the silhouette of a sphere with
-        // distance c and depth z has the area
+        // centre. In a view plane at 1 m, where 1 m is 50 pixels, the silhouette of a sphere of
+        // radius r, whose centre has the distance c and the depth z, has the area
         //     π·r²·√(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
@@ -225,7 +226,8 @@ fn inspect_reports_what_is_visible_of_each_object() {
     assert_eq!(hits["hits"][0]["indices"].to_string(), "[0]", "{hits}");
 }
 
-/// Compares two scenes without sampling noise. Each row has an exit status and a message.
+/// Compares the exact pictures of two scenes. Each row has the arguments, the exit status, and a
+/// part of the message.
 #[test]
 fn diff_compares_two_scenes_without_sampling_noise() {
     let folder = Folder::with([

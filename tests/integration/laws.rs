@@ -72,7 +72,7 @@ fn centered(shape: &mut Shape) -> Option<&mut CenteredTriangle> {
 }
 
 /// Maps all points of a scene by `place` and all directions by `direction`, and multiplies all
-/// lengths by a factor.
+/// lengths by the last argument.
 fn mapped(
     scene: &Scene,
     place: impl Fn(DVec3) -> DVec3,

@@ -26,7 +26,7 @@ struct Text<'r> {
     random: &'r mut Random,
     /// Points of the objects so far: vertices, centres, and points of surfaces.
     points: Vec<DVec3>,
-    /// Frequency of numbers of any magnitude: one in `wild` numbers, or none if it is 0.
+    /// How often a number may have any magnitude: one in `wild` numbers, or none if `wild` is 0.
     wild: u64,
 }
 
@@ -95,7 +95,7 @@ impl Text<'_> {
             2 | 3 => {
                 let (v1, mut v2) = (self.point(), self.point());
                 if self.one_in(3) {
-                    // The triangle becomes a sliver.
+                    // The triangle becomes a sliver: its vertices lie nearly on a line.
                     let thickness = *self.random.one_of(&[1e-15, 1e-9, 1e-3]);
                     v2 = p + self.random.within(-1.0, 2.0) * (v1 - p) + thickness * v2;
                 }

@@ -190,7 +190,8 @@ fn reports_stop_at_the_maximum_number_of_problems() {
         codes,
         ["pinhole::needless_separator", "pinhole::unexpected"]
     );
-    // Needless separators are reported in a single diagnostic, with labels up to the limit.
+    // Needless separators are reported in a single diagnostic, whose fix removes at most
+    // [`MOST_PROBLEMS`] of them.
     let spheres = many("sphere { center (0, 1, 0) };\n");
     let found = scene::read(&sources(&format!("{CAMERA}{spheres}"))).diagnostics;
     let signs = found
@@ -260,7 +261,8 @@ fn many_mistakes_and_many_names_are_read_soon(effort: Effort) {
     ] {
         assert!(!read(format!("{CAMERA}{}", lines(wrong))));
     }
-    // Each of these mistakes examines the text around it, and all are on one line.
+    // To report one of these mistakes, the program examines the text around it. All of them are on
+    // one line, so examining the whole line each time would take quadratic time.
     let wrong_order = lines("let aN = bN /* N */ ") + &lines("/* N */ let bN = N ");
     assert!(!read(wrong_order));
     let chain = lines("let aM = aN + 1\n");

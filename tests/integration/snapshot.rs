@@ -25,7 +25,6 @@ pub fn assert_file(path: &Path, content: &str) {
 ///
 /// The first word of a query is its kind; the rest is the text that the query is about. A second
 /// argument may follow after an arrow. `--` begins a comment.
-/// argument follows an arrow. `--` begins a comment.
 #[track_caller]
 pub fn assert_answers(folder: &str, answer: impl Fn(&str, &str, &str) -> String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);

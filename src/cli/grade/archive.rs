@@ -162,7 +162,8 @@ impl Archive {
     ///
     /// The entry is damaged or too large.
     pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
-        /// Maximum number of bytes that are unpacked before the budget is checked again.
+        /// Maximum number of bytes of the entry that are unpacked before the budget is checked
+        /// again.
         const PIECE: u64 = 1 << 16;
         let mut zip = lock(&self.0);
         let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;

@@ -139,8 +139,8 @@ impl Class {
                 .extend(file.map(|file| SubmittedFile { path, ..file }));
         }
         for (folder, name) in submitters.all() {
-            // The metadata may name a student whose folder is missing. Such a student is listed
-            // without files.
+            // Gradescope's metadata may name a student whose folder is missing. Such a student is
+            // listed without files.
             works
                 .entry((folder.to_owned(), String::new()))
                 .or_insert_with(|| Student {

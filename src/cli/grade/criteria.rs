@@ -27,8 +27,9 @@ pub enum Criterion {
     Hits,
 }
 
-/// Criteria of mistakes, by prefixes of the mistakes' ids. If an id has none of these prefixes, the
-/// mistake is about a field of the camera or about hits.
+/// Criterion of each mistake, by the first prefix in this list with which the mistake's id begins.
+/// An id with none of these prefixes is about a field of the camera or of an object, or its
+/// criterion is [`Criterion::Hits`].
 const BEGINNINGS: &[(&str, Criterion)] = &[
     ("board_", Criterion::Board),
     ("half_pixel", Criterion::Sampling),
@@ -71,8 +72,8 @@ const BEGINNINGS: &[(&str, Criterion)] = &[
     ("behind_seen", Criterion::Hits),
     ("depth_ignored", Criterion::Hits),
     ("sphere_", Criterion::Hits),
-    // If such a mistake is about a certain object, the message says so, and the object is the
-    // criterion.
+    // The message of a mistake with one of the prefixes below may name an object. Then this object
+    // is the criterion instead.
     ("object_", Criterion::Hits),
     ("box_", Criterion::Hits),
     ("faces_", Criterion::Hits),

@@ -11,7 +11,7 @@ use crate::cli::Status;
 /// A student, with the results of the submitted pictures.
 pub struct GradedStudent {
     pub name: String,
-    /// Number of the submission in Moodle.
+    /// Number that Moodle gives the submission; `None` if Moodle did not collect it.
     pub number: Option<String>,
     /// Path of the student's folder or file, for output.
     pub place: String,
@@ -55,8 +55,8 @@ pub struct Finding<'j> {
     pub message: &'j str,
     pub help: &'j str,
     pub set: Vec<&'j str>,
-    /// Share that the mistake explains of the squared difference from the exact picture, as far as
-    /// noise does not explain it.
+    /// Share of the difference that the mistake explains: the squared difference from the exact
+    /// picture, without the part that noise explains.
     pub explains: f64,
 }
 
@@ -88,8 +88,8 @@ impl JudgedPicture {
         rmse.unwrap_or_default()
     }
 
-    /// Returns the number of independent samples per pixel that would be as noisy. Returns `None` if
-    /// the picture is wrong, because its mistakes would count as noise.
+    /// Returns the number of independent samples per pixel with which a picture is as noisy as this
+    /// one. Returns `None` if this picture is wrong, because its mistakes would count as noise.
     pub fn samples(&self) -> Option<f64> {
         let samples = self.fields.get("samples_per_pixel")?.as_f64();
         samples.filter(|_| self.is_right())

@@ -153,7 +153,7 @@ fn is_reserved(name: &str) -> bool {
         let rest = stem.strip_prefix(word);
         rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
     };
-    // `pictures`, `index` and `grade` are taken by the page's own files.
+    // The names `pictures`, `index` and `grade` belong to files that `grade` writes for the page.
     matches!(
         &*stem,
         "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"

@@ -5,8 +5,8 @@
 //!    and `glob` selects pictures.
 //! 2. Each student's pictures are compared and judged (`graded`), and `points` computes a score
 //!    from the verdict by `criteria`.
-//! 3. The result is written by `table` for people and as CSV, by `page` with `thumbnails` as HTML,
-//!    and by `junit`, `gradescope` and `moodle`.
+//! 3. The result is written by `table` as readable text and as CSV, by `page` with `thumbnails` as
+//!    HTML, and by `junit`, `gradescope` and `moodle`.
 
 mod archive;
 mod class;
@@ -155,7 +155,7 @@ fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
 
 fn worksheet_name(args: &GradeArgs) -> Option<String> {
     let name = args.worksheet.as_ref()?.file_name()?.to_string_lossy();
-    // The page's own files have the other names in the folder.
+    // `grade` writes files of its own under these names, so such a worksheet gets another name.
     Some(if FILES.contains(&&*name) {
         format!("moodle-{name}")
     } else {

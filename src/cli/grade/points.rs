@@ -14,7 +14,8 @@ use crate::{
 /// Maximum length of the file of a point scheme, in bytes. A longer file is an error.
 const LIMIT: u64 = 1 << 20;
 
-/// Key of the deduction for every mistake whose id is not listed.
+/// Key in a scheme's `mistakes` whose deduction holds for every mistake that `mistakes` does not
+/// name.
 const OTHERS: &str = "*";
 
 /// A scheme of points: the total for a right picture, and deductions for mistakes.

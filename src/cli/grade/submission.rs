@@ -25,7 +25,7 @@ const MOST_PICTURES: usize = 12;
 pub struct Student {
     /// Name of the student in the submission system, or else the name of the folder or file.
     pub name: String,
-    /// Number of the submission in Moodle.
+    /// Number that Moodle gives the submission; `None` if Moodle did not collect it.
     pub number: Option<String>,
     /// Path of the student's folder or file, for output.
     pub place: String,

@@ -1,4 +1,4 @@
-//! Writes the results of a class as a table, for people and as CSV.
+//! Writes the results of a class as a table, in readable form and as CSV.
 
 use std::iter;
 
@@ -19,7 +19,7 @@ pub fn figures(one: &GradedStudent) -> [String; 2] {
     }
 }
 
-/// Returns a table for people: a row for each student, with details below the row.
+/// Returns the readable table: a row for each student, with details below the row.
 pub fn table(graded: &[GradedStudent]) -> String {
     let widest = graded
         .iter()
@@ -72,7 +72,7 @@ pub fn table(graded: &[GradedStudent]) -> String {
 
 /// Joins at most six items of a list, and adds how many more there are.
 pub fn some(list: &[String]) -> String {
-    /// Maximum number of items that are listed. The number of the others is added.
+    /// Maximum number of items of the list that are named; the others are counted.
     const MOST: usize = 6;
     let first: Vec<&str> = list.iter().take(MOST).map(String::as_str).collect();
     match list.len().saturating_sub(MOST) {

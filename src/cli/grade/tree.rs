@@ -266,7 +266,8 @@ impl FileTree {
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
         for names in files.chain(&self.folders) {
             match &names[..] {
-                // The argument itself is the class.
+                // The metadata lies beside the folders of the argument itself, which is therefore
+                // the class.
                 [name] if name == METADATA => return Vec::new(),
                 [root, name, ..] => inner.entry(root).or_default().push(name),
                 _ => {}
@@ -288,7 +289,7 @@ impl FileTree {
         roots.into_iter().map(take).collect()
     }
 
-    /// Removes and returns the content of a folder.
+    /// Removes what is below the folder `root` from this tree, and returns it as a tree.
     fn taken(&mut self, root: &str) -> Self {
         let found = self.found.extract_if(.., |(names, _)| names[0] == root);
         let found = found.map(|(names, file)| (names[1..].to_vec(), file));

@@ -3,22 +3,22 @@
 use super::literal::inward;
 use crate::{numbers::significant, syntax::tree::Unit};
 
-/// Range of a slider from a comment, in the unit of the commented value.
+/// Range of a slider that a comment gives for a value, in the unit of that value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommentRange {
     /// The lower and the upper end.
     pub ends: [f64; 2],
     /// The step, > 0.
     pub step: Option<f64>,
-    /// Whether a number was converted from another unit. It then has more digits than a slider
-    /// should show.
+    /// Whether the step or an end was converted from another unit. It then has more digits than a
+    /// slider should show.
     is_converted: bool,
 }
 
 impl CommentRange {
-    /// Returns the step, or `default_step` if the range has none, and the ends. If a number was
-    /// converted from another unit, the step is rounded to two digits, and the ends to the decimals
-    /// of the step.
+    /// Returns the step and the ends of the slider. If the range has no step, uses `default_step`.
+    /// If a number of the range was converted from another unit, rounds the step to two digits, and
+    /// the ends inwards to as many decimals as the step has.
     pub fn rounded(self, default_step: f64) -> (f64, [f64; 2]) {
         let step = self.step.unwrap_or(default_step);
         if !self.is_converted {

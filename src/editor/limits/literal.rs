@@ -5,11 +5,12 @@ use crate::{
     syntax::tree::{Unit, Value, ValueKind},
 };
 
-/// Minimum decimal exponent of a slider's step, so that the step does not underflow to 0.
+/// Minimum exponent of the power of ten that is a slider's step. Smaller powers could underflow to
+/// 0.
 const LEAST_EXPONENT: i32 = -300;
 
-/// Maximum number of significant digits of a changed number; the slider's step is not finer. An
-/// `f64` distinguishes all numbers with 15 digits.
+/// Maximum number of significant digits of a number that a slider changes. The step of the slider
+/// is one unit in the last of them, or more. An `f64` distinguishes all numbers with 15 digits.
 const DIGITS: i32 = 15;
 
 /// A number literal with the sign directly before it.
@@ -66,8 +67,8 @@ impl Literal {
     }
 
     /// Returns the step of the literal's slider, a power of ten: a hundredth to a tenth of the
-    /// number, but at least a hundredth, so that zero can be reached. If the number has decimals,
-    /// the step is at most the unit of its last digit.
+    /// number, but at least 0.01, so that zero can be reached. If the number has decimals, the step
+    /// is at most one unit in its last decimal.
     pub fn step(&self) -> f64 {
         let size = match self.value.abs() {
             0.0 => 0,
@@ -102,7 +103,7 @@ pub fn decimals(x: f64) -> usize {
     decimals.min(100)
 }
 
-/// Returns the greatest range within the given one whose ends have at most as many decimals as
+/// Returns the largest range within `[least, most]` whose ends have at most as many decimals as
 /// `step`.
 pub fn inward([least, most]: [f64; 2], step: f64) -> [f64; 2] {
     let decimals_of_step = decimals(step);

@@ -20,29 +20,34 @@ use crate::{
     syntax::tree::{Definition, Unit, Value, ValueKind},
 };
 
-/// Minimum number of steps from a number to each end of its slider, unless a limit is nearer.
+/// Minimum number of steps from a number to each end of its slider. An end is nearer only if the
+/// numbers beyond it are not valid.
 const STEPS: f64 = 50.0;
 
-/// Minimum number of steps from a count of repetitions to each end of its slider. It is smaller
-/// than [`STEPS`], because the steps of a count are large.
+/// As [`STEPS`], for numbers that must be whole, such as counts. Their step is 1, so that fewer
+/// steps already span a wide range.
 const STEPS_OF_COUNT: f64 = 10.0;
 
-/// Limits of a number and its slider, in the number's own unit.
+/// Limits of a number in the text, and its slider, in the unit in which the number is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Minimum valid number, if it is known.
+    /// Minimum of the number for which the text has no more errors than now; `None` if it is
+    /// unknown.
     pub least: Option<f64>,
-    /// Maximum valid number, if it is known.
+    /// Maximum of the number for which the text has no more errors than now; `None` if it is
+    /// unknown.
     pub most: Option<f64>,
     /// Step of the slider.
     pub step: f64,
-    /// Number of decimals with which the number is shown.
+    /// Number of decimals with which the slider shows the number: enough for the number now, the
+    /// step and the ends.
     pub decimals: usize,
     /// Lower and upper end of the slider.
     pub ends: [f64; 2],
 }
 
-/// A definition that has a slider, or whose comment looks like the range of one.
+/// The slider of a definition, or a note why the definition has none or why its comment is not used
+/// as written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slider<'a> {
     /// The definition's name.
@@ -51,8 +56,8 @@ pub struct Slider<'a> {
     pub span: Span,
     /// Limits of the slider; `None` if the value is not a number.
     pub limits: Option<Limits>,
-    /// A message that the comment after the definition is not a range, or gives another range than
-    /// it seems to.
+    /// Message for the author if the comment after the definition looks like a range but is none,
+    /// or if the slider has another range than the comment says.
     pub note: Option<String>,
 }
 
@@ -114,8 +119,9 @@ fn slider<'a>(
     })
 }
 
-/// Returns the limits of a number with a range in a comment. For a count, the range is rounded to
-/// whole numbers; if that changes the range, returns a note, too.
+/// Returns the limits of a number whose comment gives the range `range`. If the number must be
+/// whole, the step and the ends are rounded to whole numbers. If that changes the range, also
+/// returns a note for the author.
 fn within(
     range: CommentRange,
     literal: &Literal,
@@ -133,15 +139,16 @@ fn within(
     (Limits::new(literal, ends.map(Some), step, ends), note)
 }
 
-/// Returns the limits of a number without a range in a comment. The slider extends to both sides by
-/// the number's absolute value, or by a minimum number of steps if that is more. An end at which
-/// the text has more errors than now is moved towards the number.
+/// Returns the limits of a number whose comment gives no range. The slider extends to both sides by
+/// the number's absolute value, or by [`STEPS`] or [`STEPS_OF_COUNT`] steps if that is farther, but
+/// not beyond `bounds`. If the text would have more errors than now with the number at an end, that
+/// end is moved towards the number.
 fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
     let is_count = trials.is_count(literal);
     if is_count {
         bounds.is_whole = true;
-        // Negative counts are excluded here, since a formula such as a square may be valid for
-        // them, too.
+        // A negative count may be valid in a formula such as a square, so trials would not exclude
+        // it.
         if literal.value >= 0.0 && bounds.least == f64::NEG_INFINITY {
             bounds.least = 0.0;
         }
@@ -158,7 +165,7 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let reach = middle.abs().max(steps * step);
     let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
     let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    // If no neighbouring number is valid on either side, the ends are not moved.
+    // If even the next numbers on both sides are not valid, the ends stay where they are.
     let valid = if valid == [None, None] {
         ends
     } else {
@@ -187,18 +194,19 @@ impl Limits {
     }
 }
 
-/// Range of numbers that the conditions of fields allow, in a number's own unit.
+/// Range of a number that the schema's conditions ([`Condition`]) on its fields allow, in the unit
+/// in which the number is written: degrees or radians for an angle.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: f64,
     most: f64,
-    /// Whether the bounds themselves are not allowed.
+    /// Whether the two ends of the range are excluded from it.
     is_open: bool,
     /// Whether only whole numbers are allowed.
     is_whole: bool,
 }
 
-/// Bounds of a number without conditions.
+/// Bounds of a number on which no condition is known.
 const UNBOUNDED: Bounds = Bounds {
     least: f64::NEG_INFINITY,
     most: f64::INFINITY,
@@ -207,7 +215,8 @@ const UNBOUNDED: Bounds = Bounds {
 };
 
 impl Bounds {
-    /// Returns the bounds that a field's conditions impose on a number with the unit `unit`.
+    /// Returns the bounds that the conditions on a field impose on a number in its value, which is
+    /// written in the unit `unit`.
     fn of_field(field: &FieldRow, unit: Option<Unit>) -> Self {
         let two_to = |power: u32| (1_u64 << power) as f64;
         let mut bounds = UNBOUNDED;
@@ -236,7 +245,8 @@ impl Bounds {
         bounds
     }
 
-    /// Returns the common bounds that all fields impose whose value is the name `name` alone.
+    /// Returns the bounds of the number that is defined as `name`: the intersection of those that
+    /// are imposed by the fields whose value is this name alone.
     fn of_name(analysis: &Analysis<'_>, name: &str, unit: Option<Unit>) -> Self {
         let is_name = |value: &Value<'_>| matches!(value.kind, ValueKind::Name(it) if it == name);
         let fields = analysis.blocks().flat_map(|block| {
@@ -256,8 +266,9 @@ impl Bounds {
     }
 }
 
-/// Returns the unit of the numbers in a field's value; the inner `None` stands for no unit. Returns
-/// the outer `None` for an expression, whose numbers need not meet the field's conditions.
+/// Returns the unit in which the numbers of a field's value are written; the inner `None` stands
+/// for numbers without a unit. Returns the outer `None` for an expression, whose numbers need not
+/// meet the field's conditions.
 fn unit(value: &Value<'_>) -> Option<Option<Unit>> {
     match &value.kind {
         ValueKind::Number(_) => Some(None),

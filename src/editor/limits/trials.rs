@@ -6,20 +6,20 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum cost of all trials for one answer, in bytes of text that are read. When it is spent, no
-/// more numbers are tried.
+/// Maximum cost of all trials for one answer to the editor, in bytes of text that are read. A trial
+/// that would exceed it is not made.
 const BYTES: usize = 1 << 16;
 
 /// Cost of building an object, as the number of bytes of text that take as long to read.
 const OBJECT: usize = 12;
 
-/// Trials of a text with other numbers in it, up to the maximum cost [`BYTES`].
+/// Trials of a text with another number in place of a literal, up to the maximum cost [`BYTES`].
 #[derive(Debug)]
 pub struct Trials<'a, 's> {
     analysis: &'a Analysis<'s>,
     /// Number of errors in the unchanged text.
     errors: usize,
-    /// Remaining cost, in bytes.
+    /// Cost that is left for further trials, in bytes of text.
     left: usize,
 }
 
@@ -33,9 +33,9 @@ impl<'a, 's> Trials<'a, 's> {
         }
     }
 
-    /// Returns whether the text with `value` in place of the literal has at most as many errors as
-    /// the unchanged text. `objects` is the estimated number of objects. Returns `None` if the
-    /// trial would cost too much, or if `value` is not finite.
+    /// Returns whether the text with `value` in place of `literal` has at most as many errors as
+    /// the unchanged text. Returns `None` if the trial would cost too much, or if `value` is not
+    /// finite. `objects` is an estimate of the number of objects that the changed text makes.
     fn is_right(&mut self, literal: &Literal, value: f64, objects: usize) -> Option<bool> {
         let read = self.analysis.text().len();
         let takes = read.saturating_add(OBJECT.saturating_mul(objects));
@@ -50,8 +50,8 @@ impl<'a, 's> Trials<'a, 's> {
         Some(errors(&tried) <= self.errors)
     }
 
-    /// Estimates the number of objects if `count` is replaced by `value`, assuming that every index
-    /// of a block may count to it.
+    /// Estimates the number of objects that the text makes if `value` takes the place of `count`.
+    /// Assumes that every index of a block has this count.
     fn objects_with(&self, count: &Literal, value: f64) -> usize {
         let repetitions = self.analysis.blocks().flat_map(|it| &it.repetition);
         let indices = repetitions.map(|it| it.indices.len()).max().unwrap_or(0);
@@ -73,12 +73,13 @@ impl<'a, 's> Trials<'a, 's> {
             && (is_right(1.0) == Some(true) || is_right(-1.0) == Some(true))
     }
 
-    /// Searches by bisection, in steps of `step`, for the farthest number from the literal towards
-    /// `end` that adds no error. Returns `end` if it adds no error, or if it cannot be tried.
-    /// Returns `None` if already the first step adds one.
+    /// Searches for the last number on the way from the literal to `end` with which the text has no
+    /// more errors than now. The search is a bisection in steps of `step`. Returns `end` if that
+    /// number is valid, or if it cannot be tried. Returns `None` if already the first step adds an
+    /// error.
     ///
-    /// If valid and invalid numbers alternate, returns one of the valid numbers before an invalid
-    /// one.
+    /// If valid and invalid numbers alternate on the way, returns one of the valid numbers before
+    /// an invalid one.
     pub fn last_right(
         &mut self,
         literal: &Literal,
@@ -122,7 +123,8 @@ fn errors(analysis: &Analysis<'_>) -> usize {
 mod tests {
     use super::*;
 
-    /// With n = 14, the five indices would make half a million objects.
+    /// With n = 14, the text would make half a million objects, because it has five indices with
+    /// this count.
     #[test]
     fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
         let heads = [

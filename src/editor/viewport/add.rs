@@ -21,8 +21,9 @@ use crate::{
     tracer::vertices,
 };
 
-/// Maximum number of rows of positions, one behind the other, that are searched for a free one. If
-/// all are taken, a taken position is used. A scene with more objects is not made by hand.
+/// Maximum number of rows of positions that are searched for a free one. The rows are one behind
+/// the other, as the camera sees them. If no position is free, a taken one is used, since a scene
+/// with so many objects is not made by hand.
 const ROWS: i32 = 100;
 
 /// Colours of new objects. They differ clearly from each other, and from gray and white, the
@@ -40,7 +41,8 @@ const COLORS: [&str; 10] = [
     "sienna",
 ];
 
-/// Maximum distance of two colours that count as similar, in steps of 8-bit sRGB.
+/// Maximum distance of two colours that count as similar: the Euclidean distance of their channels,
+/// in steps of 8-bit sRGB. A new object gets a colour that is not similar to any other.
 const ALIKE: f64 = 48.0;
 
 /// A block that is added to the text.
@@ -50,7 +52,7 @@ pub struct Added {
     pub edit: Edit,
     /// Name of the new object. A copy of an object without a name has none.
     pub name: Option<String>,
-    /// Offset of the block in the new text, in UTF-16 code units.
+    /// Offset at which the new block starts in the changed text, in UTF-16 code units.
     pub cursor: usize,
 }
 
@@ -81,8 +83,8 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
         BlockKind::Checkerboard => format!("y {}", short(free_height(&scene))),
         BlockKind::Image | BlockKind::Camera | BlockKind::Sampler => return None,
     };
-    // A different colour distinguishes the object from others. Written out, it can be changed by a
-    // click.
+    // The colour is written even if it is the default, so that it can be changed by a click in the
+    // editor.
     let color = row.fields.iter().find(|field| field.takes == Type::Color);
     let color = color.and_then(|field| match field.preset {
         Preset::Value(own) => Some(format!("  {} {}", field.name, free_color(&scene, own))),
@@ -104,8 +106,9 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     })
 }
 
-/// Returns a colour that is not similar to any colour of the scene: the default colour `own` of a
-/// kind, or else one of [`COLORS`]. If all are taken, [`COLORS`] are used in turn.
+/// Returns a colour that is not similar ([`ALIKE`]) to any colour of the scene: `own`, the default
+/// colour of the new object's kind, or else one of [`COLORS`]. If all of them are taken, they are
+/// used in turn.
 fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     let shapes = scene.objects.iter().flat_map(|it| it.shape.colors());
     let taken: Vec<Color> = shapes.chain([scene.image.background]).collect();
@@ -118,8 +121,9 @@ fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     found.unwrap_or(COLORS[scene.objects.len() % COLORS.len()])
 }
 
-/// Returns a scene for a text with errors. Parts with errors are replaced by those of the smallest
-/// scene, so that new objects are placed beside those that were added before.
+/// Returns a scene for a text with errors, in which a new object can be placed. It has the objects
+/// without errors. An image, camera or sampler with errors is replaced by that of the smallest
+/// scene.
 fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     let smallest = Sources::new(Source::from_text("", SMALLEST));
     let smallest = Analysis::new(&smallest).scene()?;
@@ -137,8 +141,9 @@ fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     })
 }
 
-/// Copies an object's block to the next line. The copy is moved to the right by a twentieth of the
-/// picture, unless the block shares its numbers with other blocks.
+/// Returns the edit that copies an object's block to the line after it. The copy is moved to the
+/// right by a twentieth of the picture. Only numbers that stand in the block itself are changed for
+/// that, so a block that consists of names is copied without a move.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;
@@ -188,8 +193,9 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     names.into_iter().find(is_free).unwrap_or(capital)
 }
 
-/// Returns the height of a new board that is visible from above: 0 if the eye is above it and no
-/// object reaches below it, and otherwise a lower one. No two boards get the same height.
+/// Returns the height of a new board: 0, unless that is not below the eye, above the lowest point
+/// of an object, or less than 1 m below another board. In these cases, returns a lower height to
+/// which none of them applies.
 fn free_height(scene: &Scene) -> f64 {
     let below_eye = if scene.camera.eye.y > 0.0 {
         0.0
@@ -203,8 +209,8 @@ fn free_height(scene: &Scene) -> f64 {
     bottoms.fold(below_eye, f64::min)
 }
 
-/// Returns the centre of a free position in front of the camera, and half of the size that an
-/// object may have there.
+/// Returns the centre of a free position in front of the camera, and half of the side of a cube
+/// that an object there should fill.
 fn free_place(scene: &Scene) -> (DVec3, f64) {
     let projection = Projection::new(&scene.camera, &scene.image);
     let distance = distance(scene);
@@ -212,8 +218,8 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let boards = scene.objects.iter();
     let boards = boards.filter_map(|object| Some(object.shape.checkerboard()?.y));
     let floors = boards.filter(|y| *y < projection.eye.y);
-    // Without a board, objects near the height 0 stand on that height, because a board will be
-    // added there.
+    // If there is no board yet, but objects near the height 0 are in view, they stand on that
+    // height, because a board will be added there.
     let floor = floors.reduce(f64::max).or_else(|| {
         let bottom = projection.eye.y + projection.ahead.y * distance - size;
         (projection.eye.y > 0.0 && bottom.abs() <= size).then_some(0.0)
@@ -224,17 +230,18 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
         shapes.filter_map(|shape| handles(&shape, &projection, projection.right).first()?.1);
     let taken: Vec<DVec3> = middles.collect();
     let place = |floor: Option<f64>, steps: i32, row: i32| {
-        // Every other row is shifted by half a position, so that its objects are visible between
-        // those of the row in front of it.
+        // Every other row is shifted by half the distance of its positions, so that its objects are
+        // seen between those of the row in front of it.
         let aside = f64::from(steps) + 0.5 * f64::from(row % 2);
         let [aside, behind] = [aside, f64::from(row)].map(|steps| 2.5 * size * steps);
         let at = projection.eye + projection.right * aside + projection.ahead * (distance + behind);
         let at = DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)));
-        // The height of an object on a floor is not rounded.
+        // The height of an object that stands on a floor is exact rather than rounded.
         floor.map_or(at, |y| at.with_y(y + size))
     };
     let is_seen = |at: &DVec3| is_seen(*at, size, &projection);
-    // Each row has seven positions. If the floor is not visible, the positions are in the air.
+    // Each row has seven positions. Positions on the floor are tried first, and then positions at
+    // the height of the view axis.
     let row = |floor, row| [0, 1, -1, 2, -2, 3, -3].map(|steps| place(floor, steps, row));
     let rows = |floor| (0..ROWS).flat_map(move |it| row(floor, it));
     let mut places = rows(floor).chain(rows(None)).filter(is_seen);

@@ -12,12 +12,12 @@ use crate::{
     scene::{Camera, FieldOwner, Lens, Scene, View},
 };
 
-/// Minimum angle between the view direction and the up vector, in radians: one degree. The pointer
-/// cannot turn the camera nearer to the up vector.
+/// Minimum angle between the view direction and the line of the up vector, in radians: one degree.
+/// The pointer cannot turn the camera to look more steeply up or down.
 const POLE: f64 = PI / 180.0;
 
-/// Factor by which the camera's distance, or its view distance, changes if the pointer moves by the
-/// height of the picture.
+/// Factor by which the distance from the eye to the pivot, or to the view plane, changes if the
+/// pointer moves by the height of the picture.
 const ZOOM: f64 = 4.0;
 
 /// Returns the distance from the eye to the pivot, i.e. the point about which the camera moves:
@@ -41,8 +41,9 @@ pub fn distance(scene: &Scene) -> f64 {
     seen.map(|hit| hit.t).or_else(nearest).unwrap_or(1.0)
 }
 
-/// Returns the camera after the pointer has moved from one point of the picture to another.
-/// `distance` is that from the eye to the pivot; see [`distance`].
+/// Returns the camera after the pointer has dragged the handle `handle`, such as `orbit`, from the
+/// point `from` to the point `to` of the picture. `distance` is that from the eye to the pivot; see
+/// [`distance`].
 ///
 /// # Errors
 ///
@@ -67,8 +68,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // In both modes, the picture follows the pointer. For that, the camera must turn in
-            // opposite directions when it orbits and when it stays in its place.
+            // In both modes, the picture follows the pointer. The camera therefore turns against
+            // the pointer's movement when it looks around, and with it when it orbits.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {
@@ -117,14 +118,16 @@ pub fn moved(
     }
 }
 
-/// Returns the factor for a movement of the pointer by `heights` heights of the picture.
+/// Returns the factor by which a distance changes if the pointer moves by `heights` times the
+/// height of the picture.
 fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// Returns the view direction after a movement of the pointer, in heights of the picture. One
-/// height corresponds to half a turn: a movement to the right turns about the up vector, and a
-/// movement down turns away from the up vector.
+/// Returns the view direction of a camera that looks around while the pointer moves by `by`,
+/// measured in heights of the picture. One height corresponds to half a turn. A movement to the
+/// right turns the direction about the up vector, to the left, and a movement down turns it towards
+/// the up vector, so that the picture follows the pointer.
 fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let (up, ahead) = (unit(camera.up).0, projection.ahead);
     // `level_top` is the direction of the picture's top without roll.

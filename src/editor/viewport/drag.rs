@@ -26,36 +26,40 @@ use crate::{
     syntax::tree::Block,
 };
 
-/// Number of significant digits that identify every `f64`. More decimals are not tried.
+/// Number of significant digits that identify every `f64`. Numbers with more digits are not tried.
 const DIGITS: i32 = 17;
 
 /// The movement of a handle by the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drag<'a> {
-    /// Index of the object in the scene; `None` for the camera.
+    /// Index of the dragged object in the scene; `None` if the camera is dragged.
     pub object: Option<usize>,
     /// The name of the handle.
     pub handle: &'a str,
-    /// Previous point of the pointer, in pixels. Only camera movements depend on it.
+    /// Point of the pointer at the previous step of the drag, in pixels. Only movements of the
+    /// camera depend on it.
     pub from: DVec2,
-    /// Current point of the pointer, in pixels.
+    /// Point of the pointer now, in pixels.
     pub to: DVec2,
-    /// Axis or plane along which the handle moves, if its movement is restricted.
+    /// Axis or plane along which the handle moves; `None` if it follows the pointer freely.
     pub along: Option<Along>,
-    /// Grid that the handle snaps to, in pixels. The changed numbers are rounded to multiples of
-    /// the greatest power of ten that moves the handle by at most this distance.
+    /// Maximum step of the handle in the picture, in pixels, if the drag snaps to a grid. The
+    /// changed numbers are multiples of a power of ten: the greatest with which the handle moves by
+    /// at most this step.
     pub step: Option<f64>,
 }
 
-/// Changes of a text by a dragged handle; empty if they would not be visible.
+/// Changes of a text that follow from a dragged handle. All lists are empty if the picture would
+/// not change visibly.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dragged {
     /// The edits.
     pub edits: Vec<Edit>,
-    /// Changed fields with their new values, such as `Ball.radius = 2`.
+    /// Fields of the dragged object or camera that change, with their new values, as in
+    /// `Ball.radius = 2`.
     pub values: Vec<String>,
-    /// Fields of other blocks, such as `camera.lookat`, and of other objects of the same block,
-    /// that change because they share numbers with the changed ones.
+    /// Other fields that change, too, because their values use the same numbers of the text: fields
+    /// of other blocks, such as `camera.lookat`, and of other objects of a repeated block.
     pub also: Vec<String>,
 }
 
@@ -77,7 +81,7 @@ pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources
     Sources::new(Source::from_text(source.name(), text))
 }
 
-/// Returns the spans of the blocks of all objects except that of `object`.
+/// Returns the spans of all objects' blocks except the block of `object`.
 fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Span> {
     let own = object
         .and_then(|index| scene.objects.get(index))
@@ -87,8 +91,8 @@ fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Sp
     blocks.filter(move |span| Some(*span) != own)
 }
 
-/// Returns the edits of the text for a dragged handle. `alone` is the text with only the dragged
-/// object, from [`alone`].
+/// Returns the edits of the text that move a handle as `drag` says. `alone` is the text in which
+/// only the dragged object is left; see [`alone`].
 ///
 /// # Errors
 ///
@@ -162,8 +166,9 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // When the handle snaps to a grid, the tolerance is a whole step of the grid. That would hide
-    // changes of other fields that share a number, so these are compared exactly.
+    // If the drag snaps to a grid, the tolerance is a whole step of the grid, in which a change of
+    // another field of the object would go unnoticed. So those fields, which may share a number
+    // with the changed ones, must keep their values exactly.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
@@ -174,7 +179,7 @@ pub fn drag(
         let (changes, rounding) = together(&changes, decimals);
         let changes = &changes;
         let edits = edits(analysis, block, changes, &rounding);
-        // The handle may also snap to its old position, which needs no edit.
+        // If the drag snaps back to the old position, no edit is needed.
         let is_back = snapped.is_some() && rounded(current, changes, &rounding) == Some(current);
         if is_back || (snapped.is_some() && edits.as_ref().is_some_and(Vec::is_empty)) {
             return Ok(Dragged::default());
@@ -187,8 +192,8 @@ pub fn drag(
             Ok((Some(found), after))
                 if view.agree(ideal, found, tolerance) && keeps_others(found) =>
             {
-                // Edits within the block change no other block, so the rest of the text, which may
-                // be long, is not read.
+                // If all edits are within the block, no other block changes. The whole text, which
+                // may be long, then need not be read.
                 let is_own = |edit: &Edit| {
                     block.span.start <= edit.span.start && edit.span.end <= block.span.end
                 };
@@ -217,8 +222,9 @@ pub fn drag(
                 });
             }
             Ok(_) => refusal = refused(),
-            // If the rounded result already agrees, more digits could remove the error, but the
-            // difference would not be visible.
+            // If the text has errors although its rounded numbers already look like the ideal ones,
+            // the search ends: more digits could remove the errors, but the difference would not be
+            // visible.
             Err(why) => match rounded(current, changes, &rounding) {
                 Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,
@@ -231,6 +237,7 @@ pub fn drag(
 /// Describes the field of view of a camera in several forms, if one of the fields that determine it
 /// has changed.
 fn lens(image: &Image, changes: &[FieldChange], found: FieldOwner) -> Option<String> {
+    // Names of the fields that determine the field of view.
     const LENS: [&str; 4] = [
         CAMERA.d.name,
         CAMERA.fov.name,
@@ -292,8 +299,9 @@ fn block<'a, 's>(
     Some((block, name.to_owned()))
 }
 
-/// Returns the names of the fields in which two scenes from the same blocks differ, except those of
-/// the dragged object itself, such as `camera.lookat`.
+/// Returns the names of the fields, such as `camera.lookat`, whose values differ between two scenes
+/// that have the same blocks. Leaves out the dragged object itself. Of other objects of its block,
+/// only the fields in `changes` are compared.
 fn others_changed(
     analysis: &Analysis<'_>,
     dragged: Option<usize>,
@@ -337,7 +345,8 @@ fn others_changed(
     changed
 }
 
-/// Reads the scene of a text after `edits`. Returns a message if the text has errors then.
+/// Reads the scene of the text of `source` after `edits`, which are given as two lists. Returns a
+/// message if the text has errors then.
 fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let fix = Fix::new("", edits.concat());
     let text = apply(&fix, SourceId::File, source.text());
@@ -350,9 +359,9 @@ fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     })
 }
 
-/// Returns points in space that a camera sees in the middle and the corners of its picture, at 0.5,
-/// 1 and 2 times `distance`. Returns `None` if the coordinates have too few digits to place a point
-/// within [`TOLERANCE`].
+/// Returns points in space that the camera sees in the middle and in the corners of its picture: at
+/// each of these five points, at 0.5, 1 and 2 times the depth `distance`. Returns `None` if `f64`
+/// has too few digits for such coordinates to place a point within [`TOLERANCE`].
 fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     let corners = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
     let depths = [0.5, 1.0, 2.0].into_iter();
@@ -366,19 +375,22 @@ fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     places.map(point).collect()
 }
 
-/// View of the scene before a drag, in which results of the drag are compared.
+/// View of the scene before a drag. Different results of the drag are compared by how they look in
+/// this view.
 struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
     drag: &'a Drag<'a>,
-    /// Points in space at which cameras and boards are compared.
+    /// Points in space that stand for the scene: for a dragged camera or board, results are
+    /// compared by where these points appear in the picture.
     points: Vec<DVec3>,
 }
 
 impl DragView<'_> {
-    /// Returns the number of decimals of the greatest power of ten that moves the dragged handle by
-    /// at most `step` pixels, and `step` itself. Returns `None` for the camera, or if the
-    /// coordinates have too few digits for `step`.
+    /// Returns the number of decimals of the grid that the drag snaps to, and the tolerance `step`,
+    /// in pixels. The spacing of the grid is the greatest power of ten that moves the dragged
+    /// handle by at most `step`. Returns `None` for the camera, and if no grid with up to 12
+    /// decimals is fine enough.
     fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
         let held = |owner: FieldOwner| {
             let mut marks = self.marks(owner).into_iter();
@@ -397,11 +409,11 @@ impl DragView<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Returns whether two states of the dragged object or camera look alike: the dragged handle,
-    /// and every other handle in or near the picture, is within `tolerance` pixels of its ideal
-    /// position.
+    /// Returns whether two states of the dragged object or camera look alike: in the state `found`,
+    /// the dragged handle is within `tolerance` pixels of its place in the state `ideal`, and so is
+    /// every other handle that is in or near the picture.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
-        // A length that is rounded to few digits may have become 0, which the language forbids.
+        // A length that was rounded to few digits may have become 0, which the language forbids.
         if ideal.is_possible() && !found.is_possible() {
             return false;
         }
@@ -417,8 +429,8 @@ impl DragView<'_> {
         })
     }
 
-    /// Returns the points of the picture at which two states of a camera or an object are compared.
-    /// The flag says whether the pointer holds the point.
+    /// Returns the points of the picture by which a state of the object or camera is compared with
+    /// another. The flag says whether the pointer drags the point.
     fn marks(&self, owner: FieldOwner) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
         match owner {
@@ -426,15 +438,16 @@ impl DragView<'_> {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()
             }
-            // The handle of a board always is where the view axis hits the board, so a fixed point
-            // of the board is compared instead.
+            // The handle of a board is always where the view axis hits the board, so it says little
+            // about the board's height. Fixed points of the board are compared instead.
             FieldOwner::Shape(Shape::Checkerboard(board)) => {
                 let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
                 points.map(|at| (true, seen(at))).collect()
             }
             FieldOwner::Shape(shape) => {
                 let Drag { handle, to, .. } = *self.drag;
-                // The handle of a sphere's radius is on the side of the pointer.
+                // The handle of a sphere's radius is the point of the silhouette nearest to the
+                // pointer.
                 let towards = if handle == SPHERE.radius.name {
                     self.projection.ray(to)
                 } else {

@@ -16,7 +16,7 @@ use crate::{
     syntax::tree::{self, Block, Operator, Step, Unit, ValueKind},
 };
 
-/// A change of a field.
+/// A change of a field's value by a drag.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldChange {
     /// The field's name.
@@ -28,7 +28,7 @@ pub struct FieldChange {
 }
 
 impl FieldChange {
-    /// Returns the greatest absolute number in the amount; for an angle, in degrees.
+    /// Returns the greatest absolute number in the amount `by`; for an angle, in degrees.
     pub fn size(&self) -> f64 {
         match self.by {
             Value::Vector(vector) => vector.abs().max_element(),
@@ -36,8 +36,8 @@ impl FieldChange {
         }
     }
 
-    /// Returns a copy of the owner for each number that changes: in the copy, only this number is
-    /// changed, by 10^−`decimals`.
+    /// Returns a copy of the owner for each number of the field that changes. In that copy, only
+    /// this number is changed, namely by 10^−`decimals`.
     pub fn with_unit(&self, owner: FieldOwner, decimals: i32) -> Vec<FieldOwner> {
         let unit = libm::pow(10.0, f64::from(-decimals));
         let units = match self.by {
@@ -54,8 +54,9 @@ impl FieldChange {
     }
 }
 
-/// Returns the fields in which the states `current` and `ideal` of a block's owner differ. A box is
-/// changed in those fields, corners or centre and size, with which the text is written.
+/// Returns the changes of the fields in which two states of an object or camera, `current` and
+/// `ideal`, differ. A box has two sets of fields, corners or centre and size; those are changed
+/// with which `block` gives it.
 pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec<FieldChange> {
     let has_min = |field: &tree::Field<'_>| field.name.text == BOX.min.name;
     let other_way = if block.fields.iter().any(has_min) {
@@ -75,29 +76,29 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
         .collect()
 }
 
-/// Ratios between the amounts by which numbers change together. The vertices `v0` and `v1` change
-/// by the same amount. The `center` of a box changes by half of the amount of its `size`, with
-/// either sign.
+/// When a point is dragged, several fields of an object may change together. These are the possible
+/// ratios of one field's change to the largest change on the same axis: 1 for the vertices `v0` and
+/// `v1`, ±1/2 for the `center` of a box whose `size` changes.
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
-/// Maximum relative difference of two amounts that count as equal, which allows for rounding
-/// errors.
+/// Maximum difference between a field's change and one of [`RATIOS`] times the largest change,
+/// relative to the largest change, for which the two count as equal. It allows for rounding errors.
 const SAME: f64 = 1e-6;
 
-/// Rounding of changed numbers to decimals.
+/// Rounding of the numbers that a drag changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DecimalRounding {
-    /// Number of decimals; a negative one rounds to tens, hundreds and so on.
+    /// Number of decimals of a changed number. A negative one stands for tens, hundreds and so on.
     decimals: i32,
-    /// Absolute values of the amounts that [`together`] rounded. The sum of a number and such an
-    /// amount keeps all decimals of both, rather than `decimals`, so that points which the pointer
-    /// does not hold stay in place.
+    /// Absolute values of the changes that [`together`] has rounded. If a number changes by such an
+    /// amount, the new number keeps all decimals of the old one, and is not rounded to `decimals`.
+    /// So points of the object that the pointer does not drag stay exactly in place.
     exact: Vec<f64>,
 }
 
-/// Rounds changes to `decimals` decimals. Numbers on one axis that change together, in one of
-/// [`RATIOS`], change by the same rounded amount, so that points which the pointer does not hold
-/// stay in place to the last digit.
+/// Rounds changes to `decimals` decimals. If the numbers on one axis change in the ratios
+/// [`RATIOS`], the largest change is rounded, and the others are the same multiples of it as
+/// before. So points of the object that the pointer does not drag stay exactly in place.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
@@ -123,7 +124,8 @@ pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, De
     (changes, DecimalRounding { decimals, exact })
 }
 
-/// Returns the amount by which a vector changes along an axis, or `None` if it is 0.
+/// Returns the amount by which a vector changes along an axis. Returns `None` if that is 0 or if
+/// the value is not a vector.
 fn along(change: &mut FieldChange, axis: usize) -> Option<&mut f64> {
     match &mut change.by {
         Value::Vector(by) => Some(&mut by[axis]).filter(|by| **by != 0.0),
@@ -132,12 +134,12 @@ fn along(change: &mut FieldChange, axis: usize) -> Option<&mut f64> {
 }
 
 impl DecimalRounding {
-    /// Returns the rounded sum of a number and an amount. Returns the number itself if the amount
-    /// is rounded to 0.
+    /// Returns the new number after a change of `from` by `by`, rounded. Returns `from` itself if
+    /// the change is rounded to 0.
     fn sum(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // Half of a rounded amount may have one more decimal.
+            // If the ratio is 1/2, half of a rounded amount may have one more decimal.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }
@@ -149,14 +151,15 @@ impl DecimalRounding {
     }
 }
 
-/// Returns the number of decimals of a number's shortest decimal form.
+/// Returns the number of decimals in the shortest decimal form of a number.
 fn decimals_of(number: f64) -> i32 {
     let text = format!("{number}");
     text.split_once('.')
         .map_or(0, |(_, digits)| digits.len() as i32)
 }
 
-/// Returns a copy of the owner with changed and rounded fields.
+/// Returns a copy of the object or camera `owner` in which the fields of `changes` have their new,
+/// rounded values. Returns `None` if it has no such field.
 pub fn rounded(
     owner: FieldOwner,
     changes: &[FieldChange],
@@ -179,8 +182,8 @@ pub fn rounded(
     })
 }
 
-/// Returns the edits that change fields of a block, in order. Returns `None` if two changes would
-/// write different numbers in one place.
+/// Returns the edits of the text that change the fields of `block`, in the order of the text.
+/// Returns `None` if two changes would write different numbers in one place.
 pub fn edits<'s>(
     analysis: &Analysis<'s>,
     block: &Block<'s>,
@@ -213,7 +216,7 @@ pub fn edits<'s>(
     edits.windows(2).all(apart).then_some(edits)
 }
 
-/// Writer of edits for changed numbers.
+/// Writer of the edits that change numbers in the text.
 struct NumberWriter<'a, 's> {
     analysis: &'a Analysis<'s>,
     rounding: &'a DecimalRounding,
@@ -221,8 +224,9 @@ struct NumberWriter<'a, 's> {
 }
 
 impl<'s> NumberWriter<'_, 's> {
-    /// Adds edits that change the value of an expression by an amount. Returns `None` if the value
-    /// cannot be negated or scaled, which its type may not allow.
+    /// Adds edits with which the value of the expression `tree` changes by the amount `by`. Returns
+    /// `None` if that is not possible, for example because the amount would have to be negated or
+    /// scaled and its type does not allow that.
     fn change(&mut self, tree: &tree::Value<'s>, by: Value) -> Option<()> {
         let model = &self.analysis.model;
         if let Some(unit) = literal_unit(tree) {

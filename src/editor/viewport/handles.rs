@@ -16,21 +16,22 @@ use crate::{
     tracer::vertices,
 };
 
-/// Maximum distance of a handle in the picture from the pointer that drags it, in pixels. A result
-/// that is farther away is refused.
+/// Maximum distance, in pixels of the picture, between a dragged handle and the pointer. If the
+/// changed text would show the handle farther away, the drag is refused.
 pub const TOLERANCE: f64 = 0.5;
 
-/// Message for a movement that makes numbers too large, or for which they have too few digits.
+/// Message for a drag after which numbers would be too large, or would have too few digits to place
+/// the handle.
 pub const TOO_FAR: &str = "that is too far away";
 
-/// Name and position of a handle; `None` if the eye cannot see it.
+/// Name of a handle, and its position in space, which is `None` if the eye cannot see it.
 ///
 /// The name is that of the field that changes with the handle. If the handle moves only along one
-/// axis, that axis follows, as in `min_x`.
+/// axis, the name of that axis follows, as in `min_x`.
 pub type Handle = (&'static str, Option<DVec3>);
 
-/// Axis or plane along which a point moves. Without it, a point moves in the plane parallel to the
-/// view plane.
+/// Axis or plane along which a dragged point moves. If none is given, the point moves in the plane
+/// through it that is parallel to the view plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// The axis x, y or z (0, 1 or 2).
@@ -40,7 +41,7 @@ pub enum Along {
 }
 
 impl Along {
-    /// Returns the axis or the floor with the name `name`, or `None` if there is none.
+    /// Returns the axis `x`, `y` or `z`, or the plane `floor`. Returns `None` for any other name.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "floor" => Some(Self::Floor),
@@ -55,10 +56,11 @@ const CORNERS: [&str; 3] = [TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name
 /// Name of the handle at an object's centre, for all kinds that have one.
 const CENTER: &str = BOX.center.name;
 
+/// Names of the coordinate axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Names of the handles of a box's faces. For each axis, the face at the lower coordinate comes
-/// before the opposite one.
+/// Names of the handles in the middle of a box's faces. For each axis, the face at the lower
+/// coordinate comes before the opposite one.
 const FACES: [&str; 6] = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
 
 /// Number of sides of the polygon that is drawn as a sphere's silhouette.
@@ -244,8 +246,8 @@ pub fn moved(
     let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
     let along = Along::named(axis).or(along);
     let by = moved_point(at, to, along, projection)? - at;
-    // The centre is moved by moving the corners, because the `center` of a box is rounded, and a
-    // triangle given by vertices has no such field.
+    // The centre is moved by moving the corners or vertices: the `center` of a box is a rounded
+    // value, and a triangle given by vertices has no field for its centre.
     let fields = match shape {
         Shape::Box(_) if field == CENTER => &[BOX.min.name, BOX.max.name][..],
         Shape::Triangle(_) if field == CENTER => &CORNERS,
@@ -261,8 +263,13 @@ pub fn moved(
     moved.ok_or_else(no_handle)
 }
 
-/// Returns the position of a point that is moved so that it appears at the point `to` of the
-/// picture, or as near to it as the restriction `along` allows.
+/// Returns the new position in space of `point`, which is dragged to the point `to` of the picture.
+/// It moves as `along` says, and then appears at `to` or, on an axis, as near to it as possible.
+///
+/// # Errors
+///
+/// Returns a sentence if it would be behind the eye, or too far from `to` because of rounding
+/// errors.
 fn moved_point(
     point: DVec3,
     to: DVec2,
@@ -274,9 +281,10 @@ fn moved_point(
         None => projection.on_plane(to, point, projection.ahead),
         Some(Along::Floor) => projection.on_plane(to, point, DVec3::Y),
         Some(Along::Axis(axis)) => {
-            // In the picture, the axis is a line. All points that appear on the perpendicular
-            // through `to` form a plane that contains the eye. The axis intersects this plane at
-            // the nearest point.
+            // In the picture, the axis is a line. The nearest point of this line to `to` is on the
+            // perpendicular through `to`. All points in space that appear on this perpendicular
+            // form a plane that contains the eye, and the moved point is where the axis intersects
+            // it.
             let (axis, from_eye) = (DVec3::AXES[axis], point - projection.eye);
             let normal = unit(from_eye.cross(axis)).0;
             across = unit(normal.reject_from(projection.ahead)).0;
@@ -305,8 +313,13 @@ fn moved_point(
     }
 }
 
-/// Returns the radius with which the sphere's silhouette passes through the point `to` of the
-/// picture.
+/// Returns the radius of a sphere with the same centre whose silhouette passes through the point
+/// `to` of the picture.
+///
+/// # Errors
+///
+/// Returns a sentence if there is no such sphere, because the eye would be inside of it or `to` is
+/// behind the centre.
 fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, String> {
     let (axis, distance) = unit(sphere.center - projection.eye);
     let (ray, _) = unit(projection.ray(to));
@@ -319,14 +332,16 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     }
 }
 
-/// Returns the normal whose tip appears at the point `to` of the picture, on the same side of the
-/// centroid as now. If there is none, returns the normal whose tip appears nearest.
+/// Returns the normal whose tip appears at the point `to` of the picture. Of two such normals,
+/// returns the one that points towards the same side as now, to the eye or away from it. If there
+/// is none, returns the normal whose tip appears nearest to `to`.
 fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
     let reach = triangle.sides.z;
     let (ray, _) = unit(projection.ray(to));
     let center = triangle.centroid - projection.eye;
-    // `foot` is the point of the ray nearest to the centroid. The tip lies on the ray, on the
-    // sphere around the centroid that contains all tips.
+    // `foot` is the point nearest to the centroid on the ray through `to`, relative to the
+    // centroid. The tip is drawn at the distance `reach` from the centroid, so it lies on a sphere
+    // around the centroid, and on the ray.
     let foot = ray * center.dot(ray) - center;
     let (normal, length) = unit(triangle.normal);
     let rest = (reach - foot.length()) * (reach + foot.length());
@@ -334,8 +349,12 @@ fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection
     unit(tip).0 * length
 }
 
-/// Returns the spin with which the apex lies in the direction from the centroid to the point `to`
-/// of the picture.
+/// Returns the spin with which the apex lies in the direction from the centroid to the point that
+/// appears at `to`.
+///
+/// # Errors
+///
+/// Returns a sentence if the triangle's plane is not visible at `to`.
 fn spun(
     triangle: &CenteredTriangle,
     apex: DVec3,

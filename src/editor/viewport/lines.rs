@@ -4,12 +4,12 @@ use glam::{DVec2, DVec3};
 
 use crate::projection::Projection;
 
-/// Minimum depth of the visible part of a line, relative to the greatest coordinate of its points
-/// as seen from the eye. The part nearer to the plane of the eye is cut off, since its image may be
+/// Minimum depth of the visible part of a line, relative to the greatest coordinate of the line's
+/// points as seen from the eye. A part with less depth is cut off, since its image may be
 /// infinitely far away.
 const NEAREST: f64 = 1e-6;
 
-/// Maximum distance of a line from the picture, in picture sizes; the part beyond it is cut off. A
+/// Distance from the picture at which lines are cut off, as a multiple of the picture's size. A
 /// page shows a picture with up to 8192 pixels in a row, so the distance is at most 2^20 pixels. Up
 /// to there, browsers, which draw in single precision, are exact to a tenth of a pixel.
 const REACH: f64 = 128.0;
@@ -39,8 +39,9 @@ impl Projection {
         self.joined(segments)
     }
 
-    /// Joins segments in the picture to polygonal lines, and cuts off parts too far outside. A
-    /// segment that starts at the end of the previous one continues its line.
+    /// Joins segments in the picture to polygonal lines, and cuts off what is farther outside of
+    /// the picture than `REACH`. A segment that starts at the end of the previous one continues its
+    /// line.
     pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Polyline> {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = segments.into_iter();
@@ -53,15 +54,15 @@ impl Projection {
         lines
     }
 
-    /// Clips a segment to the picture, enlarged on each side by `grown` times its width or height.
-    /// Returns `None` if no part of the segment is left.
+    /// Clips a segment in the picture to the picture, enlarged on each side by `grown` times its
+    /// width or height. Returns `None` if no part of the segment is left.
     pub(super) fn clip(&self, segment: [DVec2; 2], grown: f64) -> Option<[DVec2; 2]> {
         clip(segment, [-grown * self.size, (1.0 + grown) * self.size])
     }
 
-    /// Returns the line in the picture of all directions that rise by `height` metres per metre of
-    /// depth. It is clipped to the picture, enlarged by its own size on each side. Returns `None`
-    /// if no such line crosses the enlarged picture.
+    /// Returns the line in the picture at which rays rise by `height` metres per metre of depth,
+    /// such as the horizon for 0. It is clipped to the picture, enlarged by its own size on each
+    /// side. Returns `None` if no part of it is left.
     pub fn level(&self, height: f64) -> Option<[DVec2; 2]> {
         // The ray through the pixel (x, y) of a picture of w × h pixels has, at depth 1, the height
         //

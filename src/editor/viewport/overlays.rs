@@ -15,19 +15,20 @@ use crate::{
     tracer::World,
 };
 
-/// Distance, in pixels, between points of a board's outline at which the tracer tests whether an
-/// object hides the outline.
+/// Distance, in pixels, between the points of a board's outline at which the tracer is asked
+/// whether an object hides the outline.
 const TEST_DISTANCE: f64 = 2.0;
 
-/// Maximum number of tested points per segment of a board's outline. On longer segments, the
-/// distance between the points grows.
+/// Maximum number of points per segment of a board's outline at which the tracer is asked. On a
+/// longer segment, the points are farther apart than [`TEST_DISTANCE`].
 const MOST_TESTS: f64 = 1000.0;
 
-/// Maximum total number of tested points, which bounds the time. When it is reached, the outlines
-/// of the remaining boards are drawn as if nothing hid them.
+/// Number of tested points, for all outlines of a picture together, after which no further outline
+/// is tested, which bounds the time. The outlines of the remaining boards are drawn as if nothing
+/// hid them.
 const MOST_TESTS_IN_ALL: f64 = 8000.0;
 
-/// Maximum number of objects whose outlines are drawn. Nobody can tell more apart.
+/// Maximum number of objects whose outlines are drawn over a picture. Nobody can tell more apart.
 pub const MOST_OBJECTS: usize = 1000;
 
 /// Drawings over a picture.
@@ -54,7 +55,8 @@ pub struct Overlays {
 pub struct Vanishing {
     /// The point; `None` if the axis is parallel to the view plane, and so has none.
     pub point: Option<DVec2>,
-    /// Edges of boxes parallel to the axis, each extended to the vanishing point.
+    /// For each edge of a box that is parallel to the axis: the line along the edge and on to the
+    /// vanishing point.
     pub lines: Vec<Polyline>,
 }
 
@@ -151,7 +153,7 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = outline.lines.iter().flat_map(|line| line.windows(2));
         for (from, to) in segments.map(|ends| (ends[0], ends[1])) {
-            // Outside of the picture, no object hides a line, so only the part inside is tested.
+            // No object hides a line outside of the picture, so only the part inside is tested.
             let [first, last] = projection.clip([from, to], 0.0).unwrap_or([to, to]);
             let parts = (first.distance(last) / TEST_DISTANCE)
                 .ceil()
@@ -169,7 +171,8 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
                 let joined = lines.last_mut().filter(|line| line.last() == Some(&begin));
                 match joined {
                     Some(line) => {
-                        // Of points on a straight line, only the first and the last one are kept.
+                        // If the parts before and after this point are on one straight segment, the
+                        // point is left out.
                         if part > 0 {
                             line.pop();
                         }

@@ -12,15 +12,16 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// Maximum number of samples of a pixel that are shown; further ones are left out.
+/// Maximum number of samples of a pixel that [`samples`] returns; further ones are left out.
 pub const MOST_SAMPLES: u64 = 1 << 16;
 
-/// Maximum number of samples per pixel with which a pixel is rendered for its samples. With more,
-/// an error is returned, since it would take too long.
+/// Maximum number of samples of a pixel for which [`samples`] renders the pixel. If the pixel has
+/// more, an error is returned, since rendering it would take too long.
 const MOST_TRACED: u64 = 1 << 20;
 
-/// Returns the nearest hit at a point of the picture, or `None` for the background, together with
-/// the colour there. Returns `None` if the point is outside of the picture.
+/// Returns the nearest hit of the ray through a point of the picture, and the colour that is
+/// visible there. The hit is `None` if the ray shows the background. Returns `None` for both if the
+/// point is outside of the picture.
 pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, Color)> {
     let picture = world.picture();
     let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
@@ -41,8 +42,8 @@ pub struct PixelSamples {
     pub color: Color,
 }
 
-/// Returns the first [`MOST_SAMPLES`] samples of the pixel in column `x` and row `y`. An exact
-/// picture has no samples.
+/// Returns the colour of the pixel in column `x` and row `y`, and its first [`MOST_SAMPLES`]
+/// samples. An exact picture has no samples.
 ///
 /// # Errors
 ///

@@ -14,10 +14,11 @@ use super::{
 };
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
-/// Maximum number of the board's lines between columns, or between rows, that cross a pixel; a
-/// pixel with more is returned without an integral. There is a batch for each pair of the two
-/// numbers, and few pixels have more lines. Not critical: with 8 or 128, the measured running time
-/// changes by at most about 10 %.
+/// Maximum number of the board's lines of one family that may cross a pixel of a batch; a pixel
+/// that more lines cross is returned without an integral. The board has two families of lines,
+/// those between columns and those between rows of squares. There is a batch for each pair of their
+/// two numbers, and few pixels have more lines. Not critical: with 8 or 128, the measured running
+/// time changes by at most about 10 %.
 const MAX_LINES: usize = 32;
 
 /// A pixel that shows only a checkerboard.
@@ -95,7 +96,8 @@ impl BoardBatches {
 
 impl Batch {
     /// Computes the queued pixels, calls `emit` with each and its integral, and empties the queue.
-    /// `crossing` has the numbers of lines of both families, the smaller number first.
+    /// `crossing` has the numbers of lines of the board's two families that cross each pixel, the
+    /// smaller number first.
     fn compute(
         &mut self,
         crossing: [usize; 2],
@@ -170,7 +172,7 @@ mod tests {
         let world = world(camera, 0.7);
         let known = sums(&world).into_iter().filter_map(|(_, sum)| sum);
         let sharp = known.filter(|sum| sum.bound < 1e-9).count();
-        // More than half of the 18 rows of 24 pixels lie below the horizon.
+        // More than half of the picture's 18 rows of 24 pixels are below the horizon.
         assert!(sharp > 100, "{sharp}");
     }
 
@@ -181,7 +183,8 @@ mod tests {
         fn it_is_what_clipping_square_by_square_gives(
             place in prop::array::uniform2(-9.0..9.0_f64),
             offset in prop::sample::select(vec![0.0, 1e6, -1e12]),
-            // `height` and `square` are exponents of ten.
+            // The camera's height and the side of a square are powers of ten, and `height` and
+            // `square` are the exponents.
             height in -1.0..2.0_f64,
             square in -1.0..3.0_f64,
             yaw in 0.0..360.0_f64,
@@ -202,8 +205,8 @@ mod tests {
             let (sums, mut compared) = (sums(&world), 0);
             let are_all_flat = sums.is_empty();
             for (BoardPixel { x, y, .. }, sum) in sums {
-                // There is no sum if too many lines cross the pixel. The sum is NaN if squares are
-                // about as large as the largest `f64`.
+                // Skips pixels without a usable sum: it is `None` if too many lines cross the
+                // pixel, and NaN if a square of the board is nearly as large as the largest `f64`.
                 let Some(sum) = sum.filter(|sum| sum.bound < 1.0) else {
                     continue;
                 };

@@ -15,25 +15,26 @@ use multiversion::multiversion;
 
 /// Maximum number of terms of the series X ([`EdgeSeries`]). The omitted terms count as an error.
 pub(super) const MAX_TERMS: usize = 20;
-/// Upper limit on the number of blocks of a sum. The truncation error of a block is limited to the
-/// tolerance divided by this number. The depth m grows by half over a block, so that after 15
-/// blocks, a block has `MAX_BLOCK` crossings. The longest sum, 300,000 crossings, has 74 such
-/// blocks.
+/// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
+/// truncation error of a block is limited to the tolerance divided by this number. The depth m
+/// grows by half over a block, so that after 15 blocks, a block has `MAX_BLOCK` crossings. The
+/// longest sum, 300,000 crossings, has 74 such blocks.
 const MAX_BLOCKS: f64 = 128.0;
 
-/// Minimum number of crossings in a block of a sum. With this many, choosing the block's number of
-/// terms is a small part of the work. Not critical: with 4 or 64, the measured running time changes
-/// by at most about 10 %.
+/// Minimum number of crossings in a block of the sum over an edge's crossings. With this many,
+/// choosing the block's number of terms is a small part of the work. Not critical: with 4 or 64,
+/// the measured running time changes by at most about 10 %.
 const MIN_BLOCK: f64 = 16.0;
-/// Maximum number of crossings in a block of a sum, which limits the rounding error of the block.
-/// Not critical: with 1024 or 16,384, the measured running time changes by at most about 10 %.
+/// Maximum number of crossings in a block of the sum over an edge's crossings, which limits the
+/// rounding error of the block. Not critical: with 1024 or 16,384, the measured running time
+/// changes by at most about 10 %.
 const MAX_BLOCK: f64 = 4096.0;
 
-/// Number of running sums, over which consecutive crossings are distributed. It is even, so that
-/// all terms of a running sum have the same sign of the alternating sum.
+/// Number of running sums, over which consecutive crossings are distributed in turn. It is even, so
+/// that all terms of a running sum have the same sign (−1)^j.
 const LANES: usize = 8;
-/// Number of crossings after which the coordinate t along the edge is computed anew in
-/// double-double, so that the errors of its steps do not add up.
+/// Number of crossings of an edge after which its coordinate t ([`EdgeSeries`]) is computed anew in
+/// double-double, so that the errors of its steps from crossing to crossing do not add up.
 const CHUNK: usize = 64;
 
 /// The series X along an edge, where t is the coordinate along the edge, m the depth, and A_k are
@@ -65,9 +66,8 @@ impl EdgeSeries {
         sum * u * u
     }
 
-    /// Returns an upper bound of the absolute value of the `k`-th term of X at the depth `depth`,
-    /// by
-    /// |A_k+1| ≤ ½π^(−k).
+    /// Returns an upper bound of the absolute value of term `k` of X at the depth `depth`. It
+    /// follows from |A_k+1| ≤ ½π^(−k).
     pub(super) fn size(&self, k: usize, depth: f64) -> f64 {
         let u = 1.0 / depth;
         let mut size = 0.5 * self.factors[k].abs() * u * u;
@@ -78,7 +78,7 @@ impl EdgeSeries {
     }
 
     /// Returns the number of terms of X needed in a sum over `lines` crossings, of which the
-    /// nearest has the depth `depth`, and the truncation error, which is at most `limit`.
+    /// nearest has the depth `depth`, and the sum's truncation error. The error is at most `limit`.
     fn terms_for(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
         let (mut terms, mut left) = (self.terms, 0.0);
         while terms > 1 {
@@ -96,8 +96,9 @@ impl EdgeSeries {
 /// The crossings of one edge of a polygon with the board's lines of one family, that is with the
 /// lines between columns or those between rows of squares.
 pub(super) struct LineCrossings {
-    /// Coordinate t at the first line, and the step of t from line to line, in double-double. The
-    /// unit is a square of the board, half a turn of the square wave; whole turns are subtracted.
+    /// Coordinate t along the edge at the first line, and the step of t from line to line, in
+    /// double-double. Their unit is a square of the board, half a period (half a turn) of the
+    /// square wave; whole turns are subtracted.
     pub reduced: [Double; 2],
     /// Depth m at the first line.
     pub depth: f64,
@@ -108,7 +109,8 @@ pub(super) struct LineCrossings {
 }
 
 impl LineCrossings {
-    /// Computes Σ (−1)^j·X over the first `lines` crossings, crossing by crossing, in blocks.
+    /// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over the first
+    /// `lines` crossings, crossing by crossing, in blocks.
     ///
     /// Over each block, the depth m grows by half, unless that takes fewer than [`MIN_BLOCK`] or
     /// more than [`MAX_BLOCK`] crossings. Each block uses as few terms of X as `tolerance`, the
@@ -126,11 +128,12 @@ impl LineCrossings {
             let (terms, left) = series.terms_for(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // t has an error of two roundings, and of three roundings of its distance from the
-            // start of the chunk, which is half a chunk on average. The slope of X is at most π
-            // times the bound of X, so that π turns errors of t into errors of X. A factor of 4
-            // makes this a safe bound. A term has 14 roundings of its own, counted as in `green`.
-            // The running sum of a lane has one rounding for each number added.
+            // The error of t consists of two roundings, and of three roundings of the distance from
+            // the start of the chunk, which is half a chunk on average. The slope of X is at most π
+            // times the bound of X, so that an error of t causes π times as large an error of X.
+            // The factor 4 of `reach` covers these roundings with a margin. A term of X has 14
+            // roundings of its own, derived in `green`. The running sum of a lane has one rounding
+            // for each number added.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
@@ -172,19 +175,19 @@ impl LineCrossings {
         ((sums[0] - sums[1]) + (sums[2] - sums[3])) + ((sums[4] - sums[5]) + (sums[6] - sums[7]))
     }
 
-    /// Returns t at crossing `j`, in half turns, reduced by whole turns.
+    /// Returns the edge's coordinate t at crossing `j`, in half turns, reduced by whole turns.
     pub(super) fn reduced_at(&self, j: &Double) -> Double {
         let [t, stride] = &self.reduced;
         reduce_double(&t.plus(&stride.times(j)))
     }
 
-    /// Returns the step of t from line to line plus 1, reduced by whole turns. In half turns, this
-    /// 1 stands for the alternating sign of the sum.
+    /// Returns the step of t from line to line plus 1, in half turns, reduced by whole turns. The
+    /// added half turn stands for the sign (−1)^j, which alternates from crossing to crossing.
     pub(super) fn alternating_step(&self) -> Double {
         reduce_double(&self.reduced[1].plus(&Double::from_f64(1.0)))
     }
 
-    /// Computes X at crossing `j` + `i`, where `t` is the coordinate at crossing `j`.
+    /// Computes X at crossing `j` + `i`. `t` is the coordinate t at crossing `j`, in half turns.
     #[inline(always)]
     fn at<const TERMS: usize, const ROWS: usize>(
         &self,
@@ -204,8 +207,8 @@ impl LineCrossings {
     }
 }
 
-/// Computes Σ (−1)^j·X over `count` crossings, where j = 0 is the one after the first `done`
-/// crossings of the edge. Uses at least `terms` terms of X.
+/// Computes Σ (−1)^j·X over `count` crossings that follow the first `done` crossings of the edge,
+/// with j = 0 at the first of them. Uses at least `terms` terms of X ([`EdgeSeries`]).
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

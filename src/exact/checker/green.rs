@@ -47,27 +47,27 @@ use crate::math::{Double, Real};
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Maximum truncation error of the series over a polygon, as a fraction of the tolerance; the
-/// number of terms is chosen accordingly.
+/// Maximum error from truncating the series P, Ψ and X (module documentation) over a polygon, as a
+/// fraction of the pixel's tolerance; the number of terms is chosen accordingly.
 const TRUNCATION: f64 = 1e-3;
 
-/// Maximum truncation error of the sum over an edge that ends before the horizon, as a fraction of
-/// the tolerance, if another edge of the polygon ends on the horizon. At most two edges of each
-/// kind contribute noticeably. Their errors add up to twice the tolerance, of which half counts,
-/// because a colour's share is half of the integral of signs.
+/// Maximum truncation error of the sum over the crossings of an edge that ends before the horizon,
+/// as a fraction of the pixel's tolerance, if another edge of the polygon ends on the horizon. At
+/// most two edges of each kind contribute noticeably. Their errors add up to twice the tolerance,
+/// of which half counts, because a colour's share is half of the integral of signs.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
-/// Maximum truncation error of the sum over an edge that ends on the horizon, as a fraction of the
-/// tolerance. Together with [`FINITE_TAIL`], it adds up to 1.
+/// Maximum truncation error of the sum over the crossings of an edge that ends on the horizon, as a
+/// fraction of the pixel's tolerance. Together with [`FINITE_TAIL`], it adds up to 1.
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
-/// Maximum truncation error of the sum over an edge, as a fraction of the tolerance, if no edge of
-/// the polygon reaches the horizon. Only two edges then recede and have long sums; the others
-/// hardly contribute (`tail::level`).
+/// Maximum truncation error of the sum over the crossings of an edge, as a fraction of the pixel's
+/// tolerance, if no edge of the polygon reaches the horizon. Only two edges then recede and have
+/// long sums; the sums over other edges hardly contribute (`tail::level`).
 const ONLY_FINITE_TAIL: f64 = 1.0;
-/// Minimum fraction of the tolerance that a polygon may use up. A larger polygon may use its area
-/// as a fraction of the pixel.
+/// Minimum fraction of the pixel's tolerance that the truncated sums over a polygon may use up. A
+/// polygon of a larger area may use that area, in square pixels, as its fraction.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
-/// Table of (k + 1)!/2, with the index k.
+/// Factors (k + 1)!/2 of the terms of the series X ([`EdgeSeries`]), by the index k.
 pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
     let mut k = 1;
@@ -78,8 +78,9 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     all
 };
 
-/// Integrates the board's sign over a convex polygon in which the depth changes little from square
-/// to square. The polygon must lie in `visible` and may reach the horizon.
+/// Integrates the board's sign (1 on squares of one colour, −1 on the others) over a convex polygon
+/// in which the depth changes little from square to square. The polygon must lie in `visible`, the
+/// part of the picture's polygon that shows the floor, and may reach the horizon.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -89,9 +90,10 @@ pub(super) fn sum(
     let (area, _) = measure(polygon);
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
-    // The polygons of a pixel share the tolerance by their areas, except for those below
-    // `MIN_SHARE`, so that they neglect no more than a single polygon would. Likewise, more than
-    // four edges neglect no more than four would.
+    // The polygons of a pixel divide its tolerance among them in proportion to their areas, but
+    // each gets at least `MIN_SHARE`. The omitted terms of all polygons then add up to about those
+    // of a single polygon. The limits of the tails (`FINITE_TAIL` and the two that follow it)
+    // assume four edges, so that a polygon of more edges gets proportionally less per edge.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
@@ -124,8 +126,8 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // The k-th term has at most 3k + 4 roundings and is less than 2^−k of the first term.
-            // Their sum is Σ (3k + 4)/2^k = 14. The product with K has two more roundings.
+            // Term k of Ψ has at most 3k + 4 roundings and is less than 2^−k of term 0. The
+            // roundings add up to Σ (3k + 4)/2^k = 14 of term 0. The product with K has two more.
             sum.bound += (16.0 * UNIT + 2.0 * board.density_error) * size;
         }
     }
@@ -222,9 +224,10 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
-/// An edge of a polygon, directed from its near end to its far end. Of the two coordinates (a, b)
-/// on the board's plane, t is the one that changes more along the edge, and c is the other. The sum
-/// over the edge's crossings runs over the lines of constant c.
+/// An edge of a polygon, directed from its near end to its far end, with the symbols of the
+/// module's documentation. Of the two coordinates (a, b) on the board's plane, t is the one that
+/// changes more along the edge, and c is the other; m is the depth. The sum over the edge's
+/// crossings runs over the lines of constant c.
 struct Edge {
     /// Sign of the integral ρ·∫ s(c) dX in the polygon's sum: +1 if the boundary runs from the near
     /// to the far end and t is b, or if neither holds; otherwise −1.
@@ -288,7 +291,7 @@ impl Edge {
         } else {
             far.depth - near.depth
         };
-        // If no line is crossed, there is no next line, and the step is 0.
+        // If no line is crossed, `stride` is not used, and stays 0.
         let mut stride = lines;
         if !lines.is_zero() {
             stride = along.over(&across);
@@ -346,16 +349,16 @@ impl Edge {
                 rise: self.rise,
                 count: self.count,
             };
-            // At the first crossed line, s(c) changes by −2·s(c). The changes at the following
-            // lines alternate in sign.
+            // At the first crossed line, the square wave s(c) changes by −2·s(c) of the near end.
+            // The changes at the following lines alternate in sign.
             let tolerance = 0.5 * tolerance / self.rho.abs();
             let jumps = tail::sum(&crossings, &series, tolerance, budget);
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // X at each end has 14 roundings of the size of its first term: the k-th term has 3k + 4
-        // roundings and is less than 2^−k of the first. Every term is proportional to the rounded
-        // K.
+        // X at each end has 14 roundings of its first term: term k has 3k + 4 roundings and is less
+        // than 2^−k of the first. The constant covers both ends. Every term is also proportional to
+        // K, which has an error of its own.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

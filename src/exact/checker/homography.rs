@@ -14,18 +14,20 @@ use crate::math::{Double, Real, two_product};
 /// Unit roundoff of `f64`, 2^−53.
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
-/// Minimum absolute value of the determinant of the forms' matrix, where each form is scaled so
-/// that its largest factor is 1 to 2. Below it, the matrix counts as singular and gets this
-/// determinant, so that the inverse and its products are finite; the error bound then covers the
-/// whole polygon.
+/// Minimum absolute value of the determinant of the matrix of the board's three linear forms
+/// ([`Homography`]), each scaled so that its largest factor is 1 to 2. Below it, the matrix counts
+/// as singular and gets this determinant, so that the inverse and its products are finite; the
+/// error bound then covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Maximum displacement by rounding, in pixels, at which [`Homography::corner`] moves a corner to
-/// the horizon if only rounding keeps it off. Above it, no corner is moved. The error bound counts
-/// the move, which is a hundredth of the default tolerance.
+/// Maximum displacement of the horizon by rounding errors, in pixels, up to which
+/// [`Homography::corner`] moves a corner to the horizon if only rounding keeps the corner off. If
+/// the displacement is larger, no corner is moved. The error bound counts the move, which is a
+/// hundredth of the default tolerance.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
-/// An integral of the board's sign and a bound on its absolute error, both in square pixels.
+/// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound
+/// on its absolute error, both in square pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::exact) struct BoundedSum {
     pub value: f64,
@@ -62,13 +64,13 @@ pub(in crate::exact) struct Homography {
     pub density_error: f64,
     /// Sign of det M, which depends on whether the floor is seen mirrored.
     pub orientation: f64,
-    /// Maximum displacement by rounding, |dx| + |dy| in pixels, of a corner of a polygon or of a
-    /// line of the board.
+    /// Maximum displacement of a corner of a polygon, or of a line of the board, by rounding
+    /// errors: |dx| + |dy|, in pixels.
     displacement: f64,
     /// Unit vector along the horizon.
     horizon: DVec2,
-    /// Maximum displacement by rounding perpendicular to the horizon, in pixels: its value on the
-    /// horizon, and its increase per unit of L.
+    /// Maximum displacement of a point perpendicular to the horizon by rounding errors, in pixels:
+    /// its value for a point on the horizon, and its increase per unit of L.
     across_horizon: [f64; 2],
     /// Maximum L of a point that counts as on the horizon, because only rounding keeps it off.
     horizon_tolerance: f64,
@@ -85,8 +87,8 @@ pub(super) struct Corner {
     pub depth: f64,
 }
 
-/// The part of a convex polygon where L ≥ 0, which shows the floor, with its segment on the
-/// horizon.
+/// The part of a convex polygon of the picture that shows the floor (L ≥ 0), with the polygon's
+/// segment on the horizon.
 #[derive(Debug)]
 pub(super) struct VisiblePart {
     pub polygon: Vec<DVec2>,
@@ -126,13 +128,13 @@ impl BoundedSum {
     }
 }
 
-/// Evaluates the linear form `c` at the point `p`.
+/// Returns c0·x + c1·y + c2, the value of the linear form `c` at the point `p`.
 pub(in crate::exact) fn form(c: &[f64; 3], p: DVec2) -> f64 {
     c[0] * p.x + c[1] * p.y + c[2]
 }
 
 /// Returns an upper bound of |c0·x| + |c1·y| + |c2| for the points (x, y) of a pixel, where |x| and
-/// |y| are at most ½. The parameter has the factors c0, c1 and c2 of a linear form.
+/// |y| are at most ½. The parameter `[x, y, z]` has the factors c0, c1 and c2 of a linear form.
 pub(in crate::exact) fn size([x, y, z]: &[f64; 3]) -> f64 {
     0.5 * (x.abs() + y.abs()) + z.abs()
 }
@@ -155,7 +157,8 @@ impl Homography {
         // Squares may be of any size. N_a and N_b are therefore scaled like L, each by its own
         // power of two, before the matrix is inverted.
         let [(a, of_a), (b, of_b)] = across.map(normalized);
-        // The columns of det M·M⁻¹. Each component is accurate to two roundings of its own value.
+        // Each of `columns` is a column of det M·M⁻¹ (`Homography`). Each component is accurate to
+        // two roundings of its own value.
         let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
         let det = determinant(&a, &b, &below);
         let is_singular = det.abs() <= MIN_DETERMINANT;
@@ -176,12 +179,12 @@ impl Homography {
                 8.0 * unit * products / det.abs() + 4.0 * UNIT
             }
         };
-        // A form's value has three roundings of its largest terms, and the quotient N/L has one
-        // more.
+        // The value of N_a, N_b or L has three roundings of its largest terms, and the quotient N/L
+        // has one more.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
-        // Errors e of the forms displace a point by v = M⁻¹·e, so that L(v) = e_L. The initial
-        // value is the rounding of the point's own coordinates.
+        // Errors e of the forms displace a point by v = M⁻¹·e, so that L(v) = e_L. The displacement
+        // starts from the rounding errors of the point's own coordinates.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -258,8 +261,8 @@ impl Homography {
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
-        // The factors of a form have three roundings, its value has four, and the quotient one. The
-        // sum of 8 is doubled because the error of L may be half of L.
+        // The factors of each form have three roundings, its value has four, and the quotient N/L
+        // has one. This sum of 8 is doubled because the error of L may be as large as half of L.
         (place, 16.0 * UNIT / level * terms)
     }
 
@@ -304,8 +307,8 @@ fn determinant(a: &[f64; 3], b: &[f64; 3], l: &[f64; 3]) -> f64 {
         .to_f64()
 }
 
-/// Returns the exact products of the cross product `a` × `b`. Each component is the first product
-/// of a pair minus the second.
+/// Returns for each component of the cross product `a` × `b` the two exact products whose
+/// difference it is: the first minus the second.
 fn minors(a: &[f64; 3], b: &[f64; 3]) -> [[Double; 2]; 3] {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| [two_product(a[i], b[j]), two_product(a[j], b[i])])
 }

@@ -37,18 +37,19 @@ pub(super) use self::{
     special::square_wave,
 };
 
-/// Distance, in squares, beyond which the board is integrated along its boundary by Green's
-/// theorem; nearer squares are cut out one by one. Beyond this distance, the n-th term of the
-/// series is at most n/(18π) of the previous term. The 20 terms therefore reach 20!/(18π)²⁰, about
-/// 2e-17.
+/// Distance of the near squares from the line on the floor where the depth m is 0, in squares:
+/// nearer squares are cut out one by one, and the board beyond is integrated along its boundary by
+/// Green's theorem. Beyond this distance, term n of the series X is at most n/(18π) of the previous
+/// term. The 20 terms therefore reach 20!/(18π)²⁰, about 2e-17.
 const NEAR_SQUARES: f64 = 18.0;
-/// Maximum number of squares in a polygon whose squares are all cut out one by one, however far
-/// away they are. Not critical: with 6 or 96, the measured running time changes by at most about 10
-/// %.
+/// Number of squares in a polygon up to which all of them are cut out one by one, however far away
+/// they are; with more, only near squares are. Not critical: with 6 or 96, the measured running
+/// time changes by at most about 10 %.
 const MAX_CUT_SQUARES: f64 = 24.0;
-/// Maximum depth m = 1/L at which squares are cut out. The distance to the horizon in the picture
-/// is then only a thousand rounding errors, because the largest factor of L is about 1. If squares
-/// are so large that even farther ones count as near, the colours beyond are treated as unknown.
+/// Maximum depth m = 1/L ([`Homography`]) at which squares are cut out one by one. The distance to
+/// the horizon in the picture is then only a thousand rounding errors, because the largest factor
+/// of L is about 1. If squares are so large that even farther ones count as near, the colours
+/// beyond are treated as unknown.
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {
@@ -62,8 +63,8 @@ impl Homography {
         if self.squares(&visible.polygon) <= MAX_CUT_SQUARES {
             return near::sum(self, &visible.polygon, budget).within(polygon);
         }
-        // Squares up to this depth count as near. Beyond it, m changes little from square to
-        // square.
+        // Squares up to the depth m = `depth` count as near. Beyond it, m changes little from
+        // square to square.
         let [p, q] = self.slope;
         let depth = NEAR_SQUARES * (p.abs() + q.abs());
         let nearness = |at: DVec2| depth.min(MAX_DEPTH) * form(&self.below, at) - 1.0;
@@ -81,8 +82,8 @@ impl Homography {
             });
         }
         if polygon.iter().any(|&at| self.is_set_on_horizon(at)) {
-            // `corner` moves these corners to the horizon. The move displaces squares at most as
-            // far as rounding does, so that the same bound is added a second time.
+            // `Self::corner` moves these corners to the horizon. The move displaces squares at most
+            // as far as rounding does, so that the same bound is added a second time.
             sum.bound += self.displacement_error(&visible.polygon);
         }
         sum.within(polygon)
@@ -103,7 +104,7 @@ impl Homography {
             (DVec2::INFINITY, DVec2::NEG_INFINITY),
             |(low, high), place| (low.min(*place), high.max(*place)),
         );
-        // The result is infinite or NaN if the polygon reaches the horizon.
+        // The numbers of columns and rows; infinite or NaN if the polygon reaches the horizon.
         let spans = (high.floor() - low.floor() + 1.0).element_sum();
         spans + measure(&floor).0.abs()
     }

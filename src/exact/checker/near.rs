@@ -18,14 +18,14 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// Maximum number of corners that cutting may add to the rest of a polygon, the part that is not
-/// yet cut off. Above it, the area of the rest is added to the error bound, and cutting ends. Exact
-/// cuts add at most two corners, both on the last line. Many more show that the lines are closer to
-/// each other than rounding errors.
+/// Maximum number of corners that cutting may add to the rest of a polygon, the part from which no
+/// squares are cut yet. Above it, the area of the rest is added to the error bound, and cutting
+/// ends. Exact cuts add at most two corners, both on the last line. Many more show that the lines
+/// are closer to each other than rounding errors.
 const MAX_EXTRA_CORNERS: usize = 32;
 
-/// Maximum coordinate, in squares, of a polygon that is cut; beyond it, the integral is unknown. Up
-/// to it, the numbers of a square and of its neighbours are exact in `f64`.
+/// Maximum board coordinate, in squares, in a polygon that is cut; beyond it, the integral is
+/// unknown. Up to it, the numbers of a square and of its neighbours are exact in `f64`.
 const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
@@ -57,8 +57,9 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
                 return BoundedSum::unknown(polygon);
             }
             let (area, perimeter) = measure(&squares.piece);
-            // Each corner has three roundings of products of two distances, and one of the sum. A
-            // distance is at most half the perimeter.
+            // The area is half a sum with a term for each corner. Each term has three roundings of
+            // products of two distances, and one of the sum. A distance is at most half the
+            // perimeter.
             let rounding = squares.piece.len() as f64 * UNIT * perimeter * perimeter;
             tally.add(
                 square_wave(row) * square_wave(square) * area.abs(),
@@ -69,8 +70,8 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
     tally.sum()
 }
 
-/// Cuts a convex polygon into the strips between neighbouring lines of one family, one strip after
-/// another. `rest` is the part that is not yet cut off.
+/// Cuts a convex polygon into the strips between neighbouring lines of one of the board's two
+/// families, one strip after another. `rest` is the part that is not yet cut off.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],
@@ -80,7 +81,7 @@ struct Cutter {
     /// Numbers of the next strip and of the last one; `None` if the polygon is empty or a
     /// coordinate is not below [`MAX_SQUARE`].
     strips: Option<(i64, i64)>,
-    /// Maximum number of corners of the rest; above it, the rest is not cut any further.
+    /// Maximum number of corners of `rest`; above it, `rest` is not cut any further.
     too_many: usize,
 }
 
@@ -159,8 +160,8 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The form's factors have three roundings of these sizes, and its value has four. The point
-        // itself has four roundings, which are added below.
+        // The factors of the line's form have three roundings of these sizes, and its value has
+        // four. The chord's end points have four more roundings, which are added below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);
@@ -187,8 +188,8 @@ impl CompensatedSum {
     fn sum(&self) -> BoundedSum {
         BoundedSum {
             value: self.value + self.rest,
-            // The absolute value of the final sum is at most 1, and the collected rounding errors
-            // are far smaller.
+            // The final sum is rounded by at most one unit roundoff, because its absolute value is
+            // at most 1. The rounding errors of adding up `rest` are far smaller.
             bound: self.bound + 2.0 * UNIT,
         }
     }

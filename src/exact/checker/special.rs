@@ -16,8 +16,8 @@ use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
-/// Size, relative to the sum, below which the terms of a series are dropped. It is about a tenth of
-/// the unit roundoff.
+/// Size of a term, divided by the size of the sum, below which a series of an exponential integral
+/// is truncated. It is about a tenth of the unit roundoff.
 const VANISHING: f64 = 1e-17;
 
 /// A complex number: real and imaginary part.
@@ -60,16 +60,18 @@ fn size(z: Complex) -> f64 {
     z[0].abs() + z[1].abs()
 }
 
-/// Number of orders k of the periodic Euler polynomials A_k ([`waves`]): 0 to 21.
+/// Number of orders k, 0 to 21, for which the coefficients of the periodic Euler polynomials A_k
+/// ([`waves`]) are stored.
 const ORDERS: usize = 22;
 
-/// Maximum number of coefficients of a periodic Euler polynomial A_k on one square. The polynomial
-/// has either only even or only odd powers.
+/// Maximum number of coefficients of a periodic Euler polynomial A_k ([`waves`]) on one square of
+/// the board. The polynomial has either only even or only odd powers.
 const POWERS: usize = ORDERS / 2;
 
-/// Coefficients of the Taylor series of 1/cosh(x/2) in even powers of x. They follow from the
-/// coefficients 1/(4^i·(2i)!) of cosh(x/2), because the product of the two series is 1. Rounding
-/// errors do not grow, because all terms of a coefficient are about as large as the coefficient.
+/// Coefficients of the Taylor series of 1/cosh(x/2), which generates the periodic Euler polynomials
+/// ([`waves`]), in even powers of x. They follow from the coefficients 1/(4^i·(2i)!) of cosh(x/2),
+/// because the product of the two series is 1. Rounding errors do not grow, because all terms of a
+/// coefficient are about as large as the coefficient.
 const SECH: [f64; POWERS] = {
     let mut all = [0.0; POWERS];
     all[0] = 1.0;
@@ -86,9 +88,9 @@ const SECH: [f64; POWERS] = {
     all
 };
 
-/// Coefficients of the periodic Euler polynomials A_k on a square, in powers of η, the signed
-/// distance from the square's middle (−½ to ½). In row k, column j has the coefficient of η^2j if k
-/// is even, and of η^(2j+1) if k is odd.
+/// Coefficients of the periodic Euler polynomials A_k ([`waves`]) on a square of the board, in
+/// powers of η, the signed distance from the square's middle (−½ to ½). In row k, column j has the
+/// coefficient of η^2j if k is even, and of η^(2j+1) if k is odd.
 const FACTORS: [[f64; POWERS]; ORDERS] = {
     let mut factorials = [1.0; ORDERS];
     let mut k = 1;
@@ -118,9 +120,8 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
 }
 
 /// Returns η, the signed distance of `t` from the middle of its square, and the square wave there.
-/// On the border of two squares, either square may be used, because A_k is continuous from k = 1
-/// on.
-/// |`t`| must be below 2^51, the limit of [`ROUND`].
+/// On the border of two squares, either square may be used, because the periodic Euler polynomials
+/// A_k are continuous from k = 1 on. |`t`| must be below 2^51, the limit of [`ROUND`].
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;
@@ -183,14 +184,16 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
     all
 }
 
-/// Order s of the first exponential integral F_s ([`integrals`]) that is computed, F_3.
+/// Order s of the exponential integral F_s ([`integrals`]) that is computed first; F_4 and F_5
+/// follow from it.
 const ORDER: u32 = 3;
 
 /// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the
-/// power series.
+/// power series. Up to it, no term of that series exceeds 3, so that few digits cancel.
 const SMALL: f64 = 3.0;
 /// Value of |y| from which on the exponential integral F_3(y) ([`integrals`]) is computed by the
-/// asymptotic series.
+/// asymptotic series. From it on, the terms of that series become negligible before they grow
+/// again.
 const LARGE: f64 = 64.0;
 
 /// Distance in y between the expansion points of the Taylor series of the exponential integral F_3
@@ -210,7 +213,8 @@ pub(super) fn integrals(y: f64) -> [Complex; 3] {
     [third, fourth, next(y, fourth, 4.0)]
 }
 
-/// Returns the exponential integral F_3(y) ([`integrals`]), by the series for the range of |y|.
+/// Returns the exponential integral F_3(y) ([`integrals`]), by the series that converges for this
+/// |y|.
 fn third(y: f64) -> Complex {
     let size = y.abs();
     let integral = if size >= LARGE {
@@ -256,15 +260,16 @@ fn asymptotic(y: f64) -> Complex {
     sum
 }
 
-/// Evaluates F_3(y) for y from 3 to 64 by the Taylor series about the nearest expansion point.
+/// Evaluates F_3(y) ([`integrals`]) for y from 3 to 64 by the Taylor series about the nearest
+/// expansion point.
 fn expanded(expansions: &[Expansion], y: f64) -> Complex {
     let middle = f64::from((y / STEP + 0.5) as u32);
     let step = y - middle * STEP;
     at_step(&expansions[(middle - SMALL / STEP) as usize], step)
 }
 
-/// Evaluates a Taylor series with the coefficients `terms` at the distance `step` from its
-/// expansion point.
+/// Evaluates a Taylor series at the distance `step` from its expansion point. `terms` are the
+/// series' coefficients.
 fn at_step(terms: &Expansion, step: f64) -> Complex {
     terms.iter().rev().fold([0.0; 2], |sum, term| {
         [sum[0] * step + term[0], sum[1] * step + term[1]]
@@ -312,7 +317,8 @@ fn expansions() -> Vec<Expansion> {
     all
 }
 
-/// Computes F_3(y) for |y| < `SMALL`, from F_1 by two steps of the recurrence.
+/// Computes the exponential integral F_3(y) ([`integrals`]) for |y| < `SMALL`, from F_1 by two
+/// steps of the recurrence F_s+1 = (1 − z·F_s)/s, where z = −iy.
 fn power_series(y: f64) -> Complex {
     let first = first(y);
     // F_2 = 1 − z·F_1, with −z = iy.
@@ -320,7 +326,8 @@ fn power_series(y: f64) -> Complex {
     [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
 }
 
-/// Computes F_1(y) for |y| < `SMALL` (DLMF 6.6.2) from
+/// Computes the exponential integral F_1(y) = e^z·E_1(z) with z = −iy, for |y| < `SMALL` (DLMF
+/// 6.6.2) from
 ///
 /// E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!)
 ///
@@ -385,8 +392,8 @@ mod tests {
 
     #[test]
     fn they_are_the_integrals() {
-        // The integral is summed by the midpoint rule in x, where v = x/(1 − x), so that the
-        // integrand is (1 − x)·e^(iyv).
+        // Number of steps of the midpoint rule that sums the integral for comparison. The rule runs
+        // over x, where v = x/(1 − x), so that the integrand is (1 − x)·e^(iyv).
         const STEPS: u32 = 400_000;
         for y in [0.0, 0.01, 0.7, 3.5, 12.0] {
             let mut sum = [0.0; 2];
@@ -395,8 +402,8 @@ mod tests {
                 let wave = cis(y * x / (1.0 - x));
                 sum = [sum[0] + (1.0 - x) * wave[0], sum[1] + (1.0 - x) * wave[1]];
             }
-            // Near x = 1, the integrand oscillates too fast for the rule. The error is of order (1
-            // − x)².
+            // Near x = 1, the integrand oscillates too fast for the midpoint rule. The part of the
+            // integral from x on, which is then wrong, is of order (1 − x)².
             close(third(y), sum.map(|x| x / f64::from(STEPS)), 1e-4);
         }
     }

@@ -47,8 +47,8 @@ pub(super) const PIXELS: usize = 8;
 /// One number per pixel.
 type Lanes = [f64; PIXELS];
 
-/// Maximum number of sides of strips: four parts of the pixel's sides for each strip, and one chord
-/// for each line between strips.
+/// Maximum number of sides of a pixel's strips: four parts of the pixel's sides for each strip, and
+/// one chord for each line between strips.
 const SIDES: usize = 4 * (MAX_STRIP_LINES + 1) + MAX_STRIP_LINES;
 
 /// The linear forms of eight pixels' boards. Of the board's two families of lines, the one with
@@ -58,11 +58,12 @@ pub(super) struct BoardLanes {
     few: FormRows,
     many: FormRows,
     below: FormRows,
-    /// Sign for each pixel: 1 if the pixel's first square has the first colour, −1 if it has the
-    /// second. The first square has the smallest number in each family of lines.
+    /// Sign for each pixel: 1 if the pixel's first square has the board's first colour, −1 if it
+    /// has the second. The first square is the one with the smallest number in each family of
+    /// lines.
     sign: Lanes,
-    /// Number of the square at each corner of the pixel, counted in the family with fewer lines
-    /// from the pixel's smallest number.
+    /// Number of the square at each corner of the pixel, for each pixel. It is counted in the
+    /// family with fewer lines, from the smallest number in the pixel.
     squares: [Lanes; 4],
 }
 
@@ -114,16 +115,16 @@ impl LaneSums {
         let (value, bound) = (self.values[pixel], self.bounds[pixel]);
         BoundedSum {
             value,
-            // If squares are extremely large, products overflow to NaN.
+            // If squares are extremely large, products overflow, and the sum is NaN.
             bound: if value.is_nan() { f64::INFINITY } else { bound },
         }
     }
 }
 
 impl BoardLanes {
-    /// Sets the board of the pixel with the index `place`. `families` has the indices of the two
-    /// families, the one with fewer lines first. `first` has the smallest number of a square in the
-    /// pixel for each family, in the order of the board's forms.
+    /// Sets the board of that one of the eight pixels which has the index `place`. `families` has
+    /// the indices of the two families, the one with fewer lines first. `first` has the smallest
+    /// number of a square in the pixel for each family, in the order of the board's forms.
     pub fn set(
         &mut self,
         place: usize,
@@ -247,8 +248,9 @@ impl BoardLanes {
                     let place = start / (start - end);
                     let place = if place > 0.0 { place } else { 0.0 };
                     let place = if place < 1.0 { place } else { 1.0 };
-                    // In the last strip, both ends count as before the line, so that all parts
-                    // reach to the ends of their sides.
+                    // After the last strip, there is no line. Both ends of each side of the pixel
+                    // then count as before the line, so that all parts reach to the ends of their
+                    // sides.
                     let (starts_below, ends_below) =
                         (is_last | (here[i] < n), is_last | (next[i] < n));
                     let is_up = next[i] >= here[i];
@@ -258,8 +260,8 @@ impl BoardLanes {
                     } else {
                         whole
                     };
-                    // If the form has the same value at both ends, the crossing is undetermined,
-                    // and the cut fails.
+                    // If the form has the same value at both ends of the pixel's side, the crossing
+                    // is undetermined, and the cut fails.
                     let known = if start == end { f64::INFINITY } else { 1.0 };
                     crossed[0][i] = if starts_below & !ends_below {
                         known

@@ -98,8 +98,9 @@ fn area(polygon: &[DVec2]) -> f64 {
         .sum::<f64>()
 }
 
-/// Returns the integral of the board's sign over a polygon, square by square. Projects the corners
-/// of each square to the picture and clips the square to the polygon.
+/// Returns the integral over a polygon of the sign of the board with the linear forms `forms`,
+/// square by square. Projects the corners of each square to the picture and clips the square to the
+/// polygon.
 fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
     let m = DMat3::from_cols_array_2d(&forms).transpose();
     let inverse = m.inverse();
@@ -168,8 +169,9 @@ fn agree(found: BoundedSum, expected: f64, most: f64, what: impl std::fmt::Debug
     agree_in_size(found, expected, 1.0, most, what);
 }
 
-/// Asserts that the error of `found` is within its bound and at most `most`. The expected value has
-/// rounding errors of products of coordinates that are at most half of `size`.
+/// Asserts that the error of `found` is within its bound and at most `most`. `size` is twice the
+/// largest coordinate in the computation of the expected value, which determines the rounding
+/// errors of that value.
 fn agree_in_size(
     found: BoundedSum,
     expected: f64,
@@ -193,7 +195,8 @@ fn pixels_of_many_squares() {
             agree(
                 view.board().alone(&PIXEL),
                 brute(view.forms(), &PIXEL),
-                // The integral is twice the mean, and so is its tolerance.
+                // A colour's share is half of the integral of signs plus a half, so that the
+                // integral's tolerance is twice that of a mean.
                 2.0 * DEFAULT_TOLERANCE,
                 view,
             );
@@ -201,7 +204,7 @@ fn pixels_of_many_squares() {
     }
 }
 
-/// In a very wide view, a pixel sees near squares far to the side. They are in rows of hundreds of
+/// In a very wide view, a pixel sees near squares far to the side. They form rows of hundreds of
 /// squares, which the pixel's sides cut at all slopes.
 #[test]
 fn wide_views() {
@@ -215,7 +218,7 @@ fn wide_views() {
                 foot: DVec2::new(0.3, 0.45),
             };
             let found = view.board().alone(&PIXEL);
-            // The terms of the forms are larger than the pixel's side by this factor.
+            // The terms of the board's forms are larger than the pixel's side by this factor.
             let size = view.place.length();
             agree_in_size(found, brute(view.forms(), &PIXEL), size, 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
@@ -275,10 +278,11 @@ fn the_horizon() {
             view.place = DVec2::new(0.5, y);
             let board = view.board();
             let found = board.alone(&PIXEL);
-            // The integral is twice the mean, and so is its bound.
+            // A colour's share is half of the integral of signs plus a half, so that the integral's
+            // bound may be twice that of a mean.
             assert!(found.bound < 1.8e-9, "{view:?}: {found:?}");
-            // Vertical slices of the pixel have other crossings with lines, counted from other
-            // points.
+            // The pixel's vertical slices have edges that cross other lines, and their crossings
+            // are counted from other points.
             let mut slices = BoundedSum::default();
             for i in 0..5 {
                 let [low, high] = [i, i + 1].map(|i| f64::from(i) / 5.0 - 0.5);
@@ -296,8 +300,8 @@ fn the_horizon() {
     }
 }
 
-/// Compares two ways to integrate over the part of a horizon pixel below a line: directly, and as
-/// the difference between the pixel and the part above the line.
+/// Compares two integrals over the part of a pixel on the horizon that is below a line: the direct
+/// one, and the integral over the pixel minus that over the part above the line.
 #[test]
 fn the_end_is_the_limit() {
     for degrees in [0.0, 45.0, 30.0, 71.565_051_177, 44.999] {
@@ -380,7 +384,8 @@ fn the_widest_views() {
                 let found = view.board().alone(&polygon);
                 let (expected, left) = brute_limit(&view, &polygon, most);
                 let error = (found.value - expected).abs();
-                // The limit is not exact, because the focal length displaces lines.
+                // `brute_limit` is not exact here, because the focal length is finite, which
+                // displaces lines.
                 assert!(
                     error <= found.bound + left + 1e-11 + 1e3 * focal,
                     "{degrees} {focal:e} {y}: {found:?}, not {expected} to {left:e}: {error:e}"
@@ -451,7 +456,7 @@ fn from_straight_above() {
     );
 }
 
-/// An integral is returned as unknown if it exceeds the budget or is cancelled.
+/// An integral is returned as unknown if its work exceeds the budget or the picture is cancelled.
 #[test]
 fn nothing_is_computed_beyond_the_budget() {
     let below = [0.0, 0.0, 1.0];
@@ -461,7 +466,7 @@ fn nothing_is_computed_beyond_the_budget() {
     let nothing = board.over(&PIXEL, &PixelBudget::new(DEFAULT_TOLERANCE, &cancelled));
     assert!(all.value != 0.0 && nothing.value == 0.0);
     assert!(nothing.bound > all.value.abs(), "{nothing:?} of {all:?}");
-    // A row of a billion squares, next to the line on the floor above which the eye is.
+    // The pixel shows a row of a billion near squares, more than the budget affords.
     let board = Homography::new([[1e9, 1.0, 0.3], [0.0, 1e-9, 0.2]], [0.0, 2.1, 1.1]);
     assert_eq!(board.alone(&PIXEL).value, 0.0);
 }
@@ -469,7 +474,7 @@ fn nothing_is_computed_beyond_the_budget() {
 /// The integral is known if a single square reaches up to the horizon, whatever the square's size.
 #[test]
 fn a_square_that_goes_to_the_horizon_is_known() {
-    // Beyond this exponent, the forms cannot be distinguished from singular ones.
+    // With an exponent of 90 or more, the forms cannot be distinguished from singular ones.
     for exponent in 0..90 {
         let view = PixelView {
             height: libm::pow(10.0, -f64::from(exponent)),

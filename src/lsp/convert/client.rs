@@ -15,11 +15,11 @@ pub const FIX_ALL: &str = "source.fixAll";
 pub struct Client {
     /// Unit in which columns are counted.
     pub encoding: Encoding,
-    /// Whether completions may be snippets.
+    /// Whether the client accepts completions whose text is a snippet, i.e. has placeholders.
     pub snippets: bool,
-    /// Whether edits may name the version of the document that they apply to.
+    /// Whether the client accepts edits that name the version of the document that they apply to.
     pub versioned_edits: bool,
-    /// Whether edits may be snippets.
+    /// Whether the client accepts edits whose text is a snippet, i.e. has placeholders.
     pub snippet_edits: bool,
 }
 
@@ -43,8 +43,8 @@ impl Client {
     }
 }
 
-/// Returns the first supported encoding in `offered`, the client's list in its order of preference.
-/// Returns UTF-16 if none is supported.
+/// Returns the first unit for columns in `offered` that the server supports. `offered` is the
+/// client's list in its order of preference. Returns UTF-16 if the server supports none of it.
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),

@@ -54,7 +54,8 @@ impl Converter<'_> {
     }
 }
 
-/// Returns the inserted text without placeholders: their example values are plain text.
+/// Returns the text that a completion inserts, for a client without snippets: its example values
+/// are plain text.
 fn plain(pieces: &[SnippetPart]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
         SnippetPart::Text(text) | SnippetPart::Placeholder(text) => text.as_str(),
@@ -62,8 +63,8 @@ fn plain(pieces: &[SnippetPart]) -> String {
     texts.collect()
 }
 
-/// Returns the inserted text as a snippet with numbered placeholders. Typing replaces a
-/// placeholder's example value.
+/// Returns the text that a completion inserts as a snippet: each example value is a numbered
+/// placeholder, which typing replaces.
 fn snippet(pieces: &[SnippetPart]) -> String {
     let mut text = String::new();
     let mut holes = 0;

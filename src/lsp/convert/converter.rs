@@ -141,7 +141,7 @@ impl Converter<'_> {
         if !self.client.versioned_edits {
             return json!({ "changes": { self.uri.0.as_str(): edits } });
         }
-        // An editor whose text has a newer version rejects the edits.
+        // The version is included so that an editor whose text is newer rejects the edits.
         let document = json!({ "uri": self.uri, "version": self.document.version });
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }

@@ -21,17 +21,19 @@ use crate::{
     scene::{Lens, Scene, Shape, TriangleOutline, View},
 };
 
-/// Number of bits for scenes whose numbers may be of any size within the range of `f64`.
+/// Number of bits of the oracle's arithmetic for scenes whose numbers may be of any size within the
+/// range of `f64`.
 pub const ALL_SIZES: usize = 1400;
 
-/// Number of bits for extremely wide or narrow views, in which the side of a pixel and the distance
-/// of the view plane differ by factors of about 2^1000.
+/// Number of bits of the oracle's arithmetic for extremely wide or narrow views, in which the side
+/// of a pixel and the distance of the view plane differ by factors of about 2^1000.
 pub const ALL_VIEWS: usize = 3000;
 
-/// Number of bits for scenes whose numbers differ by factors of about 2^100.
+/// Number of bits of the oracle's arithmetic for scenes whose numbers differ by factors of about
+/// 2^100.
 pub const USUAL_SIZES: usize = 512;
 
-/// A scene prepared for exact decisions.
+/// A scene prepared for the oracle's arithmetic of hundreds of bits.
 #[derive(Debug)]
 pub struct Oracle {
     /// Arithmetic of the oracle's precision.
@@ -53,8 +55,9 @@ pub struct Oracle {
 enum PreparedShape {
     /// A sphere: f = eye − centre, f·f, and c = f·f − radius².
     Sphere { f: V, square: N, c: N },
-    /// A triangle: the vertices; the normal n; n·(centroid − eye), which is zero if the eye lies in
-    /// the plane; and a scale for signed areas, below which an area may be negligible.
+    /// A triangle: the vertices; the normal n; `height`, n·(centroid − eye), which is zero if the
+    /// eye lies in the plane; and `scale`, the size of the terms of signed areas, relative to which
+    /// an area may be negligible.
     Triangle {
         vertices: Box<[V; 3]>,
         normal: V,
@@ -173,7 +176,8 @@ impl Oracle {
         axpy(&self.eye, t, r)
     }
 
-    /// Returns whether the coordinate `x` lies in a row of squares with an odd number.
+    /// Returns whether the coordinate `x` lies in a row of squares with an odd number. `square` is
+    /// the side of the squares.
     fn is_odd(&self, x: &N, square: &N) -> bool {
         // A quotient that is only negligibly below an integer counts as this integer: 1/3 + 2/3
         // must not become 0.999….
@@ -216,7 +220,8 @@ impl Oracle {
         }
         let root = discriminant.sqrt();
         let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
-        // If the eye is on the surface, the root that should be zero has a rounding error.
+        // The eye is on the sphere's surface, so that the true t of one root is zero. Its computed
+        // value has a rounding error and is left out.
         if self.sign(c, square) == Ordering::Equal {
             let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
             return roots.into_iter().skip(1).filter(|_| is_ahead).collect();

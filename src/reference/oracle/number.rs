@@ -13,7 +13,7 @@ pub type N = FBig<HalfEven, 2>;
 /// A vector in world coordinates.
 pub type V = [N; 3];
 
-/// Arithmetic with a fixed number of bits.
+/// Arithmetic of the oracle, with a fixed number of bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
     /// Number of bits of every result.
@@ -119,8 +119,8 @@ pub fn length(a: &V) -> N {
     dot(a, a).sqrt()
 }
 
-/// Returns the sum of the absolute values of a vector's components, an upper bound of its length.
-/// It is a scale for what is negligible.
+/// Returns the sum of the absolute values of a vector's components, an upper bound of its length. A
+/// number that is far smaller counts as negligible.
 pub fn size(a: &V) -> N {
     abs(&a[0]) + abs(&a[1]) + abs(&a[2])
 }

@@ -1,5 +1,5 @@
-//! Planes and checkerboards: horizons, integers, extreme heights and distances, and coplanar
-//! surfaces.
+//! Hard cases of planes and checkerboards: horizons, integers, extreme heights and distances, and
+//! coplanar surfaces.
 
 use glam::{DVec3, dvec3};
 
@@ -10,7 +10,7 @@ use crate::reference::{
     scenes::{SIZE, along, board, camera, cuboid, sphere, spun, triangle},
 };
 
-/// The cases of planes and checkerboards.
+/// Hard cases of planes and checkerboards, in the order of the catalogue.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "P1", title: "up to 1e-13 pixels below the horizon", bound: 2.0, subject: Seen(horizon) },

@@ -1,5 +1,5 @@
-//! Cases of the camera: up vectors nearly parallel to the view, directions of all lengths, rolls,
-//! lenses, and wide pictures.
+//! Hard cases of the camera: up vectors nearly parallel to the view, directions of all lengths,
+//! rolls, lenses, and wide pictures.
 
 use glam::{DVec3, dvec3};
 
@@ -20,7 +20,8 @@ use crate::{
     scene::{Camera, Lens},
 };
 
-/// The cases of the camera: first its axes, then what is seen.
+/// Hard cases of the camera, in the order of the catalogue: first those that test its axes, then
+/// those that test what is seen.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "C1", title: "up within 1e-1 … 1e-200 of the view direction", bound: 4.0, subject: Axes(nearly_parallel) },
@@ -121,14 +122,15 @@ fn wide(random: &mut CaseRng) -> CaseScene {
         let size = dvec3(0.7, random.within(0.1, 2.0), 18.0);
         shapes.push(cuboid(corner, corner + size));
     }
-    // The window is 2 m high, and 2^20/64 times as wide as it is high.
+    // The window is 2 m high and shows 64 rows of 2^20 columns, so it is 2^20/64 times as wide.
     camera.lens = Lens::Distance(16384.0);
     let mut input = input(camera, &shapes);
     input.scene.image.width = 1 << 20;
     input
 }
 
-/// View directions with an integer length, through which the depth of a wall can be an integer.
+/// View directions with integer components and an integer length, each with its length. A wall
+/// perpendicular to such a view can have a depth that is an integer.
 const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(0.0, 0.0, -1.0), 1.0),
     (dvec3(3.0, 0.0, -4.0), 5.0),

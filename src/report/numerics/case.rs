@@ -9,10 +9,10 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A case of the catalogue in [`cases`](super::cases).
+/// A hard case of the catalogue in [`cases`](super::cases).
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
-    /// Name of the case.
+    /// Name of the case in tables, such as `C3a`.
     pub id: &'static str,
     /// Description of what is difficult in the case.
     pub title: &'static str,
@@ -39,7 +39,7 @@ impl Case {
         matches!(self.subject, Question::Seen(_))
     }
 
-    /// Returns the unit of the case's errors.
+    /// Returns the unit of the case's errors: `ulp`, the unit in the last place, or `u`, 2^−53.
     pub fn unit(&self) -> &'static str {
         if self.decides() { "ulp" } else { "u" }
     }
@@ -62,7 +62,7 @@ impl Case {
 /// A scene, and the points of its picture that are tested.
 pub(super) struct CaseScene {
     pub scene: Scene,
-    /// Number of bits of the oracle's arithmetic.
+    /// Precision of the oracle's arithmetic for this scene, in bits.
     bits: usize,
     /// Generator of points of the picture. By default, they are uniform over the picture.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,

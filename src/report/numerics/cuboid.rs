@@ -1,4 +1,5 @@
-//! Boxes: rays in the planes of faces, eyes inside and on the surface, thin boxes and neighbours.
+//! Hard cases of boxes: rays in the planes of faces, eyes inside and on the surface, thin boxes and
+//! neighbours.
 
 use glam::{DVec3, dvec3};
 
@@ -9,7 +10,7 @@ use crate::{
     reference::scenes::{along, camera, cuboid, sphere},
 };
 
-/// The cases of boxes.
+/// Hard cases of boxes, in the order of the catalogue.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "B1", title: "rays in the planes of faces, and along edges", bound: 2.0, subject: Seen(in_planes) },

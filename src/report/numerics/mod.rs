@@ -50,8 +50,8 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
     families.into_iter().flatten()
 }
 
-/// Number of inputs of a case that share a scene. They are generated and tested one after the other
-/// by one thread.
+/// Number of inputs of a case that share a scene, which is prepared once for all of them. They are
+/// generated and tested one after the other by one thread.
 const BLOCK: u64 = 100;
 
 /// Tests `inputs_per_case` inputs of every case, and reports progress in inputs. If the run is

@@ -1,4 +1,5 @@
-//! Spheres: tangents, small and distant ones, huge ones, and eyes inside and on the surface.
+//! Hard cases of spheres: tangents, small and distant ones, huge ones, and eyes inside and on the
+//! surface.
 
 use glam::{DVec3, dvec3};
 
@@ -9,7 +10,7 @@ use crate::{
     scene::Lens,
 };
 
-/// The cases of spheres.
+/// Hard cases of spheres, in the order of the catalogue.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "S1a", title: "rays that nearly touch a sphere", bound: 1.0, subject: Seen(silhouettes) },

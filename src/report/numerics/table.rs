@@ -1,4 +1,4 @@
-//! The table of the cases, for people and for programs.
+//! The results of all hard cases as a readable table and as JSON.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::numbers::grouped;
 /// Result of testing a case.
 #[derive(Clone, Copy, Debug)]
 pub struct CaseResult {
-    /// The case.
+    /// The case that was tested.
     pub case: &'static Case,
     /// Counts of inputs and wrong decisions, and the greatest errors.
     pub tally: CaseTally,
@@ -65,7 +65,7 @@ impl NumericsTable {
     }
 }
 
-/// Formats the table for people.
+/// Formats the table as readable text.
 impl fmt::Display for NumericsTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let heads = [

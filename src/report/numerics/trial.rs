@@ -81,13 +81,13 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of inputs per measured input. Only one input of this many is measured (the errors of the
-/// distance and of the point that are seen), since a measurement takes longer than a decision.
+/// Number of decided inputs for each input that is also measured: the errors of the distance and of
+/// the point that are seen. A measurement takes longer than a decision.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Mean number of searches for a boundary per search by the oracle. The other searches use
-/// Pinhole's decisions, since a search by the oracle takes about six times as long as testing
-/// beside the boundary.
+/// Average number of searches for a boundary between colours, of which one uses the oracle's
+/// decisions and the others use Pinhole's. A search with the oracle takes about six times as long
+/// as testing the inputs beside the boundary.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
@@ -232,7 +232,7 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // The colour changes at the pixel's edge.
+            // The pixel begins and ends with one colour, so the colour changes at its far edge.
             low = high;
         }
         // Bisect down to neighbouring `f64`s. Near 0, 130 steps end at a distance that is smaller

@@ -1,5 +1,5 @@
-//! Triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices behind the
-//! eye.
+//! Hard cases of triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices
+//! behind the eye.
 
 use glam::{DVec3, dvec3};
 
@@ -10,7 +10,7 @@ use crate::{
     scene::Lens,
 };
 
-/// The cases of triangles.
+/// Hard cases of triangles, in the order of the catalogue.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "T1", title: "triangles of 1e-3 … 1e-9 m", bound: 2.0, subject: Seen(tiny) },
@@ -23,7 +23,7 @@ pub const CASES: &[Case] = &[
     Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
-/// Lengths of the sides of the triangle in the assignment.
+/// Lengths of the sides of the triangle in figure 9.9, the picture of the assignment.
 const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
 
 fn tiny(random: &mut CaseRng) -> CaseScene {

@@ -44,8 +44,8 @@ struct HorizontalAxis {
     name: &'static str,
     of: fn(&SeriesPoint) -> f64,
     written: fn(f64) -> String,
-    /// CPU time or other quantity of the exact method. It is drawn as a vertical line, because the
-    /// method's error is too small for the chart.
+    /// Value of the exact method on this axis, such as its CPU time. It is drawn as a vertical
+    /// line, because the method's error is too small for the chart.
     exact: Option<f64>,
 }
 
@@ -73,7 +73,8 @@ pub fn against_samples(measured: &Measurement) -> String {
     svg(measured, &samples)
 }
 
-/// Returns the requested errors that differ from a measured error by less than a factor of 30.
+/// Returns the requested errors that the chart marks: those within a factor of 30 of a measured
+/// error. Errors farther away would make the chart's range too large.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
     let found: Vec<_> = points.map(|point| point.typical().error).collect();

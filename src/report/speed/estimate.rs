@@ -7,16 +7,16 @@ use super::{
 };
 use crate::scene::Method;
 
-/// Estimated samples and time that a method needs for an error.
+/// Estimated samples and time that a method needs to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
     /// Samples per pixel; `None` for the exact method.
     pub per_pixel: Option<f64>,
-    /// CPU time in seconds.
+    /// Estimated CPU time, in seconds.
     pub cpu: f64,
     /// Least and greatest CPU time estimated from single runs, in seconds.
     pub cpu_runs: [f64; 2],
-    /// Elapsed time in seconds.
+    /// Estimated elapsed time, in seconds.
     pub wall: f64,
     /// Whether the error lies beyond the measured range, so that the estimate is extrapolated.
     pub is_extrapolated: bool,
@@ -39,9 +39,9 @@ pub struct Ranking {
 }
 
 impl Measurement {
-    /// Estimates the samples and the time that a sampled method needs for an error. Returns `None`
-    /// if more samples do not reduce the error. Returns `None` also if `error` is not above the
-    /// root mean square of the exact picture's error bounds, since smaller errors cannot be
+    /// Estimates the samples and the time that a sampled method needs to reach an error. Returns
+    /// `None` if more samples do not reduce the error. Returns `None` also if `error` is not above
+    /// the root mean square of the exact picture's error bounds, since smaller errors cannot be
     /// measured.
     pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()

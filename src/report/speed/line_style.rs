@@ -16,13 +16,13 @@ use crate::scene::Method;
 /// The canvas of a chart.
 pub type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Result of drawing on the canvas.
+/// Result of drawing on a chart's canvas.
 pub type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
 
 /// A point of the canvas, in pixels.
 pub type CanvasPoint = (i32, i32);
 
-/// The style of a method's line.
+/// Style of a method's line in a chart.
 #[derive(Clone, Copy)]
 pub struct LineStyle {
     pub color: RGBColor,

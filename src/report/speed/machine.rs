@@ -4,7 +4,7 @@ use std::{num::NonZero, thread};
 
 use crate::files::read_system_text;
 
-/// Properties of a machine that affect times.
+/// Properties of a machine that affect how long renders take.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Machine {
     /// Name of the processor's model as the system reports it, or else the processor's

@@ -1,4 +1,5 @@
-//! How many pixels of a picture have more than one colour, and why.
+//! Counts the mixed pixels of a picture, which show more than one colour, and tells those that an
+//! edge crosses from those of a checkerboard alone.
 
 use crate::{
     exact::Integrator,
@@ -6,12 +7,12 @@ use crate::{
     tracer::{GRID, World},
 };
 
-/// Maximum work of a count, in units of about 50 ns, so about two seconds. In the pixels that come
-/// after it, only the centre is looked at.
+/// Maximum work of counting the mixed pixels of a picture, in units of about 50 ns, which is about
+/// two seconds. After it is used up, a pixel counts as showing only what is seen at its centre.
 const MAX_WORK: u64 = 40_000_000;
 
-/// The pixels of a picture that have more than one colour, as shares of all pixels, 0 to 1. Only
-/// there can a method err.
+/// Shares, from 0 to 1, of the mixed pixels among all pixels of a picture. A mixed pixel shows more
+/// than one colour; only there can a sampling method err.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
     /// Share of the pixels that an edge crosses: several objects, or an object and the background,
@@ -22,19 +23,21 @@ pub struct Mixture {
 }
 
 impl Mixture {
-    /// Counts the mixed pixels of a scene's picture.
+    /// Counts the mixed pixels in the picture of a scene.
     pub fn of(scene: &Scene) -> Self {
         let edges = share_of_mixed(&World::by_object(scene));
         let mixed = share_of_mixed(&World::new(scene));
         Self {
             edges,
-            // Two objects of one colour have an edge, but no mixed pixel.
+            // An edge between objects of one colour crosses pixels that are not mixed, so the
+            // difference may be negative.
             board: (mixed - edges).max(0.0),
         }
     }
 }
 
-/// Returns the share of the pixels in which several slots of the world's palette are seen.
+/// Returns the share of the pixels that show several entries of the world's palette, which are
+/// objects or colours.
 fn share_of_mixed(world: &World) -> f64 {
     let whole = world.picture();
     let integrator = Integrator::for_values(world, |_| []).with_work_limit(MAX_WORK);

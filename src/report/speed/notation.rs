@@ -3,7 +3,7 @@
 use super::{estimate::Estimate, results::EndSlope};
 use crate::numbers;
 
-/// Mark in place of an unknown number.
+/// Mark in a table in place of a number that is not known.
 pub const UNKNOWN: &str = "–";
 
 /// Formats a requested error with all its digits, or as a fraction such as 1/256 if that is

@@ -50,7 +50,7 @@ fn write_escaped(out: &mut fmt::Formatter<'_>, value: &Value) -> fmt::Result {
     }
 }
 
-/// Returns the template's values for a scene.
+/// Returns the values that the page's template inserts into the section of a scene.
 fn section(measured: &Measurement) -> io::Result<Value> {
     let summary = table(measured, &measured.errors);
     let overrides = measured.subject.overrides.iter().map(|set| printable(set));
@@ -136,10 +136,11 @@ fn whole(measured: &Measurement) -> io::Result<Value> {
     picture(&film, None, "the exact picture as a whole", about)
 }
 
-/// Number of times that a part of a picture is magnified.
+/// Factor by which the page magnifies the part of a picture that it shows for each method.
 const MAGNIFIED: u32 = 5;
 
-/// Returns the values of a figure: a picture and, below it, its difference from the exact one.
+/// Returns the values that the template inserts into a figure: a picture and, below it, the heat
+/// map of its difference from the exact picture.
 fn picture(film: &Film, difference: Option<&Film>, name: &str, about: String) -> io::Result<Value> {
     let difference = difference.map(film::data_uri).transpose()?;
     Ok(value! {

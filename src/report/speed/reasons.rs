@@ -1,4 +1,5 @@
-//! Why methods differ in a scene, in sentences with the scene's own figures.
+//! Explains why sampling methods differ in a scene, in sentences with the numbers that were
+//! measured there.
 
 use super::{
     notation::{asked_error, factor, percent, samples},
@@ -7,8 +8,8 @@ use super::{
 use crate::scene::Method;
 
 /// Explains why the methods differ in this scene: which pixels they can err in, how the error falls
-/// there, and what the exact method does instead. The sentences about methods need series that were
-/// measured.
+/// there, and what the exact method does instead. Without measured series or mixed pixels, only the
+/// first sentence is returned.
 pub fn reasons(measured: &Measurement) -> Vec<String> {
     let mixture = measured.mixture;
     let (edges, board) = (percent(mixture.edges), percent(mixture.board));
@@ -57,7 +58,7 @@ fn compared(measured: &Measurement, error: f64) -> Option<String> {
     })
 }
 
-/// Says how many samples of the fastest method the exact picture's time would pay for.
+/// Says how many samples per pixel the fastest method takes in the time of the exact picture.
 fn in_exact_time(measured: &Measurement) -> Option<String> {
     let exact = measured.exact_estimate(1.0)?;
     let most = measured.series.iter().filter_map(|series| {

@@ -18,7 +18,7 @@ pub struct MeasuredScene {
     pub overrides: Vec<String>,
 }
 
-/// The user's request.
+/// What the user asks to be measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// Methods to measure, possibly including `exact`.
@@ -33,7 +33,7 @@ pub struct Request {
     pub budget: Duration,
 }
 
-/// Results of a measurement.
+/// Results of measuring a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// The measured scene.
@@ -50,7 +50,7 @@ pub struct Measurement {
     pub errors: Vec<f64>,
     /// The exact picture, with which all renders are compared.
     pub reference: Exact,
-    /// Pixels in which methods can err.
+    /// Shares of the pixels in which a sampling method can err.
     pub mixture: Mixture,
     /// Renders by the exact method, if it was requested.
     pub exact: Option<Vec<Run>>,
@@ -60,7 +60,7 @@ pub struct Measurement {
     pub interrupted: bool,
 }
 
-/// Results of a sampled method.
+/// Results of a sampled method on a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodSeries {
     /// Method that was measured.
@@ -77,15 +77,15 @@ pub struct MethodSeries {
 pub struct SeriesPoint {
     /// Samples per pixel; for `scatter` the mean number.
     pub per_pixel: u64,
-    /// Renders with this number of samples.
+    /// Timed renders with this number of samples per pixel.
     pub runs: Vec<Run>,
 }
 
-/// The slope of a method's error against samples, both logarithmic, at the [`end`] of its series.
-/// The error falls as the power `slope` of the number of samples.
+/// Slope of a method's error against the number of samples, both logarithmic, at the [`end`] of its
+/// series. There, the error is proportional to the power `slope` of the number of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndSlope {
-    /// Slope of the line of least squares.
+    /// Slope of the line of least squares through the logarithms.
     pub slope: f64,
     /// Standard error of the slope, from the slopes of single runs; `None` for fewer than three
     /// runs.
@@ -93,18 +93,18 @@ pub struct EndSlope {
 }
 
 impl EndSlope {
-    /// Minimum steepness for which more samples are said to help, so that measured noise is not
-    /// taken for a slope.
+    /// Minimum value of −`slope` at which the report says that more samples help. A smaller one may
+    /// be noise of the measurement.
     const LEAST: f64 = 0.05;
 
-    /// Returns by how much four times the samples divide the error, 4^−b. Returns `None` if more
-    /// samples do not help.
+    /// Returns the factor by which four times as many samples divide the error, 4^−`slope`. Returns
+    /// `None` if more samples do not help.
     pub fn divisor(&self) -> Option<f64> {
         (self.slope < -Self::LEAST).then(|| libm::pow(4.0, -self.slope))
     }
 
-    /// Returns by how much the samples must be multiplied for a tenth of the error, 10^(−1/b).
-    /// Returns `None` if more samples do not help.
+    /// Returns the factor of samples that divides the error by ten, 10^(−1/`slope`). Returns `None`
+    /// if more samples do not help.
     pub fn cost_of_a_tenth(&self) -> Option<f64> {
         (self.slope < -Self::LEAST).then(|| libm::pow(10.0, -1.0 / self.slope))
     }
@@ -117,7 +117,7 @@ pub fn end<T>(points: &[T]) -> &[T] {
     &points[points.len().saturating_sub(3)..]
 }
 
-/// A timed render.
+/// Times and error of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
     /// CPU time of the whole process in seconds, summed over all threads. NaN if the system does
@@ -133,7 +133,7 @@ pub struct Run {
 /// A method's picture that a page shows next to those of other methods.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodPicture {
-    /// Samples per pixel.
+    /// Samples per pixel of the picture.
     pub per_pixel: u64,
     /// CPU time of the render, in seconds.
     pub cpu: f64,
@@ -141,9 +141,9 @@ pub struct MethodPicture {
     pub rmse: f64,
     /// Part of the picture that the page shows; it is the same for every method.
     pub part: Area,
-    /// Pixels of `part`.
+    /// Pixels of the part of the picture that the page shows.
     pub film: Film,
-    /// Difference of that part from the exact picture, as a heat map.
+    /// Heat map of the difference between this part and the exact picture.
     pub difference: Film,
 }
 

@@ -30,17 +30,19 @@ use crate::{
     tracer::World,
 };
 
-/// Minimum and maximum count of the numbers of samples that are measured if the user gives none: 1,
-/// 4, 16, … samples per pixel. The minimum is 4, since a slope through fewer points has no standard
-/// error.
+/// Minimum and maximum length of the series 1, 4, 16, … samples per pixel, which is measured if the
+/// user names no numbers of samples. With at least 4, the slope at the end of the series, which is
+/// that of the last three points, leaves out a single sample per pixel.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// Number of runs for which there should be time, and maximum number of runs. Among fewer than
-/// three runs, the median may be of a run that other load on the machine delayed.
+/// Number of runs of each render, if the user does not name it. The series of samples is continued
+/// only if there is time for the first number of runs; the second is the maximum. With fewer than
+/// three runs, the median may be that of a run that other load on the machine delayed.
 const RUNS: (u64, u64) = (3, 9);
 
-/// Number of samples per pixel whose CPU time, with the slowest method, all methods get for the
-/// pictures on the page. With 16, the methods differ enough, and their noise is still visible.
+/// Number of samples per pixel that sets the CPU time of the pictures on the page. All methods get
+/// the time that the slowest one takes for this number. With 16, the methods differ enough, and
+/// their noise is still visible.
 const SHOWN: u64 = 16;
 
 /// Measures the methods of the request. If it is cancelled, returns the measurement so far, marked
@@ -177,9 +179,10 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Returns whether to go on with four times as many samples, which are expected to take `next`.
-    /// Up to the minimum of [`RUNGS`], always returns `true`. After that, there must be time for
-    /// all rounds, and some method must still have an error above the least requested one.
+    /// Returns whether to go on with four times as many samples, for which a round is expected to
+    /// take `next`. Up to the minimum of [`RUNGS`], always returns `true`. After that, there must
+    /// be time for all rounds, and some method must still have an error above the least requested
+    /// one.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
         let error = |series: &MethodSeries| Some(series.points.last()?.typical().error);
@@ -301,17 +304,18 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// Maximum width and height of the part that is shown, in pixels. The page magnifies it so that
-/// single pixels are seen, and several parts stand side by side.
+/// Maximum width and height of the part of a picture that the page shows for each method, in
+/// pixels. The page magnifies the part, so that single pixels are visible, and shows several parts
+/// side by side.
 const PART: (u32, u32) = (48, 27);
 
-/// Minimum share of a part's pixels that show another object than the rest, so that an edge is
-/// seen in it.
+/// Minimum share of the pixels of a part that do not show its most frequent object. With less, the
+/// part counts as one without an edge.
 const OTHER_OBJECT: f64 = 0.1;
 
-/// Returns the part of a picture that shows most of a method's errors: one without sky and with an
-/// edge of an object if there is one, otherwise one without sky, otherwise any, and of these the
-/// one with the greatest error. Parts are compared in steps of half of their size.
+/// Returns the part of a picture in which the errors of a method are shown. Parts without sky and
+/// with an edge of an object are preferred, then other parts without sky; among equals, the part
+/// with the greatest error is returned. Parts are compared in steps of half their size.
 fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge> {
     let whole = world.picture();
     let (width, height) = (whole.width.min(PART.0), whole.height.min(PART.1));

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 
-/// A table with a row for each method.
+/// Table of a measurement, with a row for each method.
 pub struct SummaryTable {
     /// Column headings. A line feed marks where a heading may break if the column is narrow.
     pub heads: Vec<String>,
@@ -145,8 +145,8 @@ pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     SummaryTable { heads, rows }
 }
 
-/// Returns the cells of a slope: the slope, by how much four times the samples divide the error,
-/// and how many times the samples a tenth of the error costs.
+/// Returns the three cells about a slope: the slope, the factor by which four times as many samples
+/// divide the error, and the factor of samples that divides the error by ten.
 fn slopes(found: Option<EndSlope>) -> [String; 3] {
     let divisor = factor(found.and_then(|it| it.divisor()));
     let cost = found.and_then(|it| it.cost_of_a_tenth());
@@ -168,8 +168,8 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes
 }
 
-/// Makes text from outside safe to print anywhere. Control characters are made visible, and the two
-/// other characters that XML cannot contain are replaced.
+/// Makes text from outside, such as a scene's name, safe to print anywhere. Control characters are
+/// made visible, and the two other characters that XML cannot contain are replaced.
 pub fn printable(text: &str) -> String {
     visible_line(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

@@ -7,7 +7,7 @@ use super::{
     summary::{self, heading, notes, printable, verdict},
 };
 
-/// Maximum length of a line, in characters. Longer lines are wrapped.
+/// Maximum length of a line of the report, in characters. Longer lines are wrapped.
 const WIDTH: usize = 100;
 
 /// Returns the measurement as text: a description of the measurement, then a table and the

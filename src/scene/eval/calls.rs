@@ -38,8 +38,9 @@ const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("exp log ln random rand noise", "write the number itself"),
 ];
 
-/// Maximum number of recent problems that are searched for the list of all functions in their help,
-/// so that the list is not repeated. A search of all ten thousand possible problems would be slow.
+/// Number of the latest problems whose help is compared with the list of all functions. If one of
+/// them has that list, the next report refers to `pinhole explain` instead. A search of all ten
+/// thousand possible problems would be slow.
 const LOOKED_BACK: usize = 8;
 
 impl<'s> Evaluator<'_, 's> {
@@ -124,7 +125,7 @@ impl<'s> Evaluator<'_, 's> {
             Some((_, instead)) => (*instead).to_owned(),
             None => format!("the functions are {}", suggest::list(all_names())),
         };
-        // If a recent report lists all functions, the list is not repeated.
+        // If one of the latest reports lists all functions, the list is not repeated.
         let has_list = |it: &Diagnostic| it.help.as_ref() == Some(&all);
         let mut last = self.problems.iter().rev().take(LOOKED_BACK);
         let all = if last.any(has_list) && elsewhere.is_none() {

@@ -201,9 +201,11 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// Returns the name that is nearest to `name`, and whether it is a safe replacement. Considers
-    /// definitions and colours if a colour is wanted, and otherwise definitions, constants and, if
-    /// no type is wanted, colours. Leaves out names whose values have another type than `wanted`.
+    /// Returns the defined name or the named colour that is nearest to the undefined name `name`,
+    /// and whether it is a safe replacement. If a colour is wanted (`is_color`), searches
+    /// definitions and colours, and otherwise definitions and constants. If no type is wanted and
+    /// nothing was found, searches the colours. Leaves out names whose values have another type
+    /// than `wanted`.
     fn nearest(
         &self,
         name: &str,

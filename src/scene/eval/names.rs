@@ -37,7 +37,7 @@ pub struct Names<'s> {
     pub(super) objects: HashSet<&'s str>,
     /// The names of the indices of all blocks.
     pub(super) indices: HashSet<&'s str>,
-    /// Remaining number of comparisons in searches for the nearest name.
+    /// Number of comparisons of names that are left for all searches for the nearest name.
     budget: ComparisonBudget,
     /// Problems of undefined names. They are kept apart because some of the other problems are
     /// discarded when a value is evaluated again.
@@ -66,8 +66,8 @@ pub(in crate::scene) struct Defined {
     pub place: Span,
     /// The span of the value, in the file or in an argument.
     pub from: Span,
-    /// Unit in which the value is meant if it is a number without a unit, as far as its formula
-    /// shows.
+    /// Unit in which the name's number is meant, as far as the formula of its value shows. It
+    /// matters if the number lacks a unit.
     pub origin: UnitOrigin,
 }
 
@@ -108,7 +108,7 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns in which unit a number is meant that lacks one, as far as its formula shows.
+    /// Returns the unit in which the numbers of `value` are meant, as far as its formula shows.
     pub fn origin(&self, value: &tree::Value<'_>) -> UnitOrigin {
         UnitOrigin::of(value, &|name| Some(self.defined.get(name)?.origin))
     }
@@ -127,9 +127,9 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Removes and returns the `let` of the same name as `index` that stands further down in the
-    /// file, if it is defined already. With `--set` arguments, all definitions are evaluated before
-    /// the blocks.
+    /// Removes and returns the `let` that has the same name as `index` and stands further down in
+    /// the file, if it is defined already, so that the index can be defined. With `--set`
+    /// arguments, all definitions are evaluated before the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;
@@ -180,6 +180,7 @@ impl<'s> Names<'s> {
     /// Returns the names that are defined so far, for a search for the nearest one. Charges the
     /// search to the budget of comparisons, and returns `None` if that is spent.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
+        // About the number of colours and constants, with which the name is compared, too.
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)

@@ -151,7 +151,8 @@ impl<'s> Evaluator<'_, 's> {
             _ => "only numbers, angles and vectors of one kind go together".to_owned(),
         };
         let vector = |span, text: &str| vec![Fix::write(span, format!("({text}, {text}, {text})"))];
-        // The unit of the other operand is the likelier one, so its fix comes first.
+        // The number was more likely meant in the unit of the other operand, so the fix with this
+        // unit comes first.
         let with_unit = |tree: &tree::Value<'s>, value: Value, other: Value| match (value, other) {
             (Value::Number(number), Value::Angle(angle)) if self.set_in(tree).is_none() => {
                 let mut units = self.units(tree, number);

@@ -1,8 +1,8 @@
 //! Finds out in which unit a number is meant that stands for an angle but lacks a unit. A number
 //! derived from `pi`, for example, is meant in radians.
 //!
-//! In: the tree of a value, and the origins of the names that it uses. Out: the [`UnitOrigin`],
-//! which the formula determines.
+//! In: the tree of a value, and the [`UnitOrigin`]s of the names that it uses. Out: the
+//! [`UnitOrigin`] of the value, which follows from its formula.
 
 use crate::{
     schema::predefined,
@@ -12,7 +12,7 @@ use crate::{
 /// Unit in which a number without a unit is meant, as far as its formula shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitOrigin {
-    /// Unknown, since the formula consists of numbers without `pi`.
+    /// Unknown: the formula consists of numbers without a unit and without `pi`.
     Plain,
     /// The number is meant in this unit.
     In(Unit),
@@ -27,7 +27,8 @@ use UnitOrigin::{In, Plain, Unclear};
 const LIKE_PI: [&str; 5] = ["3.14", "6.28", "1.57", "0.0174", ".0174"];
 
 impl UnitOrigin {
-    /// Returns the origin of a value. `known` returns the origin of a name that the value uses.
+    /// Returns the unit in which the numbers of a value are meant. `known` returns the same for a
+    /// name that the value uses, or `None` if it has no value.
     pub fn of(value: &tree::Value<'_>, known: &impl Fn(&str) -> Option<Self>) -> Self {
         let all = || {
             let parts = value.parts().into_iter();
@@ -81,7 +82,8 @@ impl UnitOrigin {
         }
     }
 
-    /// Returns the origin of a sum of two terms, from the origins of the terms.
+    /// Returns the unit in which a sum is meant whose terms are meant in the units `self` and
+    /// `other`.
     fn plus(self, other: Self) -> Self {
         match (self, other) {
             (Plain, it) | (it, Plain) => it,

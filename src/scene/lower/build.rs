@@ -25,8 +25,8 @@ const START: Span = Span {
     end: 0,
 };
 
-/// Maximum number of samples of a whole picture. If `per_pixel` times the number of pixels is
-/// greater, that is reported as an error.
+/// Maximum number of samples of a whole picture, which is the language's limit for `total`, too. A
+/// `per_pixel` whose product with the number of pixels is greater is reported as an error.
 const MOST_SAMPLES: u64 = 1 << 53;
 
 impl<'s> Lowering<'s> {

@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                         .at(eye_place, "the eye")
                         .help("move one of them, or give a `direction` instead of `lookat`"),
                 );
-                // An editor shows the correct parts of a scene with errors. Without a view, it
-                // shows no camera.
+                // An editor shows the parts of a scene that have no errors. Without a view, the
+                // camera is not one of them.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -111,7 +111,8 @@ impl<'s> Lowering<'s> {
             0.5 * to - 0.5 * from
         };
         let sine = unit(up).cross(unit(along)).length();
-        // The negation also returns here if `sine` is NaN.
+        // The condition is negated so that the function also returns, without a warning, if `sine`
+        // is NaN.
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }

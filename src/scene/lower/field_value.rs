@@ -61,8 +61,8 @@ impl<'s> Lowering<'s> {
         let Some(&condition) = broken else {
             return Some(value);
         };
-        // A number that rounds to 0 has a warning already. The report of the broken condition
-        // replaces it.
+        // A number that is not 0 but rounds to 0 has a warning already. The report that it breaks
+        // the condition replaces the warning.
         let is_rounded = self.problems.len() > before && value == Value::Number(0.0);
         if is_rounded {
             self.problems.truncate(before);
@@ -93,7 +93,7 @@ impl<'s> Lowering<'s> {
         None
     }
 
-    /// Reports a list in place of a value that is not a list.
+    /// Reports a list as the value of a field that takes no list.
     fn unexpected_list(
         &mut self,
         row: &'static FieldRow,

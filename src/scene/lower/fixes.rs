@@ -58,9 +58,9 @@ impl Lowering<'_> {
     }
 
     /// Returns the fixes for two fields that exclude each other because they belong to different
-    /// ways of the [`Choice`] `choice`: keep all fields of one way and remove those of the other
-    /// ways. There is no fix if the kept way would lack a field, or if another field stands between
-    /// the removed ones.
+    /// ways of the [`Choice`] `choice`. A fix keeps the fields of one way, and removes those of the
+    /// other ways. There is no such fix if the way that is kept lacks a field, or if any other
+    /// field stands between those that would be removed.
     pub(super) fn one_of(
         &self,
         block: &LoweredBlock<'_>,

@@ -47,7 +47,8 @@ impl<'s> Lowering<'s> {
             it.evaluate(&definition.value, None)
         });
         let Some(name) = name else { return };
-        // A definition with an empty keyword lacks its `let`, which the parser has reported.
+        // A definition whose keyword has no bytes was written without `let`, which the parser has
+        // reported.
         let reported = definition.keyword.range().is_empty();
         match (predefined(name.text), first) {
             (Some(what), _) => {
@@ -58,7 +59,8 @@ impl<'s> Lowering<'s> {
                     let problem = problem.at(name.span, "this name is taken").help(help);
                     self.problems.push(problem);
                 }
-                // Uses of the name are not reported, because their meaning is uncertain.
+                // Uses of the name get no reports, because it is uncertain which of its two
+                // meanings they have.
                 self.names.define(name, None, &definition.value);
             }
             (None, None) => {
@@ -273,8 +275,8 @@ impl<'s> Lowering<'s> {
     }
 
     /// Improves the report of a field with a wrong number of colours, such as `color (red, green,
-    /// blue)`: suggests the block's field that takes that number, `color` or `colors`, if `is_free`
-    /// says that it is not given.
+    /// blue)`: suggests `color` or `colors`, whichever of them takes that number. `is_free` says
+    /// that the block does not have the suggested field yet.
     fn other_colors(&mut self, before: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
         let is_color = |value: &tree::Value<'s>| match &value.kind {
             ValueKind::Call(call) => call.function.text == "rgb",
@@ -377,8 +379,8 @@ impl<'s> Lowering<'s> {
         (!is_sum).then(|| Fix::write(size.field(), format!("{other} {written}")))
     }
 
-    /// Reports a field without a value. The fix adds an example, in place of a `=` or `:` that
-    /// follows the name.
+    /// Reports a field without a value. The fix writes an example after the name; a `=` or `:` that
+    /// follows the name is replaced.
     fn missing_value(&mut self, name: &Name<'s>, row: &schema::FieldRow) {
         let (noun, field, example) = (row.takes.noun(), row.name, row.example);
         let text = self.sources.get(name.span.source).text();

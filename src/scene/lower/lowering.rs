@@ -15,7 +15,8 @@ pub(super) struct Lowering<'s> {
     pub(super) sources: &'s Sources,
     /// Flag that another thread sets to cancel lowering.
     pub(super) cancel: &'s AtomicBool,
-    /// Whether a mistake hides the end of the text, such as a comment that is never closed.
+    /// Whether a mistake, such as a comment that is never closed, hides the end of the text. No
+    /// missing block is then reported.
     pub(super) cut: bool,
     pub(super) names: Names<'s>,
     /// Blocks that are not objects, such as `camera`; only the first of each kind.

@@ -17,8 +17,8 @@ use crate::{
     syntax::{self, tree::Item},
 };
 
-/// Number of bytes at the start of a file that are searched for zero bytes, which show that the
-/// file is binary.
+/// Number of bytes at the start of a file that are searched for zero bytes. If there are more than
+/// one or two, the file is binary rather than text.
 const BINARY_BYTES: usize = 1 << 14;
 
 /// Reads a scene: parses the file and the overrides, and lowers them.
@@ -63,7 +63,8 @@ fn read_as_far(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Reading 
 fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Reading> {
     let mut lowering = Lowering::new(sources, Names::default(), cancel);
     let mut overrides = overrides::read(sources, &mut lowering.problems);
-    // The value of an argument may use all names, so items that are set come last.
+    // The value of a `--set` argument may use all names of the file. Items with such a value are
+    // therefore lowered last.
     let mut last = Vec::new();
     let file = &sources.file;
     let all = lowering.is_right()
@@ -115,7 +116,8 @@ fn whole<'s>(
     let mut overrides = overrides::read(sources, &mut lowering.found);
     overrides::apply(&mut overrides, &mut items);
     lowering.problems = overrides::add(overrides, &mut items, sources, lowering.names.budget());
-    // The value of an argument may use all names, so items that are set come last.
+    // The value of a `--set` argument may use all names of the file. All definitions are therefore
+    // lowered before the blocks.
     let is_definition = |item: &Item<'_>| matches!(item, Item::Definition(_));
     let (definitions, others): (Vec<_>, Vec<_>) = items.into_iter().partition(is_definition);
     lowering.items(&definitions);

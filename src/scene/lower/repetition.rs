@@ -17,8 +17,9 @@ use crate::{
     },
 };
 
-/// Maximum number of objects in a scene with repeated blocks. A block that would exceed it is
-/// reported as an error and builds no objects.
+/// Maximum number of objects in a scene with repeated blocks, as the language defines it, since a
+/// short text could otherwise ask for more objects than fit into memory. A block that would exceed
+/// it is reported as an error and builds no objects.
 const MOST_OBJECTS: usize = 1 << 24;
 
 impl<'s> Lowering<'s> {
@@ -382,8 +383,8 @@ impl<'s> Lowering<'s> {
                 let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
                 problem.help = Some(help.to_owned());
             }
-            // Triangles with vertices on one line are typical of rows of triangles that meet in a
-            // point.
+            // The vertices of a triangle are often on one line at the end of a row of triangles
+            // that meet in a point. The help says how to leave such a triangle out.
             if problem.is("on_one_line")
                 && let Some(help) = &mut problem.help
             {

@@ -29,13 +29,14 @@ const LARGEST: Image = Image {
     background: Color::BLACK,
 };
 
-/// Fields that an unknown word was probably meant to be.
+/// The meaning of an unknown word: the fields that it probably stands for.
 struct Meant {
     /// The fields.
     fields: Vec<&'static str>,
-    /// The fields in words.
+    /// The names of the fields, joined for a message.
     shown: String,
-    /// Fixes that write the fields; empty if they would lead to an error.
+    /// Alternative fixes that write the fields in place of the unknown word; empty if they would
+    /// lead to an error.
     fixes: Vec<Fix>,
 }
 
@@ -100,8 +101,8 @@ impl<'s> Lowering<'s> {
         taken
     }
 
-    /// Reports the fields `found`, whose names stand for the parts of the field `names[0]`, or, if
-    /// there are several `names`, for one of them each.
+    /// Reports the unknown fields `found`. If `names` has one element, the words are taken for the
+    /// parts of that field; otherwise, each word for the field at the same position in `names`.
     fn report_parts(
         &mut self,
         row: &BlockRow,
@@ -188,8 +189,8 @@ impl<'s> Lowering<'s> {
         let is_tried = |words| is_of_file && suggest::is_among(word, words);
         if let Some(field) = row.field_tried(word) {
             let meant = self.renamed(block, field, name, value, whole);
-            // If another kind of block has this field, the field may have been meant for such a
-            // block.
+            // If the word is a keyword or the name of another block's field, the field may have
+            // been meant for another block, so the fix is not safe.
             let is_known = schema::is_word(word);
             return Some(if is_known { meant.unsure() } else { meant });
         }
@@ -197,7 +198,8 @@ impl<'s> Lowering<'s> {
             return None;
         }
         let mut perhaps: Vec<&FieldRow> = row.fields_perhaps(word).collect();
-        // A vector of length 1 is more likely a direction than a point.
+        // A vector of length 1 is more likely a direction than a point, so the fields are suggested
+        // in reverse order.
         let is_unit = |text: &str| match literal(text, Type::Vector) {
             Some(Value::Vector(vector)) => (vector.length() - 1.0).abs() < 1e-3,
             _ => false,

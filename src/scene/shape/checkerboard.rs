@@ -18,7 +18,8 @@ pub struct Checkerboard {
     pub y: f64,
     /// Side of a square in metres, > 0.
     pub square: f64,
-    /// The colours of the even and of the odd squares.
+    /// The colours of the even and of the odd squares. A square is even if floor(x/square) +
+    /// floor(z/square) is even in it.
     pub colors: [Color; 2],
 }
 

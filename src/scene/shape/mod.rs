@@ -40,7 +40,7 @@ pub enum Shape {
     Checkerboard(Checkerboard),
 }
 
-/// Evaluates an expression for the contents of a shape, whichever kind it is.
+/// Evaluates an expression for the struct in a [`Shape`], such as [`Sphere`], whichever kind it is.
 macro_rules! for_each_kind {
     ($shape:expr, $own:ident => $result:expr) => {
         match $shape {
@@ -104,9 +104,9 @@ impl Shape {
         schema::of_kind(self.block_kind()).name
     }
 
-    /// Returns the shape's colours: for a box, those of the faces across x, y and z; for a
-    /// checkerboard, those of the even and the odd squares. If there are fewer than three, the last
-    /// one is repeated.
+    /// Returns three colours of the shape: for a box, those of the faces across x, y and z; for a
+    /// checkerboard, that of the even squares, and twice that of the odd squares; for any other
+    /// shape, three times its only colour.
     pub fn colors(&self) -> [Color; 3] {
         for_each_kind!(self, own => own.colors())
     }
@@ -189,8 +189,8 @@ impl Shape {
         for_each_kind!(self, own => own.field_mut(name))
     }
 
-    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
-    /// rounding error of a limit may be misjudged.
+    /// Returns whether all fields of the shape meet the language's conditions. These are checked in
+    /// `f64`, so a value within rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         for_each_kind!(self, own => own.is_possible())
     }
@@ -235,8 +235,8 @@ mod tests {
         source::{Source, Sources},
     };
 
-    /// Returns sets of fields that can be given together, such that each way of each of the block's
-    /// choices occurs in one of them.
+    /// Returns sets of fields that a block can be given together. Each way of each
+    /// [`Choice`](crate::schema::Choice) of the block occurs in at least one set.
     fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {
         let most = row.choices.iter().map(|choice| choice.ways.len()).max();
         (0..most.unwrap_or(1)).map(move |way| {

@@ -70,8 +70,8 @@ impl<'s> Recovery<'_, 's> {
                 let fix = replace(span, whole.replace(' ', ""));
                 self.report(&say::BAD_NUMBER.safe_if(false), span, &[whole, label], fix);
             }
-            // In place of a vector, `2 ball` is a product: both a number and a vector `ball` can be
-            // multiplied by 2.
+            // If the field takes a vector, `2 ball` is a product: `ball` is either a number or a
+            // vector, and both can be multiplied by 2.
             (Some(Type::Vector), 2) if commas == 0 && self.is_named_factor(&first, &second) => {
                 self.missing_between(&first, &second);
             }
@@ -135,7 +135,8 @@ impl<'s> Recovery<'_, 's> {
         let sign = Span::new(self.id, left.span.end, right.span.start);
         let are_numbers = (is_plain_number(left) && self.is_factor(right))
             || (self.is_factor(left) && is_plain_number(right));
-        // In place of a vector or an angle, `2 ball` and `(n * 0.28) ball` are products, too.
+        // If the field takes a vector or an angle, `2 ball` and `(n * 0.28) ball` are products,
+        // too.
         let is_scaled = matches!(self.context.takes, Some(Type::Vector | Type::Angle))
             && self.is_named_factor(left, right);
         let is_product =

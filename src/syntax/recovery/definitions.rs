@@ -175,7 +175,8 @@ impl<'s> Recovery<'_, 's> {
             let right = shorten(written);
             let title = format!("write `let {text} = {right}`");
             let fix = (is_right && is_next).then(|| Fix::new(title, edits));
-            // A word of another language may mean more than `let`, so replacing it is not safe.
+            // A word of another language, such as `var`, may mean more than `let`, so replacing it
+            // is not safe.
             let is_foreign = !is_plain && suggest::nearest(word, ["let"]).is_none();
             let said = say::MISSING_LET.safe_if(!is_foreign);
             self.report(&said, start, &[&text, &right], fix);
@@ -187,7 +188,8 @@ impl<'s> Recovery<'_, 's> {
         true
     }
 
-    /// Returns whether `name` is already defined, or occurs in `value`.
+    /// Returns whether `name = value` changes a value rather than defining a name: `name` is
+    /// already defined, or occurs in `value`.
     fn is_assigned_again(&self, name: &str, value: &str) -> bool {
         let is_defined = |item: &Item<'s>| match item {
             Item::Definition(it) => it.name.is_some_and(|it| it.text == name),

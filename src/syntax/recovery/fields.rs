@@ -58,8 +58,9 @@ impl<'s> Recovery<'_, 's> {
                     self.report(&say::NESTED_BRACES, span, &["braces within a block"], None);
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
-                    // The fields that the outer block lacks may be in the inner one, so they are
-                    // not reported as missing.
+                    // Fields that the outer block lacks may stand in the inner one. A block with
+                    // bad text gets no report of missing fields, so its keyword is recorded as
+                    // such.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();
@@ -337,7 +338,7 @@ impl<'s> Recovery<'_, 's> {
         // The span ends with the last value, before a comment.
         let span = start.to(end);
         block.bad.push(span);
-        // Mistakes within the values are not reported on their own.
+        // A mistake within the values has no report of its own.
         self.problems.truncate(problems_before);
         let is_vector =
             |value: &Value<'s>| matches!(&value.kind, ValueKind::Tuple(parts) if parts.len() == 3);

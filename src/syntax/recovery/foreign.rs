@@ -45,7 +45,8 @@ const NOTATION: &[(&str, [&str; 2])] = &[
     ("?", ["there are no conditions: `pinhole explain condition` says what to write instead"; 2]),
 ];
 
-/// Help for the operator `%`, and for a condition that chooses between colours.
+/// Help about remainders, for the operator `%` and for a condition such as `i % 2 == 0 ? red :
+/// blue`, which chooses between colours.
 pub(super) const TURNS: &str = "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows";
 
 /// Returns the help from the first row of [`NOTATION`] that contains a character of `word`, or
@@ -58,7 +59,8 @@ pub(super) fn help_for_notation(word: &str, is_behind: bool) -> Option<&'static 
 
 impl<'s> Recovery<'_, 's> {
     /// Reports and skips a statement of another language, such as `if (a > 0) {`, `for i in 0..10
-    /// {`, `import "x"` or `print(r)`, and the block that follows it.
+    /// {`, `import "x"` or `print(r)`, and the block that follows it. `said` holds a plural noun
+    /// for such statements and the help, from [`statement`].
     pub(super) fn foreign_statement(&mut self, said: [&str; 2]) {
         let span = self.bump();
         self.report(&say::NOT_IN_LANGUAGE, span, &said, None);
@@ -108,7 +110,8 @@ impl<'s> Recovery<'_, 's> {
         Some(bad(span.to(self.behind())))
     }
 
-    /// Returns whether a `?` follows that may belong to the current value.
+    /// Returns whether the tokens ahead contain a `?` that may belong to the current value, which
+    /// is then a condition such as `a > b ? c : d`.
     fn has_question_mark(&mut self) -> bool {
         for at in 0..CONDITION_TOKENS {
             match self.word(at) {
@@ -122,7 +125,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports and skips a condition, such as `> 1 ? a : b` after an operand, or `if n > 1 then a`.
-    /// Returns whether the next token starts one.
+    /// Returns `false`, and skips nothing, if no condition starts at the next token.
     pub(super) fn condition(&mut self) -> bool {
         let is_one = match self.word(0) {
             "if" => !self.words.is_let("if"),
@@ -254,6 +257,8 @@ impl<'s> Recovery<'_, 's> {
     /// comment, so `c */` is the rest. Returns `false` and skips nothing if the text is not such a
     /// rest.
     pub(super) fn nested_comment(&mut self) -> bool {
+        // Maximum number of tokens that are searched for the `*/` that was meant to end the
+        // comment.
         const ENOUGH: usize = 64;
         let start = self.here().start;
         let before = self.text.get(..start).unwrap_or_default();
@@ -278,6 +283,7 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
+        // Number of bytes at the start of the file that are searched for the strings of a row.
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');

@@ -28,6 +28,7 @@ pub(super) struct HeadSlip {
 /// and `»`. In the other texts, `{I}`, `{W}`, `{N}` and `{M}` stand for the matched texts.
 type HeadPattern = [&'static str; 4];
 
+// Messages and help texts that several patterns of a head ([`HeadPattern`]) share.
 const FROM_ZERO: &str = "an index begins at 0 by itself";
 const NO_RANGE: &str = "an index has a count, and no range";
 const EITHER: &str = "write `for {I} < {N}`, or `for {I} < {N+1}` if {N} is one of its values";
@@ -36,7 +37,8 @@ const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the v
 const LACKS_COUNT: &str =
     "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
 const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
-/// Correction that moves the object's name before the `for`.
+/// Correction of a pattern ([`HeadPattern`]) that is no text to write: the object's name is moved
+/// before the `for`.
 const NAME_FIRST: &str = "^";
 
 /// Patterns of one index with its count, such as `i < 8`, without and with mistakes.
@@ -147,7 +149,8 @@ pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     }
 }
 
-/// Texts that the names and values of a pattern matched last.
+/// Texts that the items `I`, `N`, `M` and `W` of a pattern matched when it was matched last. They
+/// are empty if the pattern has no such item.
 #[derive(Default)]
 struct Captures<'t> {
     i: &'t str,

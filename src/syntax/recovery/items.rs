@@ -17,7 +17,8 @@ use crate::{
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
 /// Maximum number of tokens of a line that are searched for the end of a head. The search stops
-/// there as at the end of the line.
+/// there as at the end of the line. Heads are shorter, and the limit bounds the time for a very
+/// long line.
 const LINE_TOKENS: usize = 24;
 
 impl<'s> Recovery<'_, 's> {
@@ -78,9 +79,9 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reads a block from its `{` on.
     fn open_block(&mut self, mut block: Block<'s>) {
-        // Maximum depth of nested blocks that are read; deeper blocks are skipped. No block may
-        // stand within another one, but reading the inner blocks allows reports about their
-        // mistakes.
+        // Maximum number of blocks within one another that are read; blocks further inside are
+        // skipped. The language has no blocks within blocks, but reading them allows reports about
+        // mistakes in the inner ones.
         const DEEPEST: usize = 3;
         block.open = Some(self.bump());
         if self.blocks == DEEPEST {
@@ -314,7 +315,8 @@ impl<'s> Recovery<'_, 's> {
         }
         // If no item follows, another token than `}` may have been meant.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
-        // The `}` may close a block that lacks its `{`.
+        // If a block without its `{` was reported shortly before, the `}` may close that block, so
+        // there is no fix.
         let mut last = self.problems.iter().rev().take(8);
         let is_sure = is_before_item && last.all(|found| found.code != "pinhole::unopened_block");
         let fix = is_sure.then(|| self.remove("remove this `}`", all));

@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// Numbers of values that a list may have.
+/// The numbers of values that are allowed in a list.
 type PartCount = RangeInclusive<usize>;
 
 /// A list as it was written.

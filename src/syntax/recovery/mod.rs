@@ -63,7 +63,8 @@ pub struct Recovery<'w, 's> {
     is_doubtful: bool,
     /// Offset after the last item that recovery read.
     pub(super) read_to: usize,
-    /// Whether the text was checked for the format of another program.
+    /// Whether [`Self::foreign_file`] has tested if the text is a file of another program, which is
+    /// done once.
     is_checked: bool,
     /// Context of what is read: the block, or the file.
     context: Context<'s>,
@@ -73,7 +74,8 @@ pub struct Recovery<'w, 's> {
     lists: usize,
     /// Number of blocks around the item that is read.
     blocks: usize,
-    /// Whether the value nests too deep, so that the rest of it was skipped.
+    /// Whether the value that is read nests deeper than [`NESTING_LIMIT`](super::NESTING_LIMIT), so
+    /// that the rest of it was skipped.
     too_deep: bool,
 }
 

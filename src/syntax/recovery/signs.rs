@@ -9,8 +9,9 @@ use crate::{
 };
 
 impl Recovery<'_, '_> {
-    /// Reads and records a `,` or `;` between fields or items. If a value follows, the sign may
-    /// have a purpose, so the reports are marked as doubtful and get no fix.
+    /// Reads a `,` or `;` between fields or items, and records it as needless. If a value follows,
+    /// the sign may have been meant to continue a list, so the reports of the recorded signs get no
+    /// fix.
     pub(super) fn separator(&mut self) {
         let sign = self.bump();
         self.note_sign(sign);

@@ -10,16 +10,16 @@ use crate::tracer::{
     local_form::Patch,
 };
 
-/// Ratio of the side of the root cell to the longer side of the camera's window. The root is wider
-/// by a sixteenth on each side. Rectangles of pixels at the picture's edge are therefore inside,
-/// even with rounding errors.
+/// Ratio of the side of the quadtree's root cell to the longer side of the camera's window. The
+/// root cell is wider by a sixteenth on each side. Rectangles of pixels at the picture's edge are
+/// therefore inside it, even with rounding errors.
 const ROOT_MARGIN: f64 = 1.125;
 
-/// Binary logarithm of the side of the root cell in units of the grid. In a picture 100,000 pixels
-/// wide, a pixel is about a hundred units long.
+/// Binary logarithm of the side of the quadtree's root cell in units of the grid. In a picture
+/// 100,000 pixels wide, a pixel is about a hundred units long.
 pub(super) const LEVELS: u32 = 24;
 
-/// A rectangle in units of the grid; both ends are included.
+/// A rectangle of the view plane in units of the grid; both ends are included.
 #[derive(Clone, Copy, Debug)]
 pub struct Rectangle {
     pub(super) low: [u32; 2],
@@ -47,7 +47,7 @@ pub struct Nearness(u32);
 pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// First unit of the window on each axis; no point outside of the window is looked up.
+    /// First unit of the camera's window on each axis; no point outside of the window is looked up.
     low: [u32; 2],
     high: [u32; 2],
 }
@@ -76,14 +76,14 @@ impl Nearness {
 }
 
 impl Rectangle {
-    /// The rectangle that contains every other rectangle. Its ends are below `u32::MAX`, because
-    /// [`share_of`](Self::share_of) adds one to them.
+    /// The rectangle that contains every other rectangle; an object without bounds has it. Its ends
+    /// are below `u32::MAX`, because [`share_of`](Self::share_of) adds one to them.
     pub const ALL: Self = Self {
         low: [0; 2],
         high: [u32::MAX - 1; 2],
     };
 
-    /// Returns whether two rectangles have a unit in common.
+    /// Returns whether two rectangles have a unit of the grid in common.
     #[inline]
     pub fn meets(&self, other: &Self) -> bool {
         let meets = |i: usize| (self.low[i] <= other.high[i]) & (other.low[i] <= self.high[i]);
@@ -135,7 +135,8 @@ impl CellGrid {
     /// the first unit for NaN.
     #[inline]
     fn unit(&self, x: f64) -> u32 {
-        // This is the last unit but one, because the window ends one unit beyond the result.
+        // The last unit but one of the grid, because `CellGrid::high` is one unit beyond the
+        // result.
         const LAST: u32 = (1 << LEVELS) - 2;
         (((x - self.least) * self.per_unit) as u32).min(LAST)
     }
@@ -149,8 +150,8 @@ impl CellGrid {
         (is_within(0) && is_within(1)).then_some(at)
     }
 
-    /// Converts ranges of X and Y to a rectangle, widened by one unit on each side and clipped to
-    /// the window. Returns `None` if the rectangle lies outside of the window.
+    /// Converts ranges of X and Y to a rectangle of the grid, widened by one unit on each side and
+    /// clipped to the window. Returns `None` if the rectangle lies outside of the window.
     fn ends(&self, ranges: [Interval; 2]) -> Option<Rectangle> {
         let low = [0, 1].map(|i| {
             let low = self.unit(ranges[i].low).saturating_sub(1);

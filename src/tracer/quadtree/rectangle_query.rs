@@ -8,18 +8,18 @@ use super::{
     tree::{CellSquare, Cells},
 };
 
-/// Maximum number of cells that list one object. An object is no longer than a cell that lists it,
-/// so that it intersects at most two such cells along each axis.
+/// Maximum number of cells that list one object. An object is no longer than the cells that list
+/// it, so that it intersects at most two of them along each axis.
 const MAX_CELLS: usize = 4;
 
 /// A search for the objects that rays through a rectangle may hit.
 pub(super) struct Search<'a, F> {
     tree: &'a Cells,
     rectangle: &'a Rectangle,
-    /// Maximum number of entries in `found`, where an object may occur several times.
+    /// Maximum number of entries of lists in `found`, where an object may occur several times.
     most: usize,
-    /// Called with an object that fills the rectangle, returns a nearness; objects at or below it
-    /// are hidden.
+    /// Function that is called with an object that fills the rectangle, and returns a nearness;
+    /// objects at or below it are hidden.
     behind: F,
     /// Nearness at and below which objects are hidden by the objects found so far.
     hidden: Nearness,

@@ -25,28 +25,29 @@ use super::{
 };
 use crate::area::Area;
 
-/// Side of the squares with which quartering begins, in pixels. It is a power of two, so that the
-/// quarters are squares.
+/// Side of the squares of pixels with which quartering of a picture begins, in pixels. It is a
+/// power of two, so that quarters of a square are squares.
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
-/// Minimum number of samples per candidate in an area that is quartered further. Measured: with 8,
-/// the time for 10³ and 10⁵ spheres changes by less than 10 %, but 3000 slivers with one sample per
-/// pixel take twice as long. With 2, the time rises by up to 25 %.
+/// Minimum number of samples per candidate object in an area of pixels; with fewer, the area is not
+/// quartered any further. Measured: with 8, the time for 10³ and 10⁵ spheres changes by less than
+/// 10 %, but 3000 slivers with one sample per pixel take twice as long. With 2, the time rises by
+/// up to 25 %.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
-/// Cost of finding where one candidate is seen within a square of the grid. The unit is the time to
-/// test one object for a sample that is traced on its own; such a sample tests the objects whose
-/// bounds contain it, and its search of the quadtree counts as one more test. Measured: with 80,
-/// 10⁴ spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on 640×360
-/// pixels.
+/// Cost of finding where one candidate object is seen within an area of pixels. An area is
+/// quartered only if this costs less for all candidates than tracing its samples on their own. The
+/// unit is the time to test one object for such a sample. A sample tests the objects whose bounds
+/// contain it, and its search of the quadtree counts as one more test. Measured: with 80, 10⁴
+/// spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on 640×360 pixels.
 const ASKED_A_CANDIDATE: f64 = 120.0;
 
 /// Divides one picture into parts.
 #[derive(Debug)]
 pub struct Quartering<'a> {
     world: &'a World,
-    /// Mean number of samples per pixel; infinite for a picture that is computed exactly, where no
-    /// part may be [`Crowded`](PicturePart::Crowded).
+    /// Mean number of samples per pixel of the picture; infinite for a picture that is computed
+    /// exactly, where no part may be [`Crowded`](PicturePart::Crowded).
     samples: f64,
 }
 
@@ -137,7 +138,7 @@ impl<'a> Quartering<'a> {
         objects <= OBJECTS_A_CELL || samples * (1.0 + asked) >= ASKED_A_CANDIDATE * objects as f64
     }
 
-    /// Returns the maximum number of candidates for which an area is quartered. In a single pixel,
+    /// Returns the maximum number of candidates with which an area is quartered. In a single pixel,
     /// where quartering ends, this is one candidate per sample.
     fn most(&self, area: Area) -> usize {
         let shared = area.pixels() as f64 / SAMPLES_A_CANDIDATE;
@@ -145,7 +146,7 @@ impl<'a> Quartering<'a> {
     }
 }
 
-/// One square of the grid while it is divided.
+/// One of the squares of pixels with which quartering begins, while it is divided.
 struct Cut<'a, 'b, V> {
     quartering: &'a Quartering<'a>,
     /// The part of the picture that is wanted.
@@ -183,8 +184,8 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
                             let slot = slots[usize::from(odd)];
                             return self.show(PicturePart::OneColor { area, slot });
                         }
-                        // Samples need certain squares; exact integration allows for uncertain
-                        // ones.
+                        // Samples can use the squares only if they are certain; exact integration
+                        // allows for uncertain ones.
                         ShownSquares::Squares(checks) => {
                             let is_exact = self.quartering.samples.is_infinite();
                             (checks.is_certain || is_exact).then_some(checks)
@@ -205,8 +206,9 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
             _ => {}
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
-        // With at most as many candidates as a cell of the quadtree lists, testing all candidates
-        // is no slower, because each sample would otherwise test the objects of such a list.
+        // If the candidates are no more than a cell of the quadtree lists, testing all of them is
+        // no slower than tracing each sample on its own, which would test the objects of such a
+        // list.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
             return self.show(PicturePart::Crowded { area });
         }
@@ -258,7 +260,8 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
     }
 }
 
-/// Takes the list of the depth `depth` out of `scratch`. The caller puts it back after use.
+/// Takes the candidate list of the quartering depth `depth` out of `scratch`. The caller puts it
+/// back after use.
 fn take(scratch: &mut Scratch, depth: usize) -> Vec<VisibilityCandidate> {
     if scratch.candidates.len() <= depth {
         scratch.candidates.resize_with(depth + 1, Vec::new);

@@ -65,7 +65,8 @@ fn of_layers_only_those_that_are_seen_are_candidates() {
                 &mut |part| {
                     let few = match part {
                         PicturePart::OneColor { .. } => 0,
-                        // All boards meet at the horizon, between these two rows.
+                        // All boards meet at the horizon, which lies between these two rows of
+                        // pixels.
                         PicturePart::Pixel { y: 31 | 32, .. } => 0,
                         PicturePart::Pixel { candidates, .. } => candidates.len(),
                         PicturePart::Crowded { .. } => usize::MAX,
@@ -95,7 +96,8 @@ fn what_a_wall_hides_is_not_found() {
         assert!(all_within(whole, usize::MAX, &mut found));
         assert_eq!(found.len() == 1, behind);
         assert!(behind || found.len() == 1001, "{}", found.len());
-        // Where several cells of the quadtree list the wall, nothing is found behind it, either.
+        // Several cells of the quadtree list the wall. In each part of the picture, nothing is
+        // found behind it, either.
         for part in whole.tiles(7) {
             assert!(all_within(part, usize::MAX, &mut found));
             assert!(found.len() == 1 || !behind, "{part:?}");
@@ -103,8 +105,9 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// The objects nearby can be found around every square of a crowd. Some pixels are then known to
-/// show one colour. At all points, the objects nearby give the same colour as the quadtree.
+/// In a crowd of objects, `nearby` finds the objects around every square of the picture. With these
+/// objects alone, some pixels are known to have one colour, and all sample points get the same
+/// colour as by the quadtree.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

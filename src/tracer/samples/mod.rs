@@ -37,7 +37,8 @@ pub fn prepare(
     (pixel.x, pixel.y) = (x, y);
     pixel.candidates.clear();
     match candidates {
-        // This is the most frequent case. `push` avoids the call to copy a slice.
+        // A pixel with a single candidate is the most frequent case. `push` avoids the call to copy
+        // a slice.
         [only] => pixel.candidates.push(*only),
         _ => pixel.candidates.extend_from_slice(candidates),
     }
@@ -89,7 +90,8 @@ pub fn count(
     }
 }
 
-/// Replaces the pixel's list of colours by those that may be seen in it, each with the count 0.
+/// Replaces the pixel's list of colours by those that may be seen in the pixel, each with the count
+/// 0.
 fn may_see(world: &World, pixel: &mut PreparedPixel) {
     let color = |code: f64, slot: usize| ColorCount {
         code,

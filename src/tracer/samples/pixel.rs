@@ -6,14 +6,14 @@ use super::super::{
     local_form::{LocalForm, LocalQuadratic, ScaledLine},
 };
 
-/// Maximum number of samples that are evaluated at a time, a chunk. The six arrays of [`Lanes`] for
-/// them, 3 KiB, and their coordinates stay in the first-level cache.
+/// Maximum number of samples of a pixel that are evaluated at a time, a chunk. The six arrays of
+/// [`Lanes`] for them, 3 KiB, and their coordinates stay in the first-level cache.
 pub(super) const CHUNK_SAMPLES: usize = 64;
 
-/// Code of a sample that hits no object. The first colour of the object with the index i among the
-/// pixel's candidates has the code 2i + 1, its second colour 2i + 2.
+/// Code in [`Lanes::seen`] of a sample that hits no object. The first colour of the object with the
+/// index i among the pixel's candidates has the code 2i + 1, its second colour 2i + 2.
 pub(super) const BACKGROUND: f64 = 0.0;
-/// Code of an uncertain sample, which is traced again on its own.
+/// Code in [`Lanes::seen`] of an uncertain sample, which is traced again on its own.
 pub(super) const DOUBT: f64 = -1.0;
 
 /// The objects of one pixel, prepared for many samples. One value is reused for all pixels, to keep
@@ -25,12 +25,13 @@ pub struct PreparedPixel {
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) surfaces: Vec<PixelSurface>,
-    /// The lines of all surfaces' boundaries and patterns.
+    /// The lines of all surfaces' boundaries, and those between the squares of boards.
     pub(super) lines: Vec<ScaledLine>,
-    /// Minimum difference of two inverse depths at which the order is certain. `None` if the
+    /// Minimum difference of two inverse depths at which their order is certain. `None` if the
     /// surfaces are sorted from back to front, so that samples compare no depths.
     pub(super) apart: Option<f64>,
-    /// Inverse depths of all flat faces as forms; filled only if depths are compared per sample.
+    /// Inverse depths of the flat faces of all surfaces, as linear forms; filled only if depths are
+    /// compared per sample.
     pub(super) planes: Vec<LocalForm>,
     /// Whether all samples must be traced one by one.
     pub(super) is_hard: bool,
@@ -72,9 +73,10 @@ pub(super) struct PixelSurface {
 pub(super) enum ColorPattern {
     /// One colour, given by its code.
     Plain(f64),
-    /// Two colours, separated by the lines from the end of the surface's edges up to `end`, in
-    /// [`PreparedPixel::lines`]. A point shows the first colour if the product of the lines' forms
-    /// is positive, or the second colour if `odd`.
+    /// Two colours, separated by lines in [`PreparedPixel::lines`]: those from the end of the
+    /// surface's edges up to `end`. A point shows the first colour if the product of the lines'
+    /// forms is positive, and the second colour if it is negative. If `odd`, the colours change
+    /// places.
     Lines { end: usize, odd: bool },
     /// The squares of a checkerboard. A division finds the square of each sample.
     Squares(CheckerForms),
@@ -85,12 +87,13 @@ pub(super) enum ColorPattern {
 pub(super) enum Depth {
     /// The inverse depth is not needed.
     Unknown,
-    /// The least inverse depth of the planes from a start to an end in [`PreparedPixel::planes`].
+    /// The least of the inverse depths of several planes, given by the start and the end of their
+    /// range in [`PreparedPixel::planes`].
     Least([usize; 2]),
-    /// The greatest inverse depth of the planes from a start to an end in
-    /// [`PreparedPixel::planes`].
+    /// The greatest of the inverse depths of several planes, given by the start and the end of
+    /// their range in [`PreparedPixel::planes`].
     Greatest([usize; 2]),
-    /// The near side of a sphere: (b + √q) · factor.
+    /// The near side of a sphere, with the inverse depth (b + √q) · `factor`.
     Sphere {
         q: LocalQuadratic,
         b: LocalForm,

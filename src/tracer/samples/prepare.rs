@@ -21,9 +21,9 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// Maximum error bound of a checkerboard's form; above it, the pixel's samples are traced one by
-/// one. Otherwise, products of such factors with numbers of squares, which are below 2^53, might
-/// overflow.
+/// Maximum error bound of a linear form of a checkerboard; above it, the pixel's samples are traced
+/// one by one. Otherwise, products of the form's factors with numbers of squares, which are below
+/// 2^53, might overflow.
 const MAX_ERROR: f64 = 1e250;
 
 /// Maximum number of lines between squares through a pixel for which the signs of the lines' forms
@@ -31,7 +31,7 @@ const MAX_ERROR: f64 = 1e250;
 /// to 12, the render time does not change; with division alone, figure 9.9 takes 11 % longer.
 const MAX_LINES: usize = 6;
 
-/// Error of a preparation: the samples of the pixel should be traced one by one.
+/// The reason why a pixel is not prepared: its samples should be traced one by one.
 pub(super) struct Hard;
 
 impl PreparedPixel {
@@ -61,8 +61,8 @@ impl PreparedPixel {
         self.apart = None;
     }
 
-    /// Adds a candidate as a surface, with its boundaries and colours as forms. Adds nothing if the
-    /// candidate is certainly not seen in the pixel.
+    /// Adds the candidate with the index `index` as a surface, with its boundaries and colours as
+    /// forms. Adds nothing if the candidate is certainly not seen in the pixel.
     fn add_surface(&mut self, world: &World, pixel: &Patch, index: usize) -> Result<(), Hard> {
         let candidate = self.candidates[index];
         let object = &*f64::object(&world.geometry, candidate.object);
@@ -123,8 +123,8 @@ impl PreparedPixel {
         surface: &mut PixelSurface,
     ) -> Result<bool, Hard> {
         if !sphere.is_outside() {
-            // The eye is on the surface or inside. Parts of such spheres are too rare for a rule of
-            // their own.
+            // The eye is on the sphere's surface or inside. Pixels that show such a sphere are too
+            // rare for a formula of their own.
             return Err(Hard);
         }
         let (q, b) = sphere.local(pixel);
@@ -220,8 +220,8 @@ impl PreparedPixel {
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // A pattern starts from the parity where all forms are positive. A negative
-                        // form changes the parity.
+                        // `odd` is the parity where all forms of the pattern are positive. Each
+                        // form that is negative at a point changes the parity there.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),
@@ -271,7 +271,8 @@ impl PreparedPixel {
                     let (q, b) = sphere.local(pixel);
                     let root = q.factors.iter().map(|factor| factor.abs()).sum::<f64>();
                     let size = root.sqrt() + b.factors[2].abs() + b.spread();
-                    // The error of √q is at most √(error of q), because |√a − √b| ≤ √|a − b|.
+                    // q has the error bound `q.rad`. The error of √q is at most the root of this,
+                    // because |√a − √b| ≤ √|a − b|.
                     let own = b.rad + q.rad.sqrt() + size * (LOCAL_ROUNDING + error);
                     rad = rad.max(own * factor * UP);
                     Depth::Sphere { q, b, factor }
@@ -281,8 +282,8 @@ impl PreparedPixel {
         for plane in &self.planes {
             rad = rad.max(plane.rad);
         }
-        // `apart` covers the errors of both compared depths. These errors include the rounding of
-        // the comparison.
+        // `apart` covers the errors of both inverse depths that are compared. `rad` includes the
+        // rounding of the comparison.
         let apart = 2.0 * rad * UP;
         if !apart.is_finite() {
             return Err(Hard);

@@ -46,7 +46,7 @@ impl PreparedPixel {
         let length = points[0].len();
         let lanes = &mut self.lanes;
         match self.surfaces.as_slice() {
-            // A single surface that fills the pixel.
+            // A single surface that fills the pixel needs no test of its boundary.
             [surface] if surface.edges[0] == surface.edges[1] && surface.conic.is_none() => {
                 surface.show(&self.lines, points, &mut lanes.sign, &mut lanes.seen);
             }
@@ -151,7 +151,8 @@ fn between(
     }
 }
 
-/// Writes to `shown`, for each sample, the code of the colour of its square, or [`DOUBT`].
+/// Writes to `shown`, for each sample, the code of the colour of the square that it hits: `even` or
+/// `odd`, by the parity of the square's indices. Writes [`DOUBT`] if the square is uncertain.
 #[inline(always)]
 fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: &mut [f64]) {
     const ONE: u64 = 1.0f64.to_bits();
@@ -164,8 +165,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let double = 2.0 * UP * inverse;
         let square = |n: [f64; 3], own: f64| {
             let value = (n[0] * x + n[1] * y + n[2]) * inverse;
-            // |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ|·|ℓ' − ℓ|)/ℓ', where N' and ℓ' are the true values
-            // and ℓ' is at least ℓ/2.
+            // With N' and ℓ' the true values of the forms, |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ|·|ℓ' −
+            // ℓ|)/ℓ'. ℓ' is at least ℓ/2, or the sample is in doubt (see below).
             let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * LOCAL_ROUNDING;
             let middle = value - 0.5;
             let rounded = middle + ROUND;
@@ -175,8 +176,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let ((bits0, margin0), (bits1, margin1)) = (square(n0, rads[0]), square(n1, rads[1]));
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
-        // These comparisons also fail for NaN, and for numbers too large for the rounding, whose
-        // errors are large.
+        // These comparisons also fail for NaN, and for numbers that are too large to be rounded by
+        // adding `ROUND`; their errors are large.
         let first = if margin0 > 0.0 { code } else { DOUBT };
         let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {
@@ -188,8 +189,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
 }
 
 impl Lanes {
-    /// Computes the least of the boundary forms at each sample, where each form is divided by its
-    /// error bound.
+    /// Stores in `margin` the least of the values of the surface's boundary forms at each sample,
+    /// where each form is divided by its error bound.
     #[inline(always)]
     fn margin(&mut self, edges: &[ScaledLine], conic: Option<&LocalQuadratic>, [x, y]: At) {
         let margin = &mut self.margin[..x.len()];
@@ -209,8 +210,8 @@ impl Lanes {
         }
     }
 
-    /// Draws the current surface over everything seen so far. Samples near the surface's boundary
-    /// become uncertain.
+    /// Draws the current surface over everything seen so far, where the samples hit it. Samples
+    /// near the surface's boundary become uncertain.
     #[inline(always)]
     fn cover(&mut self, length: usize) {
         let surface = self.margin[..length].iter().zip(&self.shown[..length]);

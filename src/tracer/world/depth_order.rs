@@ -47,11 +47,12 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // A surface in the near or far plane leaves doubt about the other plane only if the two planes
-    // are equal.
+    // If a surface lies in the near or the far plane, its depth is in doubt against the other plane
+    // only if the two planes are equal. It is therefore enough to test whether it lies in either
+    // plane.
     let at = (index, crossing.part);
-    // Planes may differ only after hundreds of bits. The highest precision finds this out, but
-    // takes long to prepare; it is therefore used last.
+    // Planes may differ only after hundreds of bits. Only the highest precision finds this out, but
+    // objects take long to prepare in it; it is therefore tried last.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }

@@ -213,11 +213,12 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // Only the highest precision has given an answer. It counts an object as hit if it
-            // cannot distinguish the ray from one that hits the object, even if the ray is outside
-            // of the object's bounds in the quadtree. Some callers pass only objects whose bounds
-            // contain the ray, and others pass all. Objects whose bounds do not contain the ray are
-            // therefore left out here, so that all callers get the same answer.
+            // `f64` and double-double have left doubt, and the highest precision has decided. It
+            // counts an object as hit if it cannot distinguish the ray from one that hits the
+            // object, even if the ray is outside of the object's bounds in the quadtree. Some
+            // callers pass only objects whose bounds contain the ray, and others pass all. Objects
+            // whose bounds do not contain the ray are therefore left out here, so that all callers
+            // get the same answer.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {
@@ -269,7 +270,7 @@ impl World {
     ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // Objects at or below this nearness are hidden.
+        // Nearness of the nearest crossing so far: objects that are nowhere nearer are hidden.
         let mut hidden = Nearness::NONE;
         let visit = |index| {
             if self.meet(&r, index, &mut nearest)?

@@ -10,9 +10,10 @@ use std::{
 
 use crate::{lock::lock, math::Real, tracer::object::Object};
 
-/// Maximum number of cached objects; with more, an object evicts the one in its slot. No scene
-/// written by hand has more. It is a prime number, because indices of objects in rows are often a
-/// power of two or of ten apart, and such objects must not evict each other.
+/// Maximum number of objects that a cache keeps in one precision; with more, an object evicts the
+/// one in its slot. No scene written by hand has more. It is a prime number, because indices of
+/// objects in rows are often a power of two or of ten apart, and such objects must not evict each
+/// other.
 pub const CACHE_SLOTS: usize = 4093;
 
 /// A cache of objects in one precision. Each object is prepared when it is first requested, and

@@ -68,7 +68,7 @@ pub struct Geometry {
     pub big: SceneFrame<Big>,
 }
 
-/// The camera, the near and the far plane, and cached objects in one precision.
+/// The camera, the near and the far plane, and cached objects of a scene in one precision.
 #[derive(Debug)]
 pub struct SceneFrame<T: Real> {
     pub camera: Camera<T>,
@@ -85,7 +85,8 @@ impl<T: Real> SceneFrame<T> {
     pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, slots: usize) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
-        // A point λr has the depth λZ, so its inverse depth 1/λ at the depth n is Z/n.
+        // A point λr has the depth λZ, so that the inverse depth 1/λ of a plane at the depth
+        // `depth` is Z/`depth`.
         let clip = |depth: f64| {
             let zero = Ball::exact(0.0);
             let inverse = Ball::exact(1.0) / camera.length(depth);

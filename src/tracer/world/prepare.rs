@@ -19,11 +19,11 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Minimum number of objects that are prepared on several threads. To prepare fewer objects takes
-/// less than a millisecond, at 0.7 µs each (benches/README.md).
+/// Minimum number of objects in a scene that are prepared on several threads. To prepare fewer
+/// objects takes less than a millisecond, at 0.7 µs each (benches/README.md).
 const OBJECTS_WORTH_THREADS: usize = 1 << 10;
 
-/// Number of objects that are prepared between two checks for cancellation. A block of so many
+/// Number of objects that are prepared between two checks for cancellation. To prepare so many
 /// takes at most 6 ms.
 const BLOCK: usize = 1 << 13;
 
@@ -50,7 +50,7 @@ pub fn prepare(
         );
         (object, extent.and_then(|extent| grid.item(index, &extent)))
     };
-    // There are no threads, either, if the system cannot start them.
+    // If the system cannot start threads, this thread prepares all objects.
     let threads = (count >= OBJECTS_WORTH_THREADS)
         .then(|| Threads::new(None).ok())
         .flatten();
@@ -72,8 +72,8 @@ pub fn prepare(
         objects.append(&mut more);
         items.extend(seen.drain(..).flatten());
     }
-    // The quadtree is built before the rest, which then reuses the memory of the lists that the
-    // quadtree has freed.
+    // The quadtree is built before the rest of the geometry, which then reuses the memory of the
+    // lists that the quadtree has freed.
     let quadtree = Quadtree::new(grid, items, cancel);
     let rest = if cancel::is_set(cancel) {
         &[]

@@ -15,7 +15,7 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
-  // During a drag, each new text gets a list of diagnostics, mostly an empty one.
+  // In most steps of a drag, there are neither new diagnostics nor old marks to remove.
   const isRight = published.diagnostics.length === 0;
   if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",

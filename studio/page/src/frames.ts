@@ -23,9 +23,9 @@ const COARSE_PIXELS = 320 * 180;
 
 /** Maximum size of a canvas that all browsers support: number of pixels, and side in pixels. */
 const MOST = { pixels: 16_000_000, side: 8192 };
-/** Time without a change after which a drag requests finer pictures, in milliseconds. */
+/** Pause in the changes by a drag after which finer pictures are requested, in milliseconds. */
 const HAND_RESTS = 20;
-/** Time of the last final picture, in milliseconds, below which the sharp picture is skipped. */
+/** If the last final picture took at most this long, in ms, the sharp picture is skipped. */
 const SOON = 200;
 
 /** Text that a requested picture shows, and the number of the request. */

@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** Minimum and maximum share of the text in the width (height on narrow screens), in per cent. */
+/** Minimum and maximum share of the page's width (on narrow screens, height) for the text, in %. */
 const LEAST = 20;
 const MOST = 80;
 

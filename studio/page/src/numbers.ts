@@ -59,7 +59,7 @@ export class Turn {
   end(): void { void this.limits.then(() => this.gesture.end()); }
 }
 
-/** Slider of a number, which may vanish from the text. Changes until release are one `Turn`. */
+/** Slider of a number that may vanish from the text. Changes until release are one `Turn`. */
 export class Dial {
   readonly range = create("input");
   turn: Turn | null = null;

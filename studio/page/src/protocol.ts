@@ -18,7 +18,7 @@ export interface SceneObject {
 
 export interface Handle { handle: string; at: Point | null; label: string }
 export interface DrawnObject extends SceneObject { outline: Polyline[]; handles: Handle[] }
-/** An object and a description of its place in the picture; null for some checkerboards. */
+/** An object with a description of its place in the picture, null for some checkerboards. */
 export interface ListedObject extends SceneObject { place: string | null }
 
 export interface Overlays {

@@ -20,7 +20,7 @@ const ASIDE: Point[] = [];
 for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) ASIDE.push([x, y]);
 ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
-/** An object with its block's range in the text, which is moved with changes. */
+/** An object, and its block's range in the text; changes of the text move the range. */
 interface Placed { object: SceneObject; from: number; to: number }
 
 class Selection {

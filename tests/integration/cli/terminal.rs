@@ -42,7 +42,8 @@ fn messages_escape_control_characters_of_texts_names_and_pictures() {
         assert_ne!(said.status, 0, "{line:?}");
         assert_escaped(&said.errors, line);
     }
-    // The recipe that is stored in a picture is printed in the same way.
+    // The recipe (scene and overrides) that is stored in a picture is printed with the same
+    // escapes.
     let recipe = Recipe {
         scene: SCENE.to_owned(),
         overrides: vec![format!("Ball.radius={CONTROLS}")],

@@ -123,7 +123,7 @@ fn pictures_are_compared_by_content_across_formats() {
 #[test]
 fn a_transfer_curve_other_than_srgb_gives_a_warning() {
     let folder = Folder::with([]);
-    // This returns an ICC profile with a single tag, the curve of red.
+    // This returns an ICC profile with a single tag, the transfer curve `curve` of the red channel.
     let profile = |curve: &[u8]| {
         let place = [144, curve.len() as u32].map(u32::to_be_bytes).concat();
         [&[0; 128], &1u32.to_be_bytes()[..], b"rTRC", &place, curve].concat()

@@ -158,10 +158,12 @@ fn a_scribbled_picture_is_wrong_and_not_noise() {
     assert_ne!(json(&folder, "b.png a.scn")["verdict"], "noise");
 }
 
-/// Function that returns the new value of a pixel, given its value and its row.
+/// Function that changes a picture to imitate a mistake: it returns the new value of a pixel, given
+/// its old value and its row.
 type Change = fn(Rgba<u8>, u32) -> Rgba<u8>;
 
-/// Ids of obvious mistakes, each with the change of every pixel that causes it.
+/// Obvious mistakes: the id that `diff` must report, and the change of every pixel that imitates
+/// it.
 const PLAIN: [(&str, Change); 7] = [
     ("black", |_, _| Rgba([0, 0, 0, 255])),
     ("one_colour", |_, _| Rgba([90, 120, 30, 255])),

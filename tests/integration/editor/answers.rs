@@ -25,7 +25,7 @@ const LEVEL: &str =
 /// Start of a text in which the camera is dragged.
 const SEEN: &str = "image { width 400 height 200 }\nsphere { center (0, 1, 0) }\ncheckerboard {}\n";
 
-/// Returns the labels of all completions in `all`, grouped by their kind.
+/// Returns the labels of the completions `all`, grouped by their kind.
 fn offered(all: &[Completion]) -> String {
     let kind = |completion: &Completion| {
         let kind = format!("{:?}", completion.kind);
@@ -81,7 +81,7 @@ fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
     Some(label)
 }
 
-/// Returns a line for each definition and block, with the fields of each block.
+/// Formats document symbols: a line for each definition and block, with the fields of each block.
 fn outline(symbols: &[Symbol]) -> String {
     let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
     let lines = symbols.iter().map(|symbol| {
@@ -124,7 +124,8 @@ fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> St
 }
 
 /// Returns the answer to the query `question` about `text`. Brackets in `text` mark the span that
-/// the query is about; for example, that of a [`Color`] to be replaced.
+/// the query is about; for example, that of a [`Color`] to be replaced. `other` is the query's
+/// second argument, such as the label of a completion; it is empty if the query has none.
 fn answer(question: &str, text: &str, other: &str) -> String {
     let at = text.find(['$', '[']).unwrap_or_default();
     let end = text.find(']').map_or(at, |end| end - 1);

@@ -95,7 +95,7 @@ fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     let camera = camera_of(scene);
     let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
     let (at, by) = (turned(point - camera.eye), turned(DVec3::AXES[axis]));
-    // This is z² times the derivative of the projection (x/z, y/z).
+    // This is the derivative of the projection (x/z, y/z) along the movement, multiplied by z².
     (by.truncate() * at.z - at.truncate() * by.z).normalize()
 }
 

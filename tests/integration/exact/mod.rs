@@ -33,7 +33,8 @@ fn part(scene: &Scene, area: Area) -> Exact {
     render_exact(&World::new(scene), area, &Control::default()).unwrap()
 }
 
-/// Returns generated scenes of `size`, in which all numbers have ordinary magnitudes.
+/// Returns generated scenes in which all numbers have ordinary magnitudes. Their pictures have the
+/// size `size`, in pixels.
 fn ordinary(size: [u32; 2], seed: u64) -> impl Iterator<Item = Scene> {
     generated(Numbers::Wild(0), size, seed).map(|(_, scene)| scene)
 }
@@ -99,9 +100,9 @@ fn assert_agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
     let scene = with_samples(scene, Method::Random, Count::PerPixel(samples));
     let sampled = sampled(&scene);
     // For a channel from 0 to 1 with mean m, the variance of the mean of n samples is at most
-    //     m·(1 − m)/n.
+    //     v = m·(1 − m)/n.
     // By Bernstein's inequality, the mean of n independent samples differs from m by more than
-    // `most` of this variance with a probability of at most 10⁻¹⁰.
+    // `most(v)` with a probability of at most 10⁻¹⁰.
     let log = libm::log(2e10);
     let most = |variance: f64| (2.0 * variance * log).sqrt() + log / (1.5 * samples as f64);
     let pixels = computed.film.pixels().iter().zip(sampled.pixels());

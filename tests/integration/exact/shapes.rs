@@ -22,8 +22,8 @@ fn assert_coverage(camera: &str, object: &str, expected: f64) {
 
 #[test]
 fn half_plane_coverage_matches_the_closed_form() {
-    // At distance 1, the pixel is 2 wide. The box's right edge is seen at edge/4, or at edge/5 if
-    // the right face is not visible.
+    // The view plane has the distance 1 and shows x from −1 to 1. The box's right edge is seen at x
+    // = edge/4, or at edge/5 if the right face is not visible.
     for edge in [-3.5f64, -0.25, 0.0, 1.0, 3.0] {
         let object = format!("box {{ min (-100, -100, -5) max ({edge}, 100, -4) color white }}");
         let expected = 0.5 + edge / if edge < 0.0 { 10.0 } else { 8.0 };
@@ -45,8 +45,9 @@ fn half_plane_coverage_matches_the_closed_form() {
     }
 }
 
-/// The silhouette of a sphere is an ellipse of the area πR²√C/(z² − R²)^(3/2), where C = c·c − R²,
-/// c is the centre and z its depth. If the centre is on the view axis, the ellipse is a circle.
+/// The silhouette of a sphere of radius R is an ellipse of the area πR²√C/(z² − R²)^(3/2). Here, c
+/// is the vector from the eye to the centre, z the centre's depth, and C = c·c − R². If the centre
+/// is on the view axis, the ellipse is a circle.
 #[test]
 fn sphere_coverage_matches_the_area_of_an_ellipse() {
     for (x, y, z, radius) in [
@@ -73,11 +74,12 @@ fn board_coverage_from_above_matches_the_closed_form() {
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),
-        // The colour is given by the sign s(x)·s(z). The pixel shows x from −3/4 to 5/4 and z from
-        // −1/2 to 3/2. That is two squares along each axis, so the integrals of both signs are 0.
+        // Let s be 1 and −1 in alternate squares along an axis. Squares are white where s(x)·s(z)
+        // is 1. The pixel shows x from −3/4 to 5/4 and z from −1/2 to 3/2, two squares along each
+        // axis, so both integrals of s are 0.
         ("(0.25, 1, 0.5)", 1.0, 0.5),
-        // The pixel shows x from −1/2 to 1, where the integral of s is 1 − 1/2, and z from −1/4 to
-        // 5/4, where it is −1/4 + 1 − 1/4. The area is (3/2)².
+        // The pixel shows x from −1/2 to 1, where the integral of s (see above) is 1 − 1/2, and z
+        // from −1/4 to 5/4, where it is −1/4 + 1 − 1/4. The area shown is (3/2)².
         ("(0.25, 0.75, 0.5)", 1.0, 0.5 + 0.5 * (0.5 * 0.5) / 2.25),
     ] {
         let camera = format!("eye {eye} direction (0, -1, 0) up (0, 0, -1) d 1");

@@ -176,7 +176,7 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
         ("link to a file outside", ""),
         ("link to a folder outside", ""),
     ]) {
-        // These outputs are named after the scene by default.
+        // By default, the output of these commands is named after the scene.
         let lines = ["render b.scn", "watch b.scn"].map(|line| (line, "b.png"));
         // These commands write files into an output folder.
         let grade = "grade a.scn a.png -o out";

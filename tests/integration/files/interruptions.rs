@@ -208,8 +208,8 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
         let is_whole = text == old || text == new || copies.iter().any(is_copied);
         assert!(is_whole, "{delay}");
         left += copies.len();
-        // The next run mentions the copy that was left of this file, but not when it formats
-        // another file of the same name.
+        // A killed run may leave a backup copy of the file. The next run that formats this file
+        // mentions the copy; a run that formats another file of the same name does not.
         for (line, is_named) in [
             ("fmt closed/a.scn", true),
             ("fmt --check other/a.scn", false),

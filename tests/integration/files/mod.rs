@@ -117,7 +117,7 @@ fn a_new_file_appears_complete_and_replaces_nothing() {
     assert_eq!(folder.read("a"), b"new");
     let error = new("there").unwrap_err();
     assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
-    // Writing also fails if the other file appears while this one is being written.
+    // Writing a new file also fails if another program creates one of this name meanwhile.
     let path = folder.path("b");
     let late = files::write(&path, Purpose::New, &AtomicBool::new(false), |out| {
         folder.write("b", "theirs");
@@ -163,7 +163,8 @@ fn a_file_changed_since_it_was_read_is_not_overwritten() {
         for (number, purpose) in [Purpose::Change(&original), again].into_iter().enumerate() {
             let changed = || {
                 files::write(&path, purpose, &AtomicBool::new(false), |out| {
-                    // For the second purpose, the other program has changed the file before.
+                    // The other program changes the file during the first write. The second write
+                    // finds it already changed.
                     if number == 0 {
                         meanwhile();
                     }

@@ -104,7 +104,8 @@ fn an_unchanged_file_list_is_not_rewritten() {
         out.write(&[("a".to_owned(), "text".to_owned())]).unwrap();
     };
     write();
-    // The hard link keeps the old file's inode in use, so a new file would have another number.
+    // The hard link keeps the old file's inode in use, so a new file would have another inode
+    // number.
     fs::hard_link(folder.path("out/.pinhole"), folder.path("first")).unwrap();
     let before = inode();
     write();

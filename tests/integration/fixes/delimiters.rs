@@ -38,7 +38,8 @@ cube for i < 3 and j < 3 { center (i, j, 0) }
 ",
 ];
 
-/// Codes, without `pinhole::`, of which one must be reported first if a delimiter is missing.
+/// Codes, without `pinhole::`, of the diagnostics about delimiters. If a delimiter is missing from
+/// a scene, the first diagnostic must have one of these codes.
 const OF_DELIMITERS: [&str; 7] = [
     "unclosed_block",
     "unopened_block",
@@ -49,8 +50,8 @@ const OF_DELIMITERS: [&str; 7] = [
     "nested_braces",
 ];
 
-/// Returns whether a text keeps all its characters in order when its fixes up to `most` are
-/// applied. White space is not compared.
+/// Returns whether a text keeps all its characters, in order, when the fixes of its diagnostics are
+/// applied, as far as their applicability is at most `most`. White space is not compared.
 fn keeps_all(text: &str, most: Applicability) -> bool {
     let fixed = scene::fix_all(&sources(text), most).text;
     let mut left = fixed.chars();

@@ -12,7 +12,8 @@ use pinhole::{
 
 use crate::random::Random;
 
-/// Spellings of units with their factors: lengths in metres, angles in degrees or radians.
+/// Spellings of units, separated by spaces, each with the factor that converts a number in the
+/// unit: lengths to metres, angles to degrees or radians.
 const UNITS: [(&str, f64); 9] = [
     ("cm", 0.01),
     ("mm", 0.001),
@@ -33,9 +34,8 @@ struct Words {
 }
 
 impl Words {
-    /// Reads the words of `text`. A field's name may be joined with its value, as in `radius2`, or
-    /// as in `centerball` if `all` contains the word `ball`. If `is_two`, a joined word is read as
-    /// two words.
+    /// Reads the words of `text`. If `is_two`, a field's name that is joined with its value is read
+    /// as two words: `radius2`, or `centerball` if the whole text `all` contains the word `ball`.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
         // Zero-width characters are not part of a number.
@@ -90,8 +90,9 @@ impl Words {
     }
 }
 
-/// Returns the length of a field's name that is joined with a value, as in `radius2`. Returns
-/// `None` if `word` is itself a field's name or does not start with one.
+/// Returns the length of a field's name that is joined with a value, as in `radius2`, or as in
+/// `centerball` if the whole text `all` contains the word `ball`. Returns `None` if `word` is
+/// itself a field's name or does not start with one.
 fn joined_field(word: &str, all: &str) -> Option<usize> {
     if BLOCKS.iter().any(|block| block.field(word).is_some()) {
         return None;
@@ -200,9 +201,9 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // From the words alone, it is not known whether a fix joined two words, split a word, or
-    // replaced one. Therefore, each of the last four pairs is tried both joined and apart. The way
-    // with the fewest differences counts.
+    // If two words in a row form a known word when they are joined, as `look at` does, the words
+    // alone do not tell whether a fix joined them. For the last four such pairs of the text, both
+    // answers are tried. The combination with the fewest lost and added names counts.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -237,9 +238,10 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     (fixed.text, complaints)
 }
 
-/// Returns the lost names and the added names. Each bit of `joins` says whether a pair of words
-/// that may have been joined counts as joined, from the last pair on. The sign of `joins` says it
-/// for all further pairs.
+/// Returns the names of `before` that are not in `after`, and the names of `after` that are not in
+/// `before`. Two words in a row may have been joined by a fix. The bits of `joins`, from the lowest
+/// on, say for each such pair whether it counts as joined, from the last pair of the text on. The
+/// sign of `joins` says it for all further pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],

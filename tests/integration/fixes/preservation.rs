@@ -42,7 +42,7 @@ fn safe_fixes_keep_numbers_and_names_of_foreign_files() {
     assert_none(&complaints);
 }
 
-/// A fix may reveal a mistake that was hidden, but the number of errors still falls.
+/// A fix may reveal a mistake that an error hid before, but the number of errors still falls.
 #[test]
 fn every_fix_of_a_foreign_file_leaves_fewer_errors() {
     let mut trial = Trial::default();

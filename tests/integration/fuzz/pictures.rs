@@ -8,8 +8,8 @@ use pinhole::film::read_picture_up_to;
 use super::{each, flip};
 use crate::program::Folder;
 
-/// Maximum number of decoded bytes. It is enough for the small pictures here. A header with a wrong
-/// size exceeds it, so the picture is refused.
+/// Maximum number of bytes to which a picture may be decoded in these tests. It is enough for the
+/// small pictures here. A header with a wrong size exceeds it, so the picture is refused.
 const LIMIT: u64 = 1 << 20;
 
 /// Returns a small picture in each format and several colour types.

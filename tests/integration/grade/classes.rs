@@ -17,7 +17,7 @@ sphere Ball { center (-1, 1, 0) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// Names of pictures, and the arguments of `render` that make them.
+/// Rows of a picture's file name and the arguments of `render` that make the picture.
 const PICTURES: &str = "
     right.png -> --set sampler.method=exact
     red.png -> --set sampler.method=exact --set image.background=red
@@ -445,7 +445,7 @@ fn the_folders_of_a_class_may_be_listed() {
         ("class/ben/render.png", "red.png"),
         ("class/cy/out/x.png", "red.png"),
         ("class/dora.png", "right.png"),
-        // These are two classes.
+        // The folders `one` and `two` are two classes.
         ("one/anna/x.png", "right.png"),
         ("two/anna/x.png", "red.png"),
         ("two/ben.png", "red.png"),

@@ -1,4 +1,4 @@
-//! The command `grade`: a line for each picture, and a page.
+//! The command `grade`: it prints a line for each picture, and writes a page.
 
 use std::fs;
 

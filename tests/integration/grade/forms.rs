@@ -174,7 +174,7 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
     );
     assert_eq!(folder.text("work.csv"), WORKSHEET);
     let filled = said.text();
-    // Rows without a change are kept byte for byte.
+    // Rows of the worksheet in which nothing changes are kept byte for byte.
     for row in [
         "\"Participant 99\",\"No, \"\"body\"\"\",,20.00,Yes,\"Monday, 3 March\",\"stays\"\r\n",
         "\"Participant 3\",C,2.00,20.00,No,-,\"stays\"\r\n",

@@ -8,7 +8,7 @@ use super::textbook::{
     Axes, Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible, light, sharpened,
 };
 
-/// A mistake that a program of the class may have.
+/// A mistake that a student's program may have.
 pub struct Mistake {
     /// Accepted answers of `diff`, separated by bars. Each is an id, or an id and a part of its
     /// message, or the target of its `--set`.
@@ -16,7 +16,7 @@ pub struct Mistake {
     change: Change,
 }
 
-/// The change that makes a mistake.
+/// The change of a correct program, or of its picture, that makes a mistake.
 enum Change {
     /// Changes the program. A scene that lacks the object of the mistake stays unchanged.
     Program(fn(&mut Program)),
@@ -57,7 +57,7 @@ const fn picture(name: &'static str, change: fn(&RgbImage) -> RgbImage) -> Mista
     Mistake { name, change }
 }
 
-/// All mistakes, in groups.
+/// All mistakes with which the grading is tested, grouped by what they affect.
 pub const GROUPS: [&[Mistake]; 5] = [
     OF_THE_PICTURE,
     OF_THE_CAMERA,
@@ -66,7 +66,7 @@ pub const GROUPS: [&[Mistake]; 5] = [
     OTHERS,
 ];
 
-/// Mistakes that affect the whole picture.
+/// Mistakes of a student's program in the encoding, the exposure or the place of the whole picture.
 const OF_THE_PICTURE: &[Mistake] = &[
     picture("mirrored", imageops::flip_horizontal),
     picture("upside_down", imageops::flip_vertical),
@@ -89,7 +89,7 @@ const OF_THE_PICTURE: &[Mistake] = &[
     row("half_pixel", |p| p.offset = 0.5),
 ];
 
-/// Mistakes of the camera.
+/// Mistakes of a student's program in the camera: in its axes, its rays or its lens.
 const OF_THE_CAMERA: &[Mistake] = &[
     row("aspect its window is 4:3", |p| p.aspect = 0.75),
     row("aspect twice as wide", |p| p.aspect = 2.0),
@@ -116,7 +116,7 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("camera.lookat", |p| p.lookat += dvec3(0.3, 0.2, -0.1)),
 ];
 
-/// Mistakes in the board.
+/// Mistakes of a student's program in the place, the squares or the colours of the checkerboard.
 const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
     row("board_truncated", |p| p.squares = Squares::Truncated),
@@ -132,7 +132,7 @@ const OF_THE_BOARD: &[Mistake] = &[
     }),
 ];
 
-/// Mistakes of the sphere, the triangle and the box.
+/// Mistakes of a student's program in the sphere, the triangle or the box.
 pub const OF_THE_OBJECTS: &[Mistake] = &[
     row("object_missing Ball", |p| {
         p.objects.retain(|object| object.name != "Ball")
@@ -190,7 +190,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
     }),
 ];
 
-/// Other mistakes. Some of them are visible only in few scenes.
+/// Mistakes of a student's program beyond the other groups. Some change only few of the scenes.
 const OTHERS: &[Mistake] = &[
     picture("transposed", |picture| {
         imageops::flip_horizontal(&imageops::rotate90(picture))
@@ -245,7 +245,7 @@ const OTHERS: &[Mistake] = &[
     row("eye_lookat_exchanged", |p| {
         (p.eye, p.lookat) = (p.lookat, p.eye)
     }),
-    // The scene's lens has 40 degrees, and half of them are taken for 20 radians.
+    // The field of view is 40°. The program takes half of it, 20°, for 20 radians.
     row("fov_unit", |p| p.distance = 1.0 / libm::tan(20.0)),
     row("colors_exchanged", |p| {
         let colors = ["Ball", "Crate"].map(|name| p.object(name).map(|object| object.color));
@@ -440,7 +440,7 @@ fn street() -> Program {
     street
 }
 
-/// Decodes an sRGB byte to light, and encodes the light with a power instead of the sRGB curve.
+/// Decodes an sRGB byte to light, and encodes it again by the exponent 1/`power` instead of sRGB.
 fn power(byte: u8, power: f64) -> u8 {
     (255.0 * libm::pow(light(f64::from(byte) / 255.0), 1.0 / power)).round() as u8
 }

@@ -78,8 +78,8 @@ fn wrongly_judged(case: &Case) -> Option<String> {
     let size = picture.dimensions().into();
     let file = images::png(size, ColorType::Rgb, BitDepth::Eight, picture.as_raw());
     let answer = answer(&case.text, &[], &file);
-    // A shift by half a pixel is visible only at edges. If the picture has it, it explains most of
-    // the difference.
+    // A shift of all samples by half a pixel changes only edges, but where a picture has it, it
+    // explains most of the difference. A reported shift that explains less than half is wrong.
     let is_half = |one: &Value| one["id"] == "half_pixel" && one["explains"].as_f64() < Some(0.5);
     let mut mistakes = answer["mistakes"].as_array().unwrap().iter();
     if !case.is_judged_correctly(&answer) || mistakes.any(is_half) {

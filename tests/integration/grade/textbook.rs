@@ -43,16 +43,16 @@ pub enum Encoding {
     Srgb,
     /// Does not encode: the byte is proportional to the light.
     None,
-    /// Encodes twice by the curve of sRGB.
+    /// Encodes the light by the sRGB curve, and the result once more.
     Twice,
-    /// Encodes by the reciprocal of a power.
+    /// Encodes by a power whose exponent is the reciprocal of this number.
     Power(f64),
 }
 
 /// Which of the surfaces that a ray hits the program shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
-    /// The nearest surface.
+    /// The nearest surface, which is correct.
     Nearest,
     /// The surface of the first object in the scene.
     First,
@@ -65,16 +65,16 @@ pub enum Visible {
 /// How the program treats surfaces behind the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Behind {
-    /// They are not visible.
+    /// Surfaces behind the eye are not visible, which is correct.
     Unseen,
-    /// They are compared by their distance, as if they were before the eye.
+    /// Surfaces behind the eye are compared by their distance, as if they were before it.
     ByDistance,
-    /// They count as nearer than all surfaces before the eye.
+    /// Surfaces behind the eye count as nearer than all surfaces before it.
     First,
 }
 
-/// How the program computes the number of a board's square. Squares of odd number have the second
-/// colour.
+/// How the program computes the number of a board's square from the two coordinates x and z, in
+/// units of the square's side. Squares of odd number have the second colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Squares {
     /// Adds the two coordinates, each rounded down.
@@ -93,18 +93,19 @@ pub enum Squares {
     Sum,
     /// Takes the first coordinate, rounded down, so that the board has stripes.
     Stripes,
-    /// The number is odd if one of the two coordinates, rounded down, is odd.
+    /// The number is odd if at least one of the two coordinates, rounded down, is odd.
     BothEven,
-    /// Takes the sign of the product of the sines of the two coordinates.
+    /// The number is odd if the product of the sines of the two coordinates is negative.
     Sines,
 }
 
-/// Mistake in the camera's axes or rays.
+/// Mistake in the camera's axes or rays. The axes are u (right), v (up) and w (against the view
+/// direction).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axes {
     /// No mistake.
     Right,
-    /// The roll computes v from the new u instead of the old one.
+    /// The roll computes v from the rolled u instead of the unrolled one.
     NewU,
     /// The up vector is used as v.
     UpAsV,
@@ -153,7 +154,7 @@ pub struct Program {
     pub up: DVec3,
     /// Roll in radians.
     pub roll: f64,
-    /// Distance of the view plane from the eye.
+    /// Distance of the view plane from the eye, in the scene's unit, as [`Self::view_height`].
     pub distance: f64,
     pub view_height: f64,
     pub near: f64,
@@ -170,14 +171,14 @@ pub struct Program {
     /// Ratio of the window's width to its correct width.
     pub aspect: f64,
     pub axes: Axes,
-    /// Factor by which all light is multiplied.
+    /// Factor by which all light is multiplied; 1 is correct.
     pub gain: f64,
     /// Whether the near and far depths are compared with distances instead of depths.
     pub clips_distances: bool,
     /// Whether the test of one of a triangle's edges is missing.
     pub misses_edge: bool,
     pub is_parallelogram: bool,
-    /// Whether the greater root of a sphere's equation is not tried.
+    /// Whether the greater root of a sphere's quadratic equation, its far side, is not tried.
     pub misses_root: bool,
     /// Whether boxes have no faces perpendicular to z.
     pub misses_axis: bool,
@@ -191,7 +192,8 @@ pub struct Program {
     pub behind: Behind,
     pub visible: Visible,
     pub squares: Squares,
-    /// Number that is added to the number of a square; 0 is correct.
+    /// Number that is added to the number of each square ([`Squares`]), so that 1 swaps the board's
+    /// colours; 0 is correct.
     pub parity: i64,
     pub encoding: Encoding,
     /// Whether the program averages encoded colours instead of light.
@@ -215,7 +217,7 @@ impl Program {
         self.object(name).map(|object| &mut object.shape)
     }
 
-    /// Renders the picture.
+    /// Renders the picture of the scene as this program does.
     pub fn render(&self) -> RgbImage {
         let [width, height] = self.size;
         let backward = match self.axes {
@@ -290,8 +292,8 @@ impl Program {
         }
     }
 
-    /// Decodes a channel of a colour to light. A colour that is not averaged is encoded to the same
-    /// byte again, unless the program does not encode light or encodes it twice.
+    /// Decodes a channel of a colour to light. The program encodes light by the inverse function,
+    /// unless `encoding` is [`Encoding::None`] or [`Encoding::Twice`].
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),
@@ -330,11 +332,11 @@ impl Program {
         }
     }
 
-    /// Returns the colour that a ray sees. The ray starts at `from`, and `view` is the view
-    /// direction.
+    /// Returns the colour of the surface that a ray from the point `from` shows, or the background.
+    /// `view` is the view direction.
     fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> [u8; 3] {
-        // With a mistake, surfaces behind the eye count as nearest, or are compared by their
-        // distance.
+        // Of two surfaces, the one with the smaller value counts as nearer. With [`Behind::First`],
+        // surfaces behind the eye, where t is negative, come first.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t

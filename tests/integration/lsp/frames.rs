@@ -1,4 +1,5 @@
-//! Frames: they equal the pixels of a render, are computed in slices of work, and can be cancelled.
+//! Frames, the pictures that the language server sends to a page: they equal the pixels of a
+//! render, are computed in slices of work, and can be cancelled.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};

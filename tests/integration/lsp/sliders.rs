@@ -83,7 +83,7 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "sphere { radius a }\nsphere { radius 3 - a }",
             json!([0.1, 2.9, 0.1, [0.1, 2.9]]),
         ),
-        // The language requires whole numbers here.
+        // Here, the number is a count of repetitions, which must be whole.
         (
             "4",
             "sphere for i < a { center (i, 0, 0) }",

@@ -29,7 +29,8 @@ fn at_most_1000_overlays_and_the_requested_object_are_sent() {
         assert_eq!(listed.as_array().map(Vec::len), Some(count));
         assert!(listed[0]["range"].is_object() && listed[0]["outline"].is_null());
     }
-    // The first board is listed wherever it is in the text, because other objects stand on it.
+    // The first board is listed even if more than 1000 objects precede it in the text, because new
+    // objects are placed on it.
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
     let floor = many.collect::<String>() + "checkerboard {}\ncheckerboard { y 1 }\n";
     let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";

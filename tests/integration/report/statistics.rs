@@ -167,8 +167,8 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
 #[test]
 fn multi_jittered_estimates_round_to_a_full_grid() {
     let points = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0].map(|n: f64| [n, n, 1.0 / n.sqrt()]);
-    // The number of samples is rounded up to one that makes a grid, but is at most that of the last
-    // measured point.
+    // The number of samples is rounded up to a square or a product of neighbouring integers, which
+    // makes a full grid, but it is at most that of the last measured point.
     let samples = [401.0, 400.0, 419.0, 421.0, 1020.0, 1024.0];
     let grids = [420.0, 400.0, 420.0, 441.0, 1024.0, 1024.0];
     for (samples, grid) in samples.into_iter().zip(grids) {

@@ -42,11 +42,11 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
 }
 
 /// Edge of a half-plane in a pixel: its normal, its distance from the pixel's centre, and the area
-/// of the pixel on its inner side. Edges parallel to the strata are not used: if each stratum has
-/// one unbiased point, their errors say nothing.
+/// of the pixel on its inner side. No edge is parallel to the strata of the methods: if each
+/// stratum has one unbiased point, the errors at such edges do not tell the methods apart.
 type Edge = (DVec2, f64, f64);
 
-/// Returns an error for each edge: the share of points on the edge's inner side minus the area
+/// Returns the error at each edge: the share of points on the edge's inner side minus the area
 /// there. A different pixel is used for each edge.
 fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     let sampling = sampling(method, n, n);
@@ -150,8 +150,8 @@ fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
         Method::Halton,
         Method::Sobol,
     ] {
-        // This computes the slope of the least-squares line through five equidistant logarithms,
-        // and the slope's standard error.
+        // This computes the slope of the least-squares line through the logarithms of the errors at
+        // the five counts, whose own logarithms are equidistant, and the slope's standard error.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {
             let nothing = std::iter::repeat(0.0);

@@ -4,11 +4,11 @@ use std::collections::HashSet;
 
 use super::*;
 
-/// Seeds and pixels for which properties are tested.
+/// Seeds, each with the coordinates of a pixel. The points of that pixel are tested.
 const PLACES: [(u64, [u32; 2]); 3] = [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])];
 
-/// Returns the index of the stratum, of `n` equal ones, in which an offset lies: ⌊(offset + 1/2) ·
-/// n⌋. It is computed without rounding.
+/// A pixel's side from −1/2 to 1/2 is divided into `n` equal strata. Returns the index of the
+/// stratum in which `offset` lies: ⌊(offset + 1/2) · n⌋, computed without rounding.
 fn stratum(offset: f64, n: u64) -> u64 {
     ((fraction(offset) * u128::from(n)) >> 54) as u64
 }
@@ -132,8 +132,8 @@ fn halton_is_the_shifted_halton_sequence() {
     let n = 4_u64.pow(4) * 3_u64.pow(3);
     let points = points(Method::Halton, n, 0, [3, 5]);
     let origin = points[0];
-    // This returns the distance from the first point, modulo the pixel's side, in units of 2^−53.
-    // The error is at most one unit.
+    // This returns `offset` − `origin`, modulo the pixel's side, in units of 2^−53. The error is at
+    // most one unit.
     let from = |offset: f64, origin: f64| {
         (((fraction(offset) + (1 << 54) - fraction(origin)) & ((1 << 54) - 1)) >> 1) as u64
     };

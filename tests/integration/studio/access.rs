@@ -315,8 +315,8 @@ fn malformed_requests_and_frames_do_no_harm() {
         b"GET\r\n\r\n",
         b"GET / HTTP/1.1\r\n\xe9\r\n\r\n",
         b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-        // These are a reserved opcode, a frame without a mask, a continuation frame without a
-        // first frame, and a text frame that is not UTF-8.
+        // These frames are wrong: a reserved opcode, a frame without a mask, a continuation frame
+        // without a first frame, and a text frame that is not UTF-8.
         &[upgrade.as_bytes(), &[0x8f, 0x80, 0, 0, 0, 0]].concat(),
         &[upgrade.as_bytes(), &[0x81, 0x01, b'y']].concat(),
         &[upgrade.as_bytes(), &[0x80, 0x81, 0, 0, 0, 0, b'y']].concat(),

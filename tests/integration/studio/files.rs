@@ -42,7 +42,8 @@ fn a_save_writes_the_file_and_notifies_other_pages() {
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(folder.text("a.scn"), "// é\r\n");
     assert_eq!(told(&mut second), [json!("// é\r\n"), Value::Null]);
-    // If the file already contains the text to be saved, saving succeeds, whatever the base is.
+    // If the file already contains the text to be saved, saving succeeds even if `base`, the file's
+    // content as the page knows it, is out of date.
     for (text, base) in [("// é\r\n", "x"), ("// 2", "// é\r\n")] {
         assert_eq!(save(&mut second, text, Some(base))["result"], saved());
     }

@@ -3,9 +3,9 @@
 
 use super::super::special::{Complex, integrals};
 
-/// Angle |θ|, in radians, below which the regular function R ([`rest_of_pole`]) is computed by a
-/// Taylor series, because its closed formula cancels. The first omitted term, θ⁹/47900160, is 100
-/// roundings; the Lerch series may have an error of 500 roundings.
+/// Angle |θ| ([`lerch`]), in radians, below which the regular function R ([`rest_of_pole`]) is
+/// computed by a Taylor series, because its closed formula cancels. The first omitted term,
+/// θ⁹/47900160, is 100 roundings; the Lerch series may have an error of 500 roundings.
 const NEAR_POLE: f64 = 0.2;
 
 /// Computes the Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s) for s = 3, 4 and 5 at θ = `theta`,

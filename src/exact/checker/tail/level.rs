@@ -10,20 +10,20 @@ use super::super::special::{Complex, cis, reduced_multiple, square, times};
 use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, mode};
 use crate::math::{Double, Real};
 
-/// Truncation error that is always allowed for the Fourier modes of an edge along which the depth m
-/// less than doubles, as a fraction of the pixel's tolerance. It is used if it exceeds
-/// [`LATER_TERMS_SHARE`] of the edge's tolerance.
+/// Minimum truncation error that is allowed for the sum over an edge along which the depth m less
+/// than doubles, as a fraction of the pixel's tolerance. The edge's own limit,
+/// [`LATER_TERMS_SHARE`] of its tolerance, is used if it is larger.
 const LEVEL_TRUNCATION: f64 = 1e-3;
-/// Reciprocal of the relative change of the depth m along an edge below which m counts as constant.
-/// The error bound is then larger by 4/STEADY of the sum of absolute terms, that is by 1e-6 of a
-/// value that is itself small if crossings are many. Measured: with 7.5e5 or 1.2e7, no bound
-/// changes.
+/// Depth m in the middle of an edge, divided by the change of m along the edge, above which m
+/// counts as constant. The error bound is then larger by 4/STEADY of the sum of absolute terms,
+/// that is by 1e-6 of a value that is itself small if crossings are many. Measured: with 7.5e5 or
+/// 1.2e7, no bound changes.
 const STEADY: f64 = 3e6;
 
-/// Computes Σ (−1)^j·X over the crossings of an edge along which the depth m less than doubles.
-/// `trivial` is an upper bound of the sum's absolute value, and `tolerance` limits the truncation
-/// error. Returns 0 with the bound `trivial` if the Fourier modes give no better bound or exceed
-/// the budget.
+/// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over the crossings of
+/// an edge along which the depth m less than doubles. `trivial` is an upper bound of the sum's
+/// absolute value, and `tolerance` limits the truncation error. Returns 0 with the bound `trivial`
+/// if the Fourier modes give no better bound or exceed the budget.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -38,14 +38,14 @@ pub(super) fn sum(
     let (w, u) = (start / all.rise, 1.0 / start);
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) * u * u * u, |a| a * (u / PI));
     let neglected = (LEVEL_TRUNCATION * budget.tolerance).max(LATER_TERMS_SHARE * tolerance);
-    // Mode n is at most 8/π²·n^−3 times `trivial`.
+    // The Fourier mode n is at most 8/π²·n^−3 times `trivial`.
     let Some((last, beyond)) = last_mode(trivial, neglected, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };
 
     let step = all.alternating_step();
-    // The phases of mode 1 at the first crossing, and at the place of the crossing that would
-    // follow the last one.
+    // e^(iφ) with the phase φ of mode 1 at the first crossing, and at the place of the crossing
+    // that would follow the last one.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;
@@ -83,8 +83,9 @@ pub(super) fn sum(
         .map(|k| lines * series.size(k, all.depth))
         .sum();
     // If m counts as constant, m^−s differs from its value in the middle by at most s·gN/2m of this
-    // value. Otherwise, each of the two Lerch series has an error of about 500 roundings of w/2
-    // times its first term, and a truncation error of at most 0.04·s·(s + 1)/w² of its first term.
+    // value, where N is the number of crossings and g the step of m between them. Otherwise, each
+    // of the two Lerch series has an error of about 500 roundings of w/2 times its first term, and
+    // a truncation error of at most 0.04·s·(s + 1)/w² of its first term.
     let model = if is_steady {
         4.0 / STEADY
     } else {
@@ -113,7 +114,7 @@ fn geometric(theta: f64, lines: f64, [place, last]: [Complex; 2]) -> Complex {
         let middle = cis(half * (lines - 1.0));
         return times(place, middle.map(|x| ratio * x));
     }
-    // The sum is the difference divided by 1 − e^(iθ) = −2i·sin(θ/2)·e^(iθ/2).
+    // The sum is `difference` divided by 1 − e^(iθ) = −2i·sin(θ/2)·e^(iθ/2).
     let difference = [place[0] - last[0], place[1] - last[1]];
     let [x, y] = times(difference, cis(-half));
     [-0.5 * y / sine, 0.5 * x / sine]
@@ -162,7 +163,8 @@ mod tests {
     #[test]
     fn geometric_sums() {
         for theta in [0.0, 1e-9, -1e-3, 0.7, 3.0, -PI] {
-            // In the direct sum, angles have errors of up to 1000·3·2⁻⁵³.
+            // The tolerance allows for the errors of the direct sum: its angles have errors of up
+            // to 1000·3·2⁻⁵³.
             close(
                 geometric(theta, 1000.0, places(theta, 1000.0)),
                 one_by_one(theta, f64::INFINITY, 1000.0, 3),

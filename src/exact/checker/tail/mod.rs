@@ -43,33 +43,34 @@ use super::homography::BoundedSum;
 use super::special::Complex;
 use crate::math::{Double, Real};
 
-/// Number of terms of the series X ([`EdgeSeries`]) that are summed by Fourier modes; later terms
-/// count as an error.
+/// Number of terms of the series X ([`EdgeSeries`]) whose sums over an edge's crossings are
+/// computed by Fourier modes; later terms count as an error.
 const MODE_TERMS: usize = 3;
 
 /// Maximum number of crossings of an edge that are all added one by one; above it, Fourier modes
 /// are tried. So many crossings take 60 µs, 3 ns each. Not critical: with 5000 or 80,000, the
 /// measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
-/// Maximum number of crossings, and of Fourier modes, that are added for an edge; the remaining
-/// ones count as an error. So many take a few milliseconds.
+/// Maximum number of an edge's crossings that are added one by one, and maximum number n of a
+/// Fourier mode; the crossings or modes beyond count as an error. So many take a few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
-/// Fraction of the tolerance below which a whole sum is left out and counts as an error. Skipped
-/// Fourier modes may have the same fraction. The fractions of all kinds of errors add up to less
-/// than 1.
+/// Fraction of an edge's tolerance up to which the edge's whole sum is left out: if an upper bound
+/// of the sum is at most this fraction, the bound counts as an error instead. Skipped Fourier modes
+/// may have the same fraction. The fractions of all kinds of errors add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
-/// Fraction of the tolerance for the later terms of the series X ([`EdgeSeries`]), which are not
-/// summed by Fourier modes. Not critical: with 0.0125 or 0.2, the measured running time changes by
-/// less than 10 %.
+/// Fraction of an edge's tolerance for the error of leaving out the later terms of the series X
+/// ([`EdgeSeries`]), which are not summed by Fourier modes. Not critical: with 0.0125 or 0.2, the
+/// measured running time changes by less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
-/// Work charged per crossing that is added directly, in units of about 50 ns.
+/// Work charged to the pixel's budget per crossing that is added directly, in units of about 50 ns.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
-/// Work charged per Fourier mode, in units of about 50 ns.
+/// Work charged to the pixel's budget per unit of the last Fourier mode's number n, in units of
+/// about 50 ns. Only odd numbers have modes.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
-/// Computes Σ (−1)^j·X over all crossings of an edge. `tolerance` limits the truncation error.
-/// Returns 0 with an upper bound of the sum's absolute value if the sum is negligible or the budget
-/// does not afford it.
+/// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over all crossings of
+/// an edge. `tolerance` limits the truncation error. Returns 0 with an upper bound of the sum's
+/// absolute value if the sum is negligible or the budget does not afford it.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -91,8 +92,8 @@ pub(super) fn sum(
         return unknown;
     }
     if all.rise * lines < all.depth {
-        // The modes of an infinite sum from either end would not decay, because m less than doubles
-        // between the ends.
+        // As m less than doubles between the edge's ends, the Fourier modes of a sum from one end
+        // to infinity would decay too slowly. `level` sums between the two ends.
         let sum = level::sum(all, series, trivial, tolerance, budget);
         if sum.bound > tolerance && lines <= MAX_TERMS_ADDED {
             return one_by_one(lines).unwrap_or(sum);
@@ -117,7 +118,8 @@ pub(super) fn sum(
     for (end, crossing) in ends.iter().enumerate() {
         let Some(crossing) = crossing else { continue };
         let rest = receding::sum_from(all, crossing, series, share, budget);
-        // Crossing j has the sign (−1)^j. The sum beyond the last crossing is subtracted.
+        // Crossing j has the sign (−1)^j. If the edge ends before the horizon, the sum from its end
+        // to the horizon is subtracted.
         let odd = crossing.floor().1 != (end == 1);
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;
@@ -125,9 +127,9 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns the amplitudes of the first terms of X in the Fourier mode n = 1. `first` is the
-/// amplitude of the first term if its factor is 1. `next` computes from a term's amplitude with the
-/// factor 1 the amplitude of the next term with the factor 1.
+/// Returns the amplitudes of the first terms of the series X ([`EdgeSeries`]) in the Fourier mode n
+/// = 1. They are computed for factors of 1, the first being `first` and each other `next` of the
+/// one before, and then multiplied by `series.factors`.
 fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f64; MODE_TERMS] {
     let (mut amplitudes, mut unit) = ([0.0; MODE_TERMS], first);
     for (amplitude, factor) in amplitudes.iter_mut().zip(&series.factors[1..=series.terms]) {
@@ -138,11 +140,11 @@ fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f6
 }
 
 /// Returns the number of the last Fourier mode to compute, and a bound on the sum of all later
-/// modes. Mode n must be at most `size`·n^−3. The later modes add up to less than a quarter of
-/// `limit`, unless this takes more than [`MAX_TERMS_ADDED`] modes. Returns `None` if the bound is
-/// not less than `trivial`, or if the budget does not afford the modes.
+/// modes. `size` must be such that mode n is at most `size`·n^−3. The later modes add up to less
+/// than a quarter of `limit`, unless this takes more than [`MAX_TERMS_ADDED`] modes. Returns `None`
+/// if the bound is not less than `trivial`, or if the budget does not afford the modes.
 fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Option<(f64, f64)> {
-    // Σ n^−3 over the odd n beyond an integer Q is at most 1/(4Q²).
+    // The sum of n^−3 over the odd n beyond an integer Q is at most 1/(4Q²). Here, Q is `last` − 1.
     let last = ((size / limit).sqrt().ceil() + 1.0).clamp(3.0, MAX_TERMS_ADDED);
     let beyond = size / (4.0 * (last - 1.0) * (last - 1.0));
     if beyond.is_nan() || beyond >= trivial || !budget.try_charge(last * MODE_WORK) {
@@ -151,14 +153,15 @@ fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Optio
     Some((last, beyond))
 }
 
-/// Returns the Fourier mode `n` of the first terms of X, from the terms' amplitudes and from the
-/// sums
+/// Returns the Fourier mode `n` of the first terms of the series X ([`EdgeSeries`]). `amplitudes`
+/// are those of mode 1 ([`amplitudes`]), and `sums` are the sums
 ///
-/// Σ_j e^(iπnt + iθj)·(w + j)^(−s)
+/// Σ_j e^(iπnt + iθj)·(w + j)^(−s) for s = 3, 4 and 5
 fn mode(n: f64, amplitudes: &[f64; MODE_TERMS], sums: [Complex; MODE_TERMS]) -> f64 {
     let per_mode = 1.0 / n;
     let cube = per_mode * per_mode * per_mode;
-    // The imaginary parts of the sums times i^−2, i^−3 and i^−4, which are −1, i and 1.
+    // Only the imaginary parts of the products count. The sums are multiplied by i^−2, i^−3 and
+    // i^−4, which are −1, i and 1.
     let [first, second, third] = [-sums[0][1], sums[1][0], sums[2][1]];
     let [a, b, c] = amplitudes;
     cube * (a * first + per_mode * (b * second + per_mode * c * third))
