@@ -89,7 +89,7 @@ fn extreme_numbers_are_written_to_the_last_bit() {
         .data()
         .clone();
     for (number, other) in numbers.into_iter().zip(numbers.into_iter().rev()) {
-        data.camera.up = pinhole::glam::DVec3::new(number, other, 1.0);
+        data.camera.up = glam::DVec3::new(number, other, 1.0);
         data.camera.roll = pinhole::Angle {
             degrees: number,
             radians: other,
