@@ -117,7 +117,7 @@ pub struct ExactPixel<const N: usize = 3> {
 /// Integrator that computes the exact pixels of a picture.
 #[derive(Debug)]
 pub struct Integrator<'a, const N: usize = 3> {
-    world: &'a World,
+    pub(crate) world: &'a World,
     quartering: Quartering<'a>,
     /// Values of each colour of the world's palette, by its index there (slot).
     colors: Vec<[f64; N]>,
