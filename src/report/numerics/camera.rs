@@ -20,7 +20,7 @@ use crate::{
     scene::{Camera, Lens},
 };
 
-/// Hard cases of the camera, in the order of the catalogue: first those that test its axes, then
+/// Hard cases of the camera, in the order in which the report lists them: first those that test its axes, then
 /// those that test what is seen.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
