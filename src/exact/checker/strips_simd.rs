@@ -122,8 +122,8 @@ impl LaneSums {
 }
 
 impl BoardLanes {
-    /// Sets the board of the pixel in lane `place`, of eight. The board has two families of parallel
-    /// lines, 0 and 1. `families` lists both, the one with fewer lines in the pixel first.
+    /// Sets the board of the pixel in lane `place`, of eight. The board has two families of
+    /// parallel lines, 0 and 1; `families` lists both, the one with fewer lines in the pixel first.
     /// `first[k]` is the smallest number of a square in the pixel, counted across family k.
     pub fn set(
         &mut self,
