@@ -7,6 +7,7 @@
 #[cfg(feature = "cli")]
 mod excerpt;
 mod fix;
+mod mistakes;
 mod problems;
 #[cfg(feature = "cli")]
 mod report;
@@ -14,6 +15,7 @@ mod report;
 mod visible;
 
 pub use fix::{Applicability, Edit, Fix, apply};
+pub use mistakes::Mistakes;
 pub use problems::{MOST_PROBLEMS, Problems};
 #[cfg(feature = "cli")]
 pub use report::{Drawing, Report, Style};

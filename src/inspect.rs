@@ -95,6 +95,11 @@ impl ObjectFacts {
 }
 
 /// Describes a scene. `source` is the text that it was read from, in which lines are counted.
+///
+/// # Panics
+///
+/// The scene was not read, but made in code, and breaks a condition of the language;
+/// [`Scene::check`] tells.
 pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     let per_pixel = match scene.sampler.count {
         Count::PerPixel(count) => Some(count),

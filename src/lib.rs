@@ -1,9 +1,36 @@
 //! Pinhole reads a small declarative scene language and renders what it describes through a virtual
-//! pinhole camera.
+//! pinhole camera, with every sample decided exactly.
 //!
-//! The modules below stand in groups, roughly in the order in which a scene becomes a picture. A
-//! group imports only groups before it, and modules of one group import each other one way; a test
-//! holds this. The whole pipeline:
+//! A text becomes a [`Scene`], and a scene a [`Picture`] in memory:
+//!
+//! ```
+//! use pinhole::Scene;
+//!
+//! let text = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }  sphere { center (0, 1, 0) }";
+//! let scene = Scene::parse(text)?.with_set("image.width=160")?.with_set("image.height=90")?;
+//! let picture = scene.render()?;
+//! assert_eq!(picture.to_rgb8().len(), 160 * 90 * 3);
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("ball.png");
+//! picture.save(path)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! - [`Scene::parse`] returns the scene, or all [`Mistakes`] of the text, each a [`Diagnostic`]
+//!   with its places and fixes. [`Scene::diagnostics`] has the warnings.
+//! - [`Scene::render`] samples as the scene says; [`Scene::render_exact`] computes each pixel's
+//!   mean with a bound on its error. [`Picture`] has bytes, linear light and files.
+//! - [`Picture::rmse`] says how much two pictures differ, and [`Scene::grade`] what is wrong with
+//!   the picture of another program.
+//! - [`Scene::data`] is what the text means, as plain data. Change a copy, and
+//!   [`Scene::from_data`] checks it and makes a scene of it, with a text of its own.
+//!
+//! # Stages
+//!
+//! The modules below are for those who need a part of a picture, its progress, or an end to it
+//! before it is done; answers about a scene; or a text that is being typed. They stand in groups,
+//! roughly in the order in which a scene becomes a picture. A group imports only groups before it,
+//! and modules of one group import each other one way; a test holds this. The whole pipeline:
 //!
 //! ```
 //! use pinhole::{area::Area, film, render, sampling::Sampling, scene, source::*, tracer::World};
@@ -14,9 +41,9 @@
 //! let scene = scene::read(&sources).scene.expect("a scene without mistakes");
 //! let world = World::new(&scene);
 //! let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
-//! let whole = Area::whole(64, 36);
-//! let film = render::render(&world, &sampling, whole, &render::Control::default())?;
-//! film::write_exr(&film, whole, whole, &mut std::io::Cursor::new(Vec::new()))?;
+//! let left_half = Area::whole(32, 36);
+//! let film = render::render(&world, &sampling, left_half, &render::Control::default())?;
+//! film::write_exr(&film, left_half, Area::whole(64, 36), &mut std::io::Cursor::new(Vec::new()))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -26,53 +53,61 @@
 //! - [`schema`] has the facts of the language: blocks, fields and names. [`syntax`] parses a text
 //!   into a tree, and cannot fail. [`scene`] lowers the tree to plain data with everything
 //!   resolved.
-//! - [`reference`](mod@reference) has what the tracer is compared with: textbook formulas in `f64`,
-//!   an oracle of arbitrary precision, and hard scenes. [`tracer`] finds what is seen at a point of
-//!   the picture, without a wrong decision; its documentation says how. [`projection`] maps points
-//!   of the scene to the picture and back, in rounded numbers. [`sampling`] places the sample
-//!   points of pixels, [`render`] averages what they see, [`exact`] computes a pixel's mean without
-//!   samples, and [`refine`] shows coarse pictures until the final one is done.
+//! - [`tracer`] finds what is seen at a point of the picture, without a wrong decision; its
+//!   documentation says how. [`sampling`] places the sample points of pixels, [`render`] averages
+//!   what they see, or computes means without samples, and [`refine`] shows coarse pictures until
+//!   the final one is done.
 //! - [`cancel`]: a flag ends any of these computations early.
-//! - [`film`] converts means to bytes, and encodes files; [`files`] opens files, and writes them
-//!   completely or not at all.
+//! - [`film`] converts means to bytes, and encodes and decodes files.
 //! - [`mod@format`] lays a text out canonically.
-//! - [`inspect`] and [`probe`] answer questions about a scene, [`grading`] finds the mistakes in a
-//!   picture of a scene, and [`report`] measures how accurate and how fast Pinhole itself is.
+//! - [`inspect`], [`seen`] and [`probe`] answer questions about a scene, [`grading`] finds the
+//!   mistakes in a picture of a scene, and `report` measures how accurate and how fast Pinhole
+//!   itself is.
 //! - [`editor`] answers questions while a scene is written: completions, explanations of words,
-//!   uses of names. `lsp` serves these answers to editors by the Language Server Protocol,
-//!   `preview` notifies of a file's changes, and `studio` serves a page to edit a scene.
+//!   uses of names. `lsp` serves these answers to editors by the Language Server Protocol.
 //! - [`figure`] draws what the program knows of a scene for a page of a course, as SVG.
-//! - `cli`, the command line, reads input, calls all of these and prints; the binary does nothing
-//!   else.
+//!
+//! Modules that are not listed are the program's own. `library` is the front that this page begins
+//! with. `math`, `numbers`, `suggest`, `threads` and `files` are below all stages. `reference` has
+//! what the tracer is compared with: textbook formulas in `f64`, an oracle of arbitrary precision,
+//! and hard scenes. `projection` maps points of the scene to the picture and back, in rounded
+//! numbers, and `exact` integrates a pixel. `preview` notifies of a file's changes, and `studio`
+//! serves a page to edit a scene. `cli`, the command line, reads input, calls all of these and
+//! prints; the binary does nothing else.
 
 pub mod area;
 pub mod cancel;
 pub mod color;
 pub mod diagnostic;
 pub mod explain;
+#[doc(hidden)]
 pub mod files;
 mod lock;
+#[doc(hidden)]
 pub mod math;
-pub mod numbers;
+mod numbers;
 pub mod source;
+#[doc(hidden)]
 pub mod suggest;
 #[cfg_attr(target_family = "wasm", path = "one_thread.rs")]
-pub mod threads;
+mod threads;
 
 pub mod schema;
 pub mod syntax;
 
 pub mod scene;
 
+#[doc(hidden)]
 pub mod reference;
 pub mod tracer;
 
-pub mod projection;
+mod projection;
 
 pub mod sampling;
 
 pub mod film;
 
+#[doc(hidden)]
 pub mod exact;
 
 pub mod refine;
@@ -87,14 +122,30 @@ pub mod probe;
 pub mod report;
 pub mod seen;
 
+mod library;
+
 pub mod editor;
 pub mod figure;
 #[cfg(feature = "lsp")]
 pub mod lsp;
 #[cfg(feature = "preview")]
+#[doc(hidden)]
 pub mod preview;
 #[cfg(feature = "lsp")]
+#[doc(hidden)]
 pub mod studio;
 
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
+
+#[doc(inline)]
+pub use crate::{
+    color::Color,
+    diagnostic::{Diagnostic, Mistakes},
+    grading::Verdict,
+    library::{Error, Exact, Picture, Scene},
+    math::Angle,
+    scene::{Method, Scene as SceneData},
+};
+pub use glam;

@@ -32,6 +32,11 @@ pub struct Probe {
 
 /// Follows the ray through the point `pixel` of the picture plane, in pixels from the picture's top
 /// left corner.
+///
+/// # Panics
+///
+/// The scene was not read, but made in code, and breaks a condition of the language;
+/// [`Scene::check`] tells.
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
     let world = World::for_rays(scene, (pixel - half).abs());

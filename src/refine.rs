@@ -10,7 +10,7 @@ use crate::{
     area::Area,
     film::Film,
     lock::{lock, unpoisoned},
-    render::{Control, RenderError},
+    render::{Control, RenderError, check_part},
     threads::{self, prelude::*},
     tracer::World,
 };
@@ -31,12 +31,13 @@ pub struct Coarse {
 }
 
 /// Renders a part of the picture in blocks that become finer from step to step, down to a side of
-/// `finest` pixels, and calls `show` after each step. The part must lie in the picture. If the
-/// render is cancelled, it ends within a row of blocks.
+/// `finest` pixels, and calls `show` after each step. If the render is cancelled, it ends within a
+/// row of blocks.
 ///
 /// # Errors
 ///
-/// There is not enough memory, no thread can be started, or the render was cancelled.
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
+/// the render was cancelled.
 pub fn coarse_to_fine(
     world: &World,
     part: Area,
@@ -56,13 +57,19 @@ pub fn coarse_to_fine(
 ///
 /// # Errors
 ///
-/// There is not enough memory, no thread can be started, or the render was cancelled.
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
+/// the render was cancelled.
+///
+/// # Panics
+///
+/// The side is 0.
 pub fn coarse(
     world: &World,
     part: Area,
     side: u32,
     control: &Control,
 ) -> Result<Coarse, RenderError> {
+    check_part(part, world.picture())?;
     let colors = world.palette().iter();
     let colors: Vec<_> = colors.map(|color| color.to_linear()).collect();
     let (width, height) = (part.width.div_ceil(side), part.height.div_ceil(side));

@@ -41,6 +41,11 @@ pub enum Visibility {
 }
 
 /// Finds what is seen of each object. Returns this in file order, and whether all areas are exact.
+///
+/// # Panics
+///
+/// The scene was not read, but made in code, and breaks a condition of the language;
+/// [`Scene::check`] tells.
 pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
     let world = World::by_object(scene);
     let tiles: Vec<Area> = world.picture().tiles(2 * GRID).collect();

@@ -117,6 +117,11 @@ impl Sources {
         set.unwrap_or(&self.file)
     }
 
+    /// Returns line and column of the start of a span.
+    pub fn place(&self, span: Span) -> LineColumn {
+        self.get(span.source).place(span.start)
+    }
+
     /// Returns the text at a span.
     pub fn text(&self, span: Span) -> &str {
         self.get(span.source).slice(span.range())

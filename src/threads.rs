@@ -110,7 +110,8 @@ mod tests {
 
     use super::{prelude::*, *};
 
-    /// Runs the check twice, because the calling thread is in a pool the second time.
+    /// The first run makes the calling thread a pool of its own, so that the second run tests a
+    /// thread that already belongs to a pool.
     #[test]
     fn where_no_thread_can_be_started_the_calling_one_does_it() {
         for _ in 0..2 {

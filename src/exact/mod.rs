@@ -92,8 +92,8 @@ const MAX_MEMORY: usize = 64 << 20;
 /// smaller piece counts as an error instead; its area is less than a unit roundoff of the pixel's
 /// area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
-/// Work charged per piece, in units of about 50 ns. Work constants need not be precise, because
-/// they only stop computations that take too long.
+/// Work that a piece ([`PixelPiece`]) takes from its pixel's work limit, in units of about 50 ns.
+/// Work constants need not be precise, because they only stop computations that take too long.
 const PIECE_WORK: f64 = 100.0;
 /// Work charged per candidate object of a piece, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
@@ -117,7 +117,7 @@ pub struct ExactPixel<const N: usize = 3> {
 /// Integrator that computes the exact pixels of a picture.
 #[derive(Debug)]
 pub struct Integrator<'a, const N: usize = 3> {
-    world: &'a World,
+    pub(crate) world: &'a World,
     quartering: Quartering<'a>,
     /// Values of each colour of the world's palette, by its index there (slot).
     colors: Vec<[f64; N]>,

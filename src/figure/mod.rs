@@ -61,6 +61,11 @@ pub struct Choice<'a> {
 /// # Errors
 ///
 /// Returns a sentence that says why the scene has no such figure, and which figures it has.
+///
+/// # Panics
+///
+/// The scene was not read, but made in code, and breaks a condition of the language;
+/// [`Scene::check`] tells.
 pub fn figure(scene: &Scene, kind: Kind, choice: Choice<'_>) -> Result<String, String> {
     let Image { width, height, .. } = scene.image;
     match (choice.pixel, kind, choice.object) {

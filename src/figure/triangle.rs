@@ -16,7 +16,7 @@ use crate::{
 /// Height of the figure, in SVG units.
 const HEIGHT: f64 = 430.0;
 
-/// Number of segments of the polygonal line that is drawn as the arc of the spin.
+/// Number of straight segments that draw the arc of the triangle's spin, its rotation in its plane.
 const ARC: u32 = 24;
 
 /// Draws the figure.

@@ -90,6 +90,14 @@ pub struct SizesDiffer(
     pub [u32; 2],
 );
 
+impl SizesDiffer {
+    /// Returns an error if the sizes of two pictures differ.
+    fn unless_equal(a: &Film, b: &Film) -> Result<(), Self> {
+        let [a, b] = [a, b].map(|film| [film.width(), film.height()]);
+        if a == b { Ok(()) } else { Err(Self(a, b)) }
+    }
+}
+
 impl Comparison {
     /// Returns whether `beyond` is 0. Pixels that are only `undecided` do not count.
     pub fn is_equal(&self) -> bool {
@@ -102,16 +110,17 @@ impl Comparison {
     }
 }
 
-/// Compares two pictures.
+/// Compares two pictures. A number that is NaN differs from any other by infinitely many steps.
 ///
 /// # Errors
 ///
 /// Their sizes differ.
+///
+/// # Panics
+///
+/// The tolerance has bounds for fewer pixels.
 pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, SizesDiffer> {
-    let sizes = [a, b].map(|film| [film.width(), film.height()]);
-    if sizes[0] != sizes[1] {
-        return Err(SizesDiffer(sizes[0], sizes[1]));
-    }
+    let rmse = rmse(a, b)?;
     let (width, height) = (a.width(), a.height());
     let mut largest = Largest::default();
     let (mut beyond, mut undecided) = (0, 0);
@@ -138,7 +147,7 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
     Ok(Comparison {
         width,
         height,
-        rmse: rmse(a, b),
+        rmse,
         largest,
         beyond,
         undecided,
@@ -148,26 +157,50 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
 /// Returns the channel in which two pixels differ most, and the difference in steps of 8-bit sRGB.
 /// If several channels differ equally, the first of them is returned.
 fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
-    let differences = [0, 1, 2].map(|channel| (steps(p[channel]) - steps(q[channel])).abs());
+    let differences = [0, 1, 2].map(|channel| {
+        let difference = (steps(p[channel]) - steps(q[channel])).abs();
+        // Every comparison with NaN is false, as if the pixels were equal.
+        if difference.is_nan() {
+            f64::INFINITY
+        } else {
+            difference
+        }
+    });
     let most = differences.into_iter().fold(0.0, f64::max);
     let channel = differences.iter().position(|&steps| steps == most);
     (channel.unwrap_or(0), most)
 }
 
-/// Returns the root mean square of the differences of two pictures of one size, in linear light.
-pub fn rmse(a: &Film, b: &Film) -> f64 {
+/// Returns the root mean square of the differences of two pictures, in linear light.
+///
+/// # Errors
+///
+/// Their sizes differ.
+pub fn rmse(a: &Film, b: &Film) -> Result<f64, SizesDiffer> {
+    SizesDiffer::unless_equal(a, b)?;
     let squares = a.pixels().iter().zip(b.pixels());
     let sum: f64 = squares
         .map(|(p, q)| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum::<f64>())
         .sum();
-    (sum / (3.0 * a.pixels().len() as f64)).sqrt()
+    Ok((sum / (3.0 * a.pixels().len() as f64)).sqrt())
 }
 
 /// Draws the differences of two pictures of one size as a picture. Each pixel shows the largest
 /// difference of its channels. Differences within the tolerance are black. Beyond it, the colour
 /// goes through red and yellow to white at 255 steps, linearly in the difference, so that noise
-/// stays dark. Fails if there is not enough memory.
+/// stays dark.
+///
+/// # Errors
+///
+/// There is not enough memory.
+///
+/// # Panics
+///
+/// The sizes differ, or the tolerance has bounds for fewer pixels.
 pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLarge> {
+    if let Err(error) = SizesDiffer::unless_equal(a, b) {
+        panic!("{error}");
+    }
     let mut map = Film::new(a.width(), a.height())?;
     let pairs = a.pixels().iter().zip(b.pixels());
     for (at, ((&p, &q), pixel)) in pairs.zip(map.pixels_mut()).enumerate() {

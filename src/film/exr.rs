@@ -82,6 +82,10 @@ impl LinearFilm<'_> {
 
 /// Writes `film` as an OpenEXR file. `part` is the area of the picture `whole` that `film` shows;
 /// it may be all of it.
+///
+/// # Errors
+///
+/// `out` cannot be written to, or `part` has another size than the film or does not lie in `whole`.
 pub fn write_exr<'a>(
     film: impl Into<LinearFilm<'a>>,
     part: Area,
@@ -92,6 +96,16 @@ pub fn write_exr<'a>(
 }
 
 fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::Result<()> {
+    if [part.width, part.height] != [film.width(), film.height()] || !part.lies_in(whole) {
+        let message = format!(
+            "a film of {} × {} pixels is not the part {part} of a picture of {} × {}",
+            film.width(),
+            film.height(),
+            whole.width,
+            whole.height
+        );
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
+    }
     let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
         // Columns and rows are below 2^20, so the conversions to `u32` are exact.
         <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))

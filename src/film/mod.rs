@@ -23,8 +23,10 @@ mod read;
 mod srgb;
 
 #[cfg(any(feature = "cli", feature = "report"))]
+#[doc(hidden)]
 pub use self::embed::{data_uri, reduced};
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub use self::part::place_of_part;
 pub use self::{
     compare::{
@@ -32,11 +34,12 @@ pub use self::{
     },
     exr::{LinearFilm, write_exr},
     jpeg::{Jpeg, JpegTable},
-    mean::mean,
-    memory::{TooLarge, reserve as reserve_memory},
+    memory::TooLarge,
     picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable},
     pixels::{AsBytes, Film, Pixel, certified},
     png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
     read::{is_picture, is_picture_behind_lines, read_picture, read_picture_up_to},
     srgb::Encoder,
 };
+#[doc(hidden)]
+pub use self::{mean::mean, memory::reserve as reserve_memory};

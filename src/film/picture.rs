@@ -25,6 +25,19 @@ pub struct Picture {
     pub opacity: Option<Opacity>,
 }
 
+impl Picture {
+    /// Makes an opaque picture of a whole film, whose numbers are rounded so.
+    pub fn new(film: Film, rounding: Rounding) -> Self {
+        Self {
+            film,
+            rounding,
+            coding: Coding::Exact,
+            crop: None,
+            opacity: None,
+        }
+    }
+}
+
 /// The opacity of a picture.
 #[derive(Clone, Debug)]
 pub struct Opacity {

@@ -129,11 +129,15 @@ impl<P: Pixel> Film<P> {
         Ok(film)
     }
 
-    /// Copies a part of the picture, which must lie in it.
+    /// Copies a part of the picture.
     ///
     /// # Errors
     ///
     /// There is not enough memory for it.
+    ///
+    /// # Panics
+    ///
+    /// The part does not lie in the picture.
     pub fn part(&self, part: Area) -> Result<Self, TooLarge> {
         Self::from_fn(part.width, part.height, |x, y| {
             self.pixel(part.x + x, part.y + y)
@@ -151,11 +155,19 @@ impl<P: Pixel> Film<P> {
     }
 
     /// Returns the pixel in column `x` and row `y`.
+    ///
+    /// # Panics
+    ///
+    /// There is no such pixel.
     pub fn pixel(&self, x: u32, y: u32) -> P {
         self.row(y)[x as usize]
     }
 
     /// Returns the pixels of a row, from the left.
+    ///
+    /// # Panics
+    ///
+    /// There is no such row.
     pub fn row(&self, y: u32) -> &[P] {
         let width = self.width as usize;
         &self.pixels[y as usize * width..][..width]
@@ -171,8 +183,25 @@ impl<P: Pixel> Film<P> {
         &mut self.pixels
     }
 
+    /// Returns all pixels, row by row, without copying them.
+    pub fn into_pixels(self) -> Vec<P> {
+        self.pixels
+    }
+
     /// Overwrites the pixels of a part of the picture with `pixels`, row by row.
+    ///
+    /// # Panics
+    ///
+    /// The part does not lie in the picture, or `pixels` are not as many as it has.
     pub fn put(&mut self, part: Area, pixels: &[P]) {
+        assert!(
+            part.lies_in(Area::whole(self.width, self.height))
+                && part.pixels() == pixels.len() as u64,
+            "{} pixels for the part {part} of {} × {}",
+            pixels.len(),
+            self.width,
+            self.height
+        );
         let (left, width) = (part.x as usize, part.width as usize);
         for (y, row) in (part.y as usize..).zip(pixels.chunks_exact(width)) {
             let start = y * self.width as usize + left;

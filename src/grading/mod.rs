@@ -44,18 +44,18 @@ use crate::{
         self, Comparison, Film, Jpeg, Picture, Rounding, SizesDiffer, Tolerance, reserve_memory,
     },
     lock::{lock, unpoisoned},
-    render::{Control, Exact, RenderError, render_numbers},
+    render::{Control, Exact, RenderError, check_part, render_numbers},
     scene::Scene,
     tracer::World,
 };
 
 /// What pictures of a part of a scene are judged by; made once for a whole class.
-pub struct Reference<'a> {
+pub struct Reference {
     /// The exact picture.
     pub exact: Exact,
     /// The part of the scene's picture.
     pub part: Area,
-    scene: &'a Scene,
+    scene: Scene,
     correct: Arc<Rendering>,
     /// Rounding of the pictures that it can judge.
     rounding: Rounding,
@@ -69,18 +69,24 @@ pub struct Reference<'a> {
 /// are two while they are computed.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
-impl<'a> Reference<'a> {
+impl Reference {
     /// Computes the exact picture of a part of a scene, for judging pictures with some rounding.
     ///
     /// # Errors
     ///
-    /// It is cancelled, or too large.
+    /// It is cancelled, too large, or no part of the scene's picture.
+    ///
+    /// # Panics
+    ///
+    /// The scene was not read, but made in code, and breaks a condition of the language;
+    /// [`Scene::check`] tells.
     pub fn new(
-        scene: &'a Scene,
+        scene: &Scene,
         part: Area,
         rounding: Rounding,
         control: &Control,
     ) -> Result<Self, RenderError> {
+        check_part(part, Area::whole(scene.image.width, scene.image.height))?;
         reserve_memory(part.width, part.height, BYTES_A_PIXEL)?;
         let world = World::new_unless(scene, control.cancel)?;
         let integrator = Integrator::for_values(&world, moments::numbers(Curve::Correct));
@@ -100,7 +106,7 @@ impl<'a> Reference<'a> {
         let work = work::of_exact(integrator.work(), scene.objects.len(), pixels);
         Ok(Self {
             exact,
-            scene,
+            scene: scene.clone(),
             part,
             rounding,
             correct: Arc::new(correct),
@@ -151,7 +157,7 @@ impl<'a> Reference<'a> {
         cancel: &AtomicBool,
     ) -> Result<Verdict, RenderError> {
         if comparison.is_equal() {
-            return Ok(Verdict::without_mistakes(Kind::Right, self.scene));
+            return Ok(Verdict::without_mistakes(Kind::Right, &self.scene));
         }
         let Some(opacity) = &picture.opacity else {
             return self.judge_opaque(&picture.film, jpeg, cancel);
@@ -165,12 +171,12 @@ impl<'a> Reference<'a> {
         }
         let fact = plain_facts::transparent(opacity.range);
         if opacity.range[1] == 0.0 {
-            return Ok(Verdict::without_mistakes(Kind::Right, self.scene).with_fact(fact));
+            return Ok(Verdict::without_mistakes(Kind::Right, &self.scene).with_fact(fact));
         }
         let steps = picture.rounding.steps();
         let is_equal = self.compare(&opacity.film, steps);
         let verdict = if is_equal.is_ok_and(|comparison| comparison.is_equal()) {
-            Verdict::without_mistakes(Kind::Right, self.scene)
+            Verdict::without_mistakes(Kind::Right, &self.scene)
         } else {
             self.judge_opaque(&opacity.film, jpeg, cancel)?
         };
@@ -184,8 +190,10 @@ impl<'a> Reference<'a> {
         cancel: &AtomicBool,
     ) -> Result<Verdict, RenderError> {
         let exact = &self.exact.film;
-        if let Some(fact) = plain_facts::empty_or_noise(film, exact, self.scene) {
-            let mut verdict = Verdict::without_mistakes(Kind::Wrong, self.scene).with_fact(fact);
+        let fact = plain_facts::not_finite(film)
+            .or_else(|| plain_facts::empty_or_noise(film, exact, &self.scene));
+        if let Some(fact) = fact {
+            let mut verdict = Verdict::without_mistakes(Kind::Wrong, &self.scene).with_fact(fact);
             for object in &mut verdict.objects {
                 object.is_right = false;
             }
@@ -216,7 +224,7 @@ impl<'a> Reference<'a> {
         let without = jpeg.is_none().then(|| without.next()).flatten();
         let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
         let work = Work::new(self.part.pixels(), self.work, self.effort, cancel);
-        let judge = Judge::new(self.scene, &self.correct, &film, jpeg, work);
+        let judge = Judge::new(&self.scene, &self.correct, &film, jpeg, work);
         let found = forward_selection::run(&judge)?;
         // The conclusion is not cut short by the budget.
         let conclude = || conclusion::conclude(&judge, &film, found);

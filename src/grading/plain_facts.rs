@@ -1,5 +1,5 @@
-//! Facts that are obvious in a picture before any mistake is fitted: it is empty, a part of it is
-//! empty, or it is transparent.
+//! Facts that are obvious in a picture before any mistake is fitted: it has values that are no
+//! numbers, it is empty, a part of it is empty, or it is transparent.
 
 use glam::DVec3;
 
@@ -28,6 +28,20 @@ fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
         set: Vec::new(),
         explains: 1.0,
     }
+}
+
+/// Returns the fact that a picture has values that are no finite numbers. Returns `None` if it has
+/// none.
+pub fn not_finite(film: &Film) -> Option<NamedMistake> {
+    let is_finite = |pixel: &&[f64; 3]| pixel.iter().all(|light| light.is_finite());
+    let count = film.pixels().len() - film.pixels().iter().filter(is_finite).count();
+    let message = match count {
+        0 => return None,
+        1 => "a pixel is no finite number".to_owned(),
+        count => format!("{count} pixels are no finite numbers"),
+    };
+    let help = "a division by zero, or the square root of a negative number, makes them";
+    Some(fact("not_finite", message, help.to_owned()))
 }
 
 /// Returns the fact that a picture is empty or noise. Returns `None` if it is not. `exact` is the

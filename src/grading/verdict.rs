@@ -1,5 +1,7 @@
 //! The verdict on a picture, for people and for programs.
 
+use std::fmt;
+
 use serde_json::{Map, Value, json};
 
 use super::objects::{self, ObjectVerdict};
@@ -161,6 +163,13 @@ impl Verdict {
             .chain([("limited", json!(self.is_cut))])
             .map(|(name, value)| (name.to_owned(), value))
             .collect()
+    }
+}
+
+/// Writes the verdict in one line.
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.line())
     }
 }
 

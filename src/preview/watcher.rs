@@ -43,9 +43,12 @@ const QUIET_TIME: Duration = Duration::from_millis(10);
 /// events still arrive.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
-/// Maximum time to wait for a file that is missing or empty, since a program may be saving it.
-/// After that, the file counts as missing or empty.
+/// Time without events after which a file that is missing or empty counts as that. Until then, a
+/// program may be saving it.
 const ABSENCE: Duration = Duration::from_millis(300);
+
+/// Maximum time to wait for a file that is missing or empty, however many events arrive.
+const LONGEST_ABSENCE: Duration = Duration::from_secs(2);
 
 /// Time between two checks of the file without an event.
 const POLL_INTERVAL: Duration = Duration::from_secs(1);
@@ -243,9 +246,11 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 
     /// Reads the file's content, with the stamp from before reading. If the file is missing or
-    /// empty, waits for up to [`ABSENCE`] until it has content, except at the first reading.
+    /// empty, waits until it has content, except at the first reading: for [`ABSENCE`] after the
+    /// last event, but at most for [`LONGEST_ABSENCE`].
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
-        let end = Instant::now() + ABSENCE;
+        let start = Instant::now();
+        let mut end = start + ABSENCE;
         loop {
             let stamp = stamp(&self.path);
             let bytes = (self.read)(&self.path);
@@ -261,6 +266,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
                 && self.concerns(&event)
             {
                 self.settle();
+                end = (Instant::now() + ABSENCE).min(start + LONGEST_ABSENCE);
             }
         }
     }

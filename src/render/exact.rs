@@ -5,7 +5,7 @@
 
 use std::sync::Mutex;
 
-use super::{Control, RenderError, finished, tiles};
+use super::{Control, RenderError, check_part, finished, tiles};
 use crate::{
     area::Area,
     exact::{ExactPixel, Integrator},
@@ -49,12 +49,12 @@ impl<P> Exact<P> {
     }
 }
 
-/// Computes a part of the picture without samples. The part must lie in the picture. Progress is
-/// reported in pixels.
+/// Computes a part of the picture without samples. Progress is reported in pixels.
 ///
 /// # Errors
 ///
-/// There is not enough memory, no thread can be started, or the render was cancelled.
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
+/// the render was cancelled.
 pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exact, RenderError> {
     render_exact_as(world, part, control)
 }
@@ -69,12 +69,18 @@ pub(super) fn render_exact_as<P: film::Pixel>(
 
 /// Computes a part of the picture with an integrator of `N` numbers per colour, of which the first
 /// three are the channels. Calls `also` with each tile and all numbers of the tile's pixels.
+///
+/// # Errors
+///
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
+/// the render was cancelled.
 pub fn render_numbers<P: film::Pixel, const N: usize>(
     integrator: &Integrator<N>,
     part: Area,
     control: &Control,
     also: &(dyn Fn(Area, &[ExactPixel<N>]) + Sync),
 ) -> Result<Exact<P>, RenderError> {
+    check_part(part, integrator.world.picture())?;
     let exact = Mutex::new(Exact {
         film: Film::new(part.width, part.height)?,
         bounds: vec![0f32; part.pixels() as usize],

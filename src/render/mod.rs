@@ -35,9 +35,10 @@ use crate::{
     tracer::World,
 };
 
+pub use self::exact::{Exact, render_exact};
+#[doc(hidden)]
 pub use self::{
-    exact::{Exact, render_exact, render_numbers},
-    sampled::render,
+    exact::render_numbers,
     slices::{SLICE, Slices, pixel_work},
 };
 
@@ -73,6 +74,18 @@ pub enum RenderError {
     /// The system cannot start threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] threads::NoThreads),
+    /// The part is not one of the picture.
+    #[error(
+        "the part {part} has no pixels, or does not lie in the picture of {} × {}",
+        whole.width,
+        whole.height
+    )]
+    Outside {
+        /// The part that was asked for.
+        part: Area,
+        /// The whole picture.
+        whole: Area,
+    },
     /// The render was cancelled.
     #[error("interrupted")]
     Cancelled,
@@ -108,23 +121,59 @@ impl<P> Rendered<P> {
     }
 }
 
-/// Renders a part of the picture as its sampler specifies, with samples or exactly. The part must
-/// lie in the picture. `P` is the film's kind of pixel: light, or the bytes of sRGB in a PNG file.
-/// With bytes, the film takes less memory, and the PNG file is the same.
+/// Renders a part of the picture as its sampler specifies, and returns the means in linear light.
 ///
 /// # Errors
 ///
-/// There is not enough memory, no thread can be started, or the render was cancelled.
+/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
+/// the render was cancelled.
+///
+/// # Panics
+///
+/// The sampling is that of a picture of another size.
+pub fn render(
+    world: &World,
+    sampling: &Sampling,
+    part: Area,
+    control: &Control,
+) -> Result<Film, RenderError> {
+    render_as_asked(world, sampling, part, control).map(Rendered::into_film)
+}
+
+/// Renders a part of the picture as its sampler specifies: with samples or exactly. The film stores
+/// light, or the bytes of sRGB that a PNG file needs. With bytes, the file is the same, and less
+/// memory is used.
+///
+/// # Errors
+///
+/// As of [`render`].
+///
+/// # Panics
+///
+/// As of [`render`].
 pub fn render_as_asked<P: Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,
     control: &Control,
 ) -> Result<Rendered<P>, RenderError> {
+    assert_eq!(
+        sampling.picture(),
+        world.picture(),
+        "the sampling is of a picture of another size"
+    );
     if sampling.is_exact() {
         return exact::render_exact_as(world, part, control).map(Rendered::Exact);
     }
     sampled::render_as(world, sampling, part, control).map(Rendered::Sampled)
+}
+
+/// Rejects a part that has no pixels or does not lie in the picture.
+pub(crate) fn check_part(part: Area, whole: Area) -> Result<(), RenderError> {
+    if part.pixels() > 0 && part.lies_in(whole) {
+        return Ok(());
+    }
+    Err(RenderError::Outside { part, whole })
 }
 
 /// Returns the tiles of a part of the picture: squares of side `side`, in pixels, in a grid from

@@ -6,7 +6,9 @@
 
 use std::sync::Mutex;
 
-use super::{Control, RenderError, finished, renderer::Renderer, tally::PixelTally, tiles};
+use super::{
+    Control, RenderError, check_part, finished, renderer::Renderer, tally::PixelTally, tiles,
+};
 use crate::{
     area::Area,
     film::{self, Encoder, Film},
@@ -20,26 +22,14 @@ use crate::{
 /// milliseconds, so that no thread waits long for the others at the end.
 const TILE_SAMPLES: u64 = 1 << 18;
 
-/// Renders a part of the picture with samples. The part must lie in the picture.
-///
-/// # Errors
-///
-/// There is not enough memory, no thread can be started, or the render was cancelled.
-pub fn render(
-    world: &World,
-    sampling: &Sampling,
-    part: Area,
-    control: &Control,
-) -> Result<Film, RenderError> {
-    render_as(world, sampling, part, control)
-}
-
+/// Renders a part of the picture with samples, of which the sampling must have some.
 pub(super) fn render_as<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
     part: Area,
     control: &Control,
 ) -> Result<Film<P>, RenderError> {
+    check_part(part, world.picture())?;
     let film = Mutex::new(Film::new(part.width, part.height)?);
     let colors = world.palette().iter();
     let colors: Vec<_> = colors.map(|color| color.to_linear()).collect();

@@ -29,8 +29,8 @@ impl Halton {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to
-    /// `out`, after a random shift that `key` determines.
+    /// Writes to `out` the offsets from the pixel's centre of the points whose indices are in
+    /// `range`, after a random shift that `key` determines.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let inverses: [fn(u64) -> u64; 2] = [u64::reverse_bits, radical_inverse_3];

@@ -91,6 +91,10 @@ enum PointPattern {
 impl Sampling {
     /// Prepares the samples of a picture whose sides are at least 1 and at most 2^20 pixels. The
     /// exact method has no samples.
+    ///
+    /// # Panics
+    ///
+    /// The picture has no pixels.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
         // The key contains the method's position in the enum `Method`. The positions must not
         // change, because pictures depend on them.
@@ -117,6 +121,11 @@ impl Sampling {
     /// Returns whether the picture is computed without samples.
     pub fn is_exact(&self) -> bool {
         self.method == Method::Exact
+    }
+
+    /// Returns the area of the picture.
+    pub(crate) fn picture(&self) -> Area {
+        self.picture
     }
 
     /// Returns the number of samples of the whole picture.

@@ -17,6 +17,7 @@
 )]
 
 pub mod describe;
+mod display;
 mod error;
 mod eval;
 mod examples;

@@ -10,7 +10,7 @@ use crate::{
     diagnostic::Diagnostic,
     math::{Angle, Real},
     schema::Method,
-    source::Span,
+    source::{SourceId, Span},
 };
 
 /// The smallest scene that shows something: a sphere on a floor.
@@ -148,9 +148,35 @@ pub struct Object {
 }
 
 impl Object {
+    /// Makes an object without a name. Its span is empty, as it stands in no text.
+    pub fn new(shape: impl Into<Shape>) -> Self {
+        Self {
+            name: None,
+            indices: Box::default(),
+            shape: shape.into(),
+            span: Span::new(SourceId::File, 0, 0),
+        }
+    }
+
+    /// Returns the object with a name, which no other object of the scene may have.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: Some(name.into()),
+            ..self
+        }
+    }
+
     /// Returns whether two objects come from the same block, i.e. are repetitions of one object.
     pub fn is_beside(&self, other: &Self) -> bool {
         !self.indices.is_empty() && self.span == other.span
+    }
+}
+
+impl Scene {
+    /// Returns the objects, to change them. They are copied if another scene shares them.
+    pub fn objects_mut(&mut self) -> &mut Vec<Object> {
+        Arc::make_mut(&mut self.objects)
     }
 }
 

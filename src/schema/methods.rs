@@ -1,5 +1,9 @@
 //! The table of sampling techniques.
 
+use std::{fmt, str::FromStr};
+
+use thiserror::Error;
+
 use crate::suggest::{self, is_among};
 
 /// Defines the sampling techniques. A line holds the variant, the name in the language, a line of
@@ -57,6 +61,27 @@ impl Method {
         Self::Scatter,
     ];
 }
+
+/// Writes the method's word in the language.
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Reads the method's word in the language.
+impl FromStr for Method {
+    type Err = UnknownMethod;
+
+    fn from_str(word: &str) -> Result<Self, UnknownMethod> {
+        method(word).ok_or_else(|| UnknownMethod(word.to_owned()))
+    }
+}
+
+/// A word that is the name of no method.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("there is no method `{0}`; the methods are {list}", list = suggest::list(method_names()))]
+pub struct UnknownMethod(String);
 
 /// Returns a sampling technique by its name in the language.
 pub fn method(name: &str) -> Option<Method> {

@@ -18,7 +18,9 @@ mod types;
 
 pub use blocks::*;
 pub use builtins::{CONSTANTS, FUNCTIONS, Function, function};
-pub use methods::{METHODS, Method, is_sure_method, method, method_names, nearest_method};
+pub use methods::{
+    METHODS, Method, UnknownMethod, is_sure_method, method, method_names, nearest_method,
+};
 pub use row_types::{Choice, Condition, FieldRow, Preset};
 pub use types::{FieldValue, Type, Value};
 

@@ -31,9 +31,9 @@ pub struct Extent {
 /// the bound's value: 2^−40. The few rounding errors of such a bound amount to 2^−50.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum of a divisor in the bounds of an object; with a smaller one, the object counts as
-/// unbounded. The rounding error of a smaller number, 2^−53 of it, might be below the normal
-/// numbers of `f64`, which end at about 1e-308.
+/// Minimum of a number that an object's bounds are computed from. An object with a smaller one
+/// counts as unbounded. Rounding errors, 2^−53 of a number, then stay far above 1e-308, below which
+/// `f64` loses digits.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {

@@ -13,9 +13,9 @@ use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
-/// Minimum error of a boundary line ([`BoundaryLine::rad`]) at which the line is computed again in
-/// a higher precision than double-double. The line's greatest factor is 1, so that the value means
-/// eight unit roundoffs of `f64`; the line's factors alone have three.
+/// Error bound of a boundary line ([`BoundaryLine::rad`]) from which on the line is computed again
+/// in a higher precision than double-double: eight unit roundoffs of `f64`. Storing the line's
+/// factors as `f64` alone costs three.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A curve that separates objects in a pixel.

@@ -15,10 +15,10 @@ pub struct Form<T: Real> {
     factors: [T; 3],
     /// Error bound of a computed value of the form in the camera's window.
     rad: T::Radius,
-    /// Error bounds of a value per unit of |X|, |Y| and |Z| of the ray's direction; only in the
-    /// highest precision, big numbers. The bound `rad` holds in the whole window, and in the middle
-    /// of a very wide view it is far greater than a ray's own error. Other precisions can afford
-    /// this, because the next precision decides what they leave in doubt.
+    /// A tighter error bound for a single ray: for the direction (X, Y, Z), the form's value is
+    /// wrong by at most `rads[0]`·|X| + `rads[1]`·|Y| + `rads[2]`·|Z|. The bound `rad` holds in the
+    /// whole window, and is far too large in the middle of a very wide view. Only the highest
+    /// precision has this field: what a lower one leaves in doubt, the next decides.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 

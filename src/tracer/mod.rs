@@ -31,28 +31,37 @@ mod bounds2d;
 mod quadtree;
 mod world;
 
+#[doc(hidden)]
 pub mod candidates;
 mod checker_corners;
 pub(crate) mod nearby;
 mod quartering;
 mod ray;
+#[doc(hidden)]
 pub mod samples;
 
 #[cfg(test)]
 mod tests;
 
+#[doc(hidden)]
 pub use camera::{Basis, PicturePoint};
+#[doc(hidden)]
 pub use candidates::VisibilityCandidate;
 pub(crate) use checker_corners::CheckerForms;
+#[doc(hidden)]
 pub use checker_corners::CheckerPixel;
+#[doc(hidden)]
 pub use curve::{Boundary, BoundaryLine, Conic};
 pub(crate) use curve::{InverseDepth, LOOSE_LINE, SubPixelFrame};
 pub(crate) use local_form::{LocalForm, Patch};
 pub(crate) use object::Object;
 pub(crate) use quadtree::BoundedObject;
+#[doc(hidden)]
 pub use quartering::{GRID, PicturePart, Quartering, Scratch};
 pub use ray::{Hit, ray};
+#[doc(hidden)]
 pub use samples::PreparedPixel;
+#[doc(hidden)]
 pub use sub_pixel::SubPixel;
 pub use triangle::vertices;
 pub use world::World;

@@ -38,7 +38,8 @@ pub enum SurfaceKind<'a, T: Real> {
 pub enum Object<T: Real> {
     /// A sphere.
     Sphere(Sphere<T>),
-    /// A triangle or a box. It has no faces if the eye lies in the plane of a flat object.
+    /// A triangle, a box, or one face of a box. A triangle or a single face has no faces here if
+    /// the eye lies in its plane, where it cannot be seen.
     Convex(Convex<T>),
     /// A checkerboard.
     Checkerboard(Box<Checkerboard<T>>),

@@ -34,6 +34,7 @@ mod interrupt;
 mod language;
 mod laws;
 mod layers;
+mod library;
 #[cfg(feature = "lsp")]
 mod lsp;
 mod numerics;

@@ -30,8 +30,9 @@ const MIN_BLOCK: f64 = 16.0;
 /// changes by at most about 10 %.
 const MAX_BLOCK: f64 = 4096.0;
 
-/// Number of running sums, over which consecutive crossings are distributed in turn. It is even, so
-/// that all terms of a running sum have the same sign (−1)^j.
+/// Number of running sums in which the terms (−1)^j·X of the crossings j are added, so that the
+/// compiler vectorises the loop: crossing j goes to sum j mod `LANES`. The number is even, so that
+/// all terms of a sum have one sign.
 const LANES: usize = 8;
 /// Number of crossings of an edge after which its coordinate t ([`EdgeSeries`]) is computed anew in
 /// double-double, so that the errors of its steps from crossing to crossing do not add up.

@@ -20,10 +20,10 @@ pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 /// error bound then covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Maximum displacement of the horizon by rounding errors, in pixels, up to which
-/// [`Homography::corner`] moves a corner to the horizon if only rounding keeps the corner off. If
-/// the displacement is larger, no corner is moved. The error bound counts the move, which is a
-/// hundredth of the default tolerance.
+/// Maximum displacement of the horizon by rounding errors, in pixels, at which
+/// [`Homography::corner`] moves corners onto the horizon that rounding may have kept off it. With a
+/// larger displacement, no corner is moved. The error bound includes the move. A move of this
+/// length costs about a hundredth of the default tolerance.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound

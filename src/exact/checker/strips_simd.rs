@@ -122,9 +122,9 @@ impl LaneSums {
 }
 
 impl BoardLanes {
-    /// Sets the board of that one of the eight pixels which has the index `place`. `families` has
-    /// the indices of the two families, the one with fewer lines first. `first` has the smallest
-    /// number of a square in the pixel for each family, in the order of the board's forms.
+    /// Sets the board of the pixel in lane `place`, of eight. The board has two families of
+    /// parallel lines, 0 and 1; `families` lists both, the one with fewer lines in the pixel first.
+    /// `first[k]` is the smallest number of a square in the pixel, counted across family k.
     pub fn set(
         &mut self,
         place: usize,

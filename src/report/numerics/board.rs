@@ -10,7 +10,7 @@ use crate::reference::{
     scenes::{SIZE, along, board, camera, cuboid, sphere, spun, triangle},
 };
 
-/// Hard cases of planes and checkerboards, in the order of the catalogue.
+/// Hard cases of planes and checkerboards, in the order in which the report lists them.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "P1", title: "up to 1e-13 pixels below the horizon", bound: 2.0, subject: Seen(horizon) },

@@ -10,7 +10,7 @@ use crate::{
     reference::scenes::{along, camera, cuboid, sphere},
 };
 
-/// Hard cases of boxes, in the order of the catalogue.
+/// Hard cases of boxes, in the order in which the report lists them.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "B1", title: "rays in the planes of faces, and along edges", bound: 2.0, subject: Seen(in_planes) },

@@ -10,7 +10,7 @@ use crate::{
     scene::Lens,
 };
 
-/// Hard cases of spheres, in the order of the catalogue.
+/// Hard cases of spheres, in the order in which the report lists them.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "S1a", title: "rays that nearly touch a sphere", bound: 1.0, subject: Seen(silhouettes) },

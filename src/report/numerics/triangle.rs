@@ -10,7 +10,7 @@ use crate::{
     scene::Lens,
 };
 
-/// Hard cases of triangles, in the order of the catalogue.
+/// Hard cases of triangles, in the order in which the report lists them.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "T1", title: "triangles of 1e-3 … 1e-9 m", bound: 2.0, subject: Seen(tiny) },

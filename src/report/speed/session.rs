@@ -207,7 +207,7 @@ impl Benchmark<'_> {
                 let runs = Vec::new();
                 series.points.push(SeriesPoint { per_pixel, runs });
             }
-            let error = film::rmse(made.film(), &measured.reference.film);
+            let error = error_of(made.film(), &measured.reference.film);
             series.points[point].runs.push(Run { error, ..run });
         } else if let Some(runs) = &mut measured.exact {
             let (_, run) = timed(|| rendered(self.scene, Method::Exact, [1, 0], self.control))?;
@@ -247,7 +247,7 @@ impl Benchmark<'_> {
             series.picture = Some(MethodPicture {
                 per_pixel,
                 cpu: run.cpu,
-                rmse: film::rmse(film, reference),
+                rmse: error_of(film, reference),
                 part,
                 difference: film::heat_map(
                     &shown,
@@ -279,6 +279,11 @@ impl Benchmark<'_> {
         };
         (self.progress)(share.min(1.0));
     }
+}
+
+/// Returns the root mean square error of a picture of the scene.
+fn error_of(film: &Film, reference: &Film) -> f64 {
+    film::rmse(film, reference).expect("pictures of one scene have one size")
 }
 
 /// Renders the scene with `method`, `per_pixel` samples per pixel and `seed`. The exact method
@@ -323,7 +328,7 @@ fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge
     for y in places(whole.height, height) {
         for x in places(whole.width, width) {
             let part = Area { x, y, ..worst };
-            let error = film::rmse(&film.part(part)?, &exact.part(part)?);
+            let error = error_of(&film.part(part)?, &exact.part(part)?);
             let mut seen: Vec<_> = part
                 .iter()
                 .map(|(x, y)| objects[whole.index(x, y)])

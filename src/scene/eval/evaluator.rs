@@ -36,8 +36,8 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     value_of(&tree, Some(takes), &sources, &Names::default())
 }
 
-/// Returns the value of an expression without reports; `wanted` is the type that would fit, if it is
-/// known.
+/// Returns the value of an expression without reports; `wanted` is the type that would fit, if it
+/// is known.
 pub fn value_of<'s>(
     tree: &tree::Value<'s>,
     wanted: Option<Type>,

@@ -7,6 +7,7 @@
 //! `evaluator` handles literals; lists, operators, calls and names have a file each.
 
 mod calls;
+mod color;
 mod evaluator;
 mod lists;
 mod lookup;

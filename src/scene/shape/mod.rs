@@ -52,6 +52,30 @@ macro_rules! for_each_kind {
     };
 }
 
+impl From<Sphere> for Shape {
+    fn from(sphere: Sphere) -> Self {
+        Self::Sphere(sphere)
+    }
+}
+
+impl From<Triangle> for Shape {
+    fn from(triangle: Triangle) -> Self {
+        Self::Triangle(triangle)
+    }
+}
+
+impl From<Cuboid> for Shape {
+    fn from(cuboid: Cuboid) -> Self {
+        Self::Box(cuboid)
+    }
+}
+
+impl From<Checkerboard> for Shape {
+    fn from(board: Checkerboard) -> Self {
+        Self::Checkerboard(board)
+    }
+}
+
 impl Shape {
     /// Makes the shape of an object's block. Returns `None` if a value is missing or wrong. Reports
     /// only values that contradict each other; other problems were reported before.
@@ -135,6 +159,14 @@ impl Shape {
     /// coordinates of its points relative to `from`.
     pub fn greatest_length(&self, from: DVec3) -> f64 {
         for_each_kind!(self, own => own.greatest_length(from))
+    }
+
+    /// Returns the fields that the shape is written with, and their values. A box is written by its
+    /// corners.
+    pub(super) fn fields(mut self) -> impl Iterator<Item = (&'static str, Value)> {
+        let row = schema::of_kind(self.block_kind());
+        let value = move |name| Some((name, self.field_mut(name)?.value()));
+        row.field_names().filter_map(value)
     }
 
     /// Returns a field that the shape is written with, by its name. Those of a box are its corners,

@@ -283,7 +283,8 @@ impl<'s> Recovery<'_, 's> {
 
     /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
-        // Number of bytes at the start of the file that are searched for the strings of a row.
+        // Number of bytes at the start of the file that are searched for the strings by which a
+        // kind of foreign file is known.
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');

@@ -32,6 +32,7 @@ use crate::{
     area::Area,
     cancel::{self, Cancelled},
     color::Color,
+    diagnostic::Mistakes,
     math::{Doubt, Real},
     scene::Scene,
 };
@@ -67,7 +68,23 @@ struct Nearest<T: Real> {
 }
 
 impl World {
-    /// Prepares a scene for the sample points of its picture.
+    /// Checks a scene that was made or changed in code, and prepares it for the sample points of
+    /// its picture.
+    ///
+    /// # Errors
+    ///
+    /// A condition of the language is broken, such as that a radius is more than 0.
+    pub fn try_new(scene: &Scene) -> Result<Self, Mistakes> {
+        scene.check()?;
+        Ok(Self::new(scene))
+    }
+
+    /// Prepares a scene for the sample points of its picture. The scene is one that was read, or
+    /// fulfils the conditions of the language; [`try_new`](Self::try_new) checks them.
+    ///
+    /// # Panics
+    ///
+    /// A condition is broken, and this is noticed; otherwise the picture is wrong.
     pub fn new(scene: &Scene) -> Self {
         Self::build(scene, Faces::Seen, reach(scene), &cancel::NEVER)
     }
@@ -78,20 +95,24 @@ impl World {
     /// # Errors
     ///
     /// The flag is set.
+    ///
+    /// # Panics
+    ///
+    /// As of [`new`](Self::new).
     pub fn new_unless(scene: &Scene, cancel: &AtomicBool) -> Result<Self, Cancelled> {
         let world = Self::build(scene, Faces::Seen, reach(scene), cancel);
         cancel::unless_set(cancel, world)
     }
 
-    /// Prepares a scene for [`ray`](super::ray()), which returns all crossings of a ray. Rays may
-    /// go through points of the picture plane at most `reach` pixels from the picture's centre in x
-    /// and y.
+    /// Prepares a scene as [`new`](Self::new) does, for [`ray`](super::ray()), which returns all
+    /// crossings of a ray. Rays may go through points of the picture plane at most `reach` pixels
+    /// from the picture's centre in x and y.
     pub fn for_rays(scene: &Scene, reach: DVec2) -> Self {
         Self::build(scene, Faces::All, reach, &cancel::NEVER)
     }
 
-    /// Prepares a scene as if each object, even a checkerboard, had one colour of its own. The
-    /// palette slot of this colour is the object's index in the file.
+    /// Prepares a scene as [`new`](Self::new) does, as if each object, even a checkerboard, had one
+    /// colour of its own. The palette slot of this colour is the object's index in the file.
     pub fn by_object(scene: &Scene) -> Self {
         let mut world = Self::new(scene);
         let pieces = 0..world.object_count();

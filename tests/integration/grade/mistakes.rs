@@ -25,7 +25,7 @@ enum Change {
     Program(fn(&mut Program)),
     /// Changes each pixel's bytes, after rendering.
     Pixels(fn([u8; 3]) -> [u8; 3]),
-    /// Changes the whole picture, after the pixels' bytes.
+    /// Changes the whole picture, once all of its pixels are converted to bytes.
     Picture(fn(&RgbImage) -> RgbImage),
 }
 

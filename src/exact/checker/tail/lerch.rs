@@ -9,8 +9,9 @@ use super::super::special::{Complex, integrals};
 const NEAR_POLE: f64 = 0.2;
 
 /// Computes the Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s) for s = 3, 4 and 5 at θ = `theta`,
-/// where |θ| ≤ π. Expands it about the pole of the integrand, up to the first derivative R′ of the
-/// regular function ([`rest_of_pole`]). `rotation` is e^iθ.
+/// where |θ| ≤ π and `rotation` is e^iθ. The series is also an integral, as the head of
+/// [`tail`](super) says. Its integrand is the sum of a pole and a regular function R, of which the
+/// first two terms are used ([`rest_of_pole`]).
 pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     let (r, slope) = rest_of_pole(theta, rotation);
     let h = integrals(theta * w);

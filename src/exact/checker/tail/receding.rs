@@ -89,8 +89,8 @@ pub(super) fn sum_from(
     let u = 1.0 / w;
     let u2 = u * u;
     let u3 = u2 * u;
-    // Factor by which the truncation error of all terms of X together exceeds that of the first
-    // term.
+    // Ratio of the truncation error of all terms of the series X ([`EdgeSeries`]) to that of its
+    // first term.
     let all_terms = if first > 0.0 {
         1.0 + (second * u + third * u2) / first
     } else {

@@ -1,0 +1,93 @@
+//! The mistakes of a scene as an error.
+
+use std::{error::Error, fmt, slice, sync::Arc};
+
+use super::Diagnostic;
+#[cfg(feature = "cli")]
+use super::{Report, Style};
+use crate::source::Sources;
+
+/// The mistakes because of which a text is no scene, in the order of the text, with its warnings.
+///
+/// They are displayed as the command line shows them, without colour. `Debug` prints the same, so
+/// that a `main` which returns them ends with a report.
+///
+/// ```
+/// let text = "camera { eye (0, 2, 8)  lookt (0, 1, 0) }  checkerboard {}";
+/// let mistakes = pinhole::Scene::parse(text).unwrap_err();
+/// for mistake in &mistakes {
+///     let place = mistakes.sources().place(mistake.labels[0].span);
+///     assert_eq!((place.line, place.column), (1, 25));
+///     assert_eq!(mistake.code, "pinhole::unknown_field");
+///     assert_eq!(mistake.fixes[0].edits[0].text, "lookat");
+/// }
+/// ```
+#[derive(Clone)]
+pub struct Mistakes {
+    sources: Arc<Sources>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Mistakes {
+    /// Makes an error of the problems of a scene.
+    pub(crate) fn new(sources: Arc<Sources>, diagnostics: Vec<Diagnostic>) -> Self {
+        Self {
+            sources,
+            diagnostics,
+        }
+    }
+
+    /// Iterates over the mistakes, in the order of the text.
+    pub fn iter(&self) -> slice::Iter<'_, Diagnostic> {
+        self.diagnostics.iter()
+    }
+
+    /// Returns the texts that the mistakes point into.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+}
+
+impl<'a> IntoIterator for &'a Mistakes {
+    type Item = &'a Diagnostic;
+    type IntoIter = slice::Iter<'a, Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+/// Writes a report of all mistakes.
+#[cfg(feature = "cli")]
+impl fmt::Display for Mistakes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let report = Report::new(&self.sources, Style::default()).human(&self.diagnostics);
+        f.write_str(report.trim_end())
+    }
+}
+
+/// Writes a line for each mistake; without the feature `cli`, nothing is drawn.
+#[cfg(not(feature = "cli"))]
+impl fmt::Display for Mistakes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, it) in self.iter().enumerate() {
+            let line_end = if index > 0 { "\n" } else { "" };
+            let (severity, message) = (it.severity.word(), &it.message);
+            write!(f, "{line_end}{severity}[{}]: {message}", it.code)?;
+            if let Some(label) = it.labels.first() {
+                let name = self.sources.get(label.span.source).name();
+                let place = self.sources.place(label.span);
+                write!(f, " ({name}:{}:{})", place.line, place.column)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Mistakes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl Error for Mistakes {}

@@ -1,0 +1,101 @@
+//! Pictures of other programs: reading them, and judging them.
+
+use std::{borrow::Cow, path::Path, sync::Arc};
+
+use super::{
+    Error, Picture, Scene,
+    picture::{Content, FromFile},
+};
+use crate::{
+    cancel, files,
+    film::{self, DECODED_LIMIT, Jpeg, Rounding, SizesDiffer},
+    grading::{Reference, Verdict},
+    render::Control,
+    source::{Source, Sources},
+};
+
+impl Picture {
+    /// Reads a picture file: PNG, OpenEXR, PNM, BMP, TIFF, WebP, GIF or JPEG.
+    ///
+    /// ```
+    /// let picture = pinhole::Picture::open("examples/figure_9_9.png")?;
+    /// assert_eq!((picture.width(), picture.height()), (1280, 720));
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or is no picture of at most [`DECODED_LIMIT`] decoded bytes.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let bytes = files::read(path, DECODED_LIMIT).map_err(|error| Error::Read {
+            path: path.to_owned(),
+            error,
+        })?;
+        Self::from_bytes(&bytes)
+    }
+
+    /// Reads a picture from the bytes of a file, as [`open`](Self::open) does.
+    ///
+    /// # Errors
+    ///
+    /// They are no picture of at most [`DECODED_LIMIT`] decoded bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
+        let file = FromFile {
+            picture: film::read_picture(bytes)?,
+            jpeg: Jpeg::of(bytes),
+        };
+        let sources = film::read_recipe(bytes).ok().map(|recipe| {
+            let text = Source::from_text("scene", recipe.scene);
+            Arc::new(Sources::new(text).with_sets(recipe.overrides))
+        });
+        Ok(Self {
+            content: Content::Read(Box::new(file)),
+            sources,
+        })
+    }
+
+    /// Returns the picture as it would be read from a file that rounds nothing.
+    fn as_read(&self) -> (Cow<'_, film::Picture>, Option<Jpeg>) {
+        match &self.content {
+            Content::Read(file) => (Cow::Borrowed(&file.picture), file.jpeg),
+            Content::Rendered(film) => {
+                let picture = film::Picture::new(film.clone(), Rounding::Float);
+                (Cow::Owned(picture), None)
+            }
+        }
+    }
+}
+
+impl Scene {
+    /// Judges a picture that another program made of the scene: whether it is right, right except
+    /// for sampling noise, or wrong, and by which mistakes. For many pictures of one scene, use
+    /// [`Reference`], which computes the exact picture once.
+    ///
+    /// ```
+    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+    /// #     sphere { center (0, 1, 0) }  checkerboard {}  image { width 64  height 48 }")?;
+    /// let theirs = scene.with_set("camera.up=(0, -1, 0)")?.render()?;
+    /// let verdict = scene.grade(&theirs)?;
+    /// assert!(verdict.to_string().starts_with("wrong"), "{verdict}");
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The picture has another size than the scene's, and is no part of it either; there is not
+    /// enough memory, or no thread can be started.
+    pub fn grade(&self, picture: &Picture) -> Result<Verdict, Error> {
+        let (file, jpeg) = picture.as_read();
+        let size = [picture.width(), picture.height()];
+        let whole = [self.size().width, self.size().height];
+        let part = match file.crop {
+            Some(crop) if [crop.width, crop.height] == size => crop,
+            _ if size == whole => self.size(),
+            _ => return Err(SizesDiffer(size, whole).into()),
+        };
+        let reference = Reference::new(self.data(), part, file.rounding, &Control::default())?;
+        let comparison = reference.compare(&file.film, file.rounding.steps())?;
+        Ok(reference.judge(&file, jpeg, &comparison, &cancel::NEVER)?)
+    }
+}

@@ -1,0 +1,180 @@
+//! A scene with its text.
+
+use std::{fmt, str::FromStr, sync::Arc};
+
+use super::{Error, Exact, Picture};
+use crate::{
+    area::Area,
+    diagnostic::{Diagnostic, Mistakes},
+    format::format,
+    render::{self, Control},
+    sampling::Sampling,
+    scene::{self, Scene as SceneData},
+    source::{Source, Sources},
+    tracer::World,
+};
+
+/// A scene without mistakes: its text, and what it means.
+///
+/// ```
+/// let scene = pinhole::Scene::parse(
+///     "camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+///      sphere { center (0, 1, 0) }
+///      checkerboard {}",
+/// )?;
+/// let rolled = scene.with_set("camera.roll=8deg")?;
+/// assert_eq!(rolled.data().camera.roll, pinhole::Angle::from_degrees(8.0));
+/// # Ok::<(), pinhole::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Scene {
+    sources: Arc<Sources>,
+    data: SceneData,
+    warnings: Vec<Diagnostic>,
+}
+
+impl Scene {
+    /// Reads a scene from its text.
+    ///
+    /// # Errors
+    ///
+    /// The text has mistakes, all of which are returned.
+    pub fn parse(text: &str) -> Result<Self, Mistakes> {
+        Self::read(Sources::new(Source::from_text("scene", text)))
+    }
+
+    /// Makes a scene of data: those of another scene with changes, or data of your own. Its text
+    /// is written from them.
+    ///
+    /// ```
+    /// use pinhole::{Scene, glam::DVec3, scene::{Object, Sphere}};
+    ///
+    /// let mut data = Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) } checkerboard {}")?
+    ///     .data()
+    ///     .clone();
+    /// data.image.width = 640;
+    /// for x in 0..5 {
+    ///     let (center, radius) = (DVec3::new(f64::from(x), 1.0, 0.0), 0.4);
+    ///     let ball = Sphere { center, radius, color: "tomato".parse()? };
+    ///     data.objects_mut().push(Object::new(ball).named(format!("Ball_{x}")));
+    /// }
+    /// let scene = Scene::from_data(&data)?;
+    /// assert!(scene.to_string().contains("Ball_4 { center (4, 1, 0)  radius 0.4"));
+    ///
+    /// data.camera.near = -1.0;
+    /// assert_eq!(Scene::from_data(&data).unwrap_err().iter().count(), 1);
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The data break a condition of the language, such as that a radius is more than 0. The
+    /// mistakes point into the text that was written.
+    pub fn from_data(data: &SceneData) -> Result<Self, Mistakes> {
+        Self::parse(&formatted(data))
+    }
+
+    /// Returns the scene with one more setting, as the program takes them by `--set`: another value
+    /// for a field of the camera, the image, the sampler or a named object, or for a name.
+    ///
+    /// # Errors
+    ///
+    /// There is nothing of that name, or the value does not suit.
+    pub fn with_set(&self, setting: &str) -> Result<Self, Mistakes> {
+        let mut sources = (*self.sources).clone();
+        sources.push_set(setting);
+        Self::read(sources)
+    }
+
+    fn read(sources: Sources) -> Result<Self, Mistakes> {
+        let sources = Arc::new(sources);
+        let reading = scene::read(&sources);
+        match reading.scene {
+            Some(data) => Ok(Self {
+                sources,
+                data,
+                warnings: reading.diagnostics,
+            }),
+            None => Err(Mistakes::new(sources, reading.diagnostics)),
+        }
+    }
+
+    /// Returns what the text means: image, camera, sampler and objects, with all values resolved.
+    pub fn data(&self) -> &SceneData {
+        &self.data
+    }
+
+    /// Returns the warnings about the text, in its order.
+    ///
+    /// ```
+    /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }")?;
+    /// assert_eq!(scene.diagnostics()[0].message, "the scene has no objects");
+    /// # Ok::<(), pinhole::Mistakes>(())
+    /// ```
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// Returns the text and the settings, which the warnings point into.
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// Renders the picture as the scene's sampler says, with all processors. With the method
+    /// `exact`, it is computed without samples, as by [`render_exact`](Self::render_exact).
+    ///
+    /// # Errors
+    ///
+    /// There is not enough memory, or no thread can be started.
+    pub fn render(&self) -> Result<Picture, Error> {
+        let (world, size) = (World::new(&self.data), self.size());
+        let sampling = Sampling::new(&self.data.sampler, size.width, size.height);
+        let film = render::render(&world, &sampling, size, &Control::default())?;
+        Ok(Picture::rendered(film, &self.sources))
+    }
+
+    /// Computes the picture without samples, whatever the sampler says: each pixel's mean colour,
+    /// with a bound on its error, which is at most 10⁻⁹ in ordinary views.
+    ///
+    /// # Errors
+    ///
+    /// There is not enough memory, or no thread can be started.
+    pub fn render_exact(&self) -> Result<Exact, Error> {
+        let world = World::new(&self.data);
+        let exact = render::render_exact(&world, self.size(), &Control::default())?;
+        Ok(Exact {
+            picture: Picture::rendered(exact.film, &self.sources),
+            bounds: exact.bounds,
+        })
+    }
+
+    pub(super) fn size(&self) -> Area {
+        Area::whole(self.data.image.width, self.data.image.height)
+    }
+}
+
+/// Writes the scene's text. With settings, it is written anew from the [data](Scene::data): without
+/// comments and names of values, and with each repeated object for itself.
+impl fmt::Display for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.sources.sets[..] {
+            [] => f.write_str(self.sources.file.text()),
+            _ => f.write_str(&formatted(&self.data)),
+        }
+    }
+}
+
+/// As [`Scene::parse`].
+impl FromStr for Scene {
+    type Err = Mistakes;
+
+    fn from_str(text: &str) -> Result<Self, Mistakes> {
+        Self::parse(text)
+    }
+}
+
+/// Writes data as a text, in the canonical layout unless a name is none.
+fn formatted(data: &SceneData) -> String {
+    let text = data.to_string();
+    format(&Source::from_text("scene", text.clone())).unwrap_or(text)
+}

@@ -1,0 +1,173 @@
+//! Scene → text, and the check of a scene that was made or changed in code.
+//!
+//! The text has a block for each part of the scene, with every field's value in full. What
+//! reading it gives is the same scene: numbers are written with as many digits as their bits need.
+
+use std::{collections::HashSet, fmt, sync::Arc};
+
+use super::{
+    lower::read,
+    model::{Camera, Count, Image, Lens, Object, Sampler, Scene, View},
+};
+use crate::{
+    diagnostic::Mistakes,
+    math::Angle,
+    schema::Value,
+    source::{Source, Sources},
+};
+
+impl Scene {
+    /// Checks that the scene is one that a text can describe: a radius is more than 0, the camera
+    /// does not look at its own eye, names are unique, and so on.
+    ///
+    /// # Errors
+    ///
+    /// It is not; the mistakes are those of the [text](#impl-Display-for-Scene) that describes it.
+    pub fn check(&self) -> Result<(), Mistakes> {
+        let sources = Sources::new(Source::from_text("scene", self.to_string()));
+        let reading = read(&sources);
+        match reading.scene {
+            Some(_) => Ok(()),
+            None => Err(Mistakes::new(Arc::new(sources), reading.diagnostics)),
+        }
+    }
+}
+
+/// Writes the scene as a text of the language. Repeated objects are written one by one, and
+/// `Ball[3, 1]` is called `Ball_3_1`.
+impl fmt::Display for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Image {
+            width,
+            height,
+            background,
+        } = self.image;
+        let background = Exactly(Value::Color(background));
+        writeln!(
+            f,
+            "image {{ width {width}  height {height}  background {background} }}"
+        )?;
+        write_camera(&self.camera, f)?;
+        let Sampler {
+            method,
+            count,
+            seed,
+        } = self.sampler;
+        let count = match count {
+            Count::PerPixel(count) => format!("per_pixel {count}"),
+            Count::Total(count) => format!("total {count}"),
+        };
+        let method = method.name();
+        writeln!(f, "sampler {{ method {method}  {count}  seed {seed} }}")?;
+        let names = self.objects.iter().filter_map(|it| it.name.clone());
+        let mut taken: HashSet<String> = names.collect();
+        for object in self.objects.iter() {
+            f.write_str(object.shape.kind())?;
+            if let Some(name) = &object.name {
+                write!(f, " {}", name_in_text(name, object, &mut taken))?;
+            }
+            f.write_str(" { ")?;
+            for (name, value) in object.shape.fields() {
+                write!(f, "{name} {}  ", Exactly(value))?;
+            }
+            f.write_str("}\n")?;
+        }
+        Ok(())
+    }
+}
+
+/// Returns the name by which a text can call an object: that of a repeated one has no brackets.
+fn name_in_text(name: &str, object: &Object, taken: &mut HashSet<String>) -> String {
+    if object.indices.is_empty() {
+        return name.to_owned();
+    }
+    let mut plain = name.replace(['[', ']'], " ").replace(',', "");
+    plain = plain.split_whitespace().collect::<Vec<_>>().join("_");
+    while !taken.insert(plain.clone()) {
+        plain.push('_');
+    }
+    plain
+}
+
+fn write_camera(camera: &Camera, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let Camera {
+        eye,
+        view,
+        up,
+        roll,
+        lens,
+        view_height,
+        near,
+        far,
+    } = *camera;
+    let view = match view {
+        View::Lookat(point) => ("lookat", Value::Vector(point)),
+        View::Direction(direction) => ("direction", Value::Vector(direction)),
+    };
+    let lens = match lens {
+        Lens::Distance(d) => ("d", Value::Number(d)),
+        Lens::Fov(angle) => ("fov", Value::Angle(angle)),
+        Lens::HorizontalFov(angle) => ("hfov", Value::Angle(angle)),
+    };
+    let fields = [
+        ("eye", Value::Vector(eye)),
+        view,
+        ("up", Value::Vector(up)),
+        ("roll", Value::Angle(roll)),
+        lens,
+        ("view_height", Value::Number(view_height)),
+        ("near", Value::Number(near)),
+    ];
+    let far = far.map(|far| ("far", Value::Number(far)));
+    f.write_str("camera {\n")?;
+    for (name, value) in fields.into_iter().chain(far) {
+        writeln!(f, "  {name} {}", Exactly(value))?;
+    }
+    f.write_str("}\n")
+}
+
+/// A value in the language's notation, to the last bit.
+struct Exactly(Value);
+
+impl fmt::Display for Exactly {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Value::Number(number) => f.write_str(&digits(number)),
+            Value::Angle(Angle { degrees, radians }) => match (degrees, radians) {
+                (degrees, 0.0) => write!(f, "{}deg", digits(degrees)),
+                (0.0, radians) => write!(f, "{}rad", digits(radians)),
+                _ => write!(f, "{}deg + {}rad", digits(degrees), digits(radians)),
+            },
+            Value::Vector(vector) => {
+                let [x, y, z] = vector.to_array().map(digits);
+                write!(f, "({x}, {y}, {z})")
+            }
+            Value::Color(color) if color.srgb.map(|it| f64::from(it as u8)) == color.srgb => {
+                write!(f, "{color}")
+            }
+            Value::Color(color) => {
+                let [r, g, b] = color.srgb.map(digits);
+                write!(f, "rgb({r}, {g}, {b})")
+            }
+            Value::Colors(colors) => {
+                let [first, second] = colors.map(|color| Self(Value::Color(color)));
+                write!(f, "({first}, {second})")
+            }
+            Value::FaceColors(colors) => {
+                let [x, y, z] = colors.map(|color| Self(Value::Color(color)));
+                write!(f, "({x}, {y}, {z})")
+            }
+            Value::Method(method) => f.write_str(method.name()),
+        }
+    }
+}
+
+/// Writes a number with the digits that its bits need, and a power of ten if it is shorter so.
+fn digits(number: f64) -> String {
+    let [plain, power] = [format!("{number}"), format!("{number:e}")];
+    if plain.len() <= power.len().max(12) {
+        plain
+    } else {
+        power
+    }
+}

@@ -1,0 +1,323 @@
+//! The library's front, as another program uses it.
+
+mod wrong_data;
+
+#[allow(dead_code, reason = "its main function is another program's")]
+#[path = "../../../examples/library/dolly_zoom.rs"]
+mod dolly_zoom;
+#[allow(dead_code, reason = "its main function is another program's")]
+#[path = "../../../examples/library/problems_as_json.rs"]
+mod problems_as_json;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use pinhole::{Color, Error, Method, Picture, Scene, SceneData};
+
+use crate::{program::Folder, scenes::example_text};
+
+/// Returns the texts of all scenes in a folder of the repository and in the folders in it.
+fn texts_in(folder: &Path, texts: &mut Vec<(PathBuf, String)>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            texts_in(&path, texts);
+        } else if path.extension().is_some_and(|ending| ending == "scn") {
+            // Some are not UTF-8, on purpose.
+            if let Ok(text) = fs::read_to_string(&path) {
+                texts.push((path, text));
+            }
+        }
+    }
+}
+
+/// Returns the data without what depends on the text: spans, and the names of repeated objects.
+fn without_text(data: &SceneData) -> SceneData {
+    let mut data = data.clone();
+    for object in data.objects_mut() {
+        let kept = pinhole::scene::Object::new(object.shape);
+        let name = object.name.take().filter(|_| object.indices.is_empty());
+        *object = pinhole::scene::Object { name, ..kept };
+    }
+    data
+}
+
+#[test]
+fn a_scene_written_from_its_data_has_the_same_data() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut texts = Vec::new();
+    for folder in ["examples", "grammar", "tests", "benches", "docs"] {
+        texts_in(&root.join(folder), &mut texts);
+    }
+    let mut read = 0;
+    for (path, text) in &texts {
+        let Ok(scene) = Scene::parse(text) else {
+            continue;
+        };
+        read += 1;
+        let again = Scene::from_data(scene.data());
+        let again = again.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let (mut there, back) = (without_text(scene.data()), without_text(again.data()));
+        // Repeated objects have names of their own in the new text.
+        for (object, again) in there.objects_mut().iter_mut().zip(back.objects.iter()) {
+            if object.name.is_none() {
+                object.name.clone_from(&again.name);
+            }
+        }
+        assert_eq!(there, back, "{}", path.display());
+        let text = again.to_string();
+        assert_eq!(Scene::parse(&text).unwrap().data(), again.data());
+    }
+    assert!(read > 50, "{read} of {} texts", texts.len());
+}
+
+#[test]
+fn extreme_numbers_are_written_to_the_last_bit() {
+    let numbers = [
+        0.1,
+        -0.0,
+        5e-324,
+        f64::MAX,
+        1e21,
+        123_456_789.125,
+        1.0 / 3.0,
+    ];
+    let mut data = Scene::parse(&example_text("figure_9_9"))
+        .unwrap()
+        .data()
+        .clone();
+    for (number, other) in numbers.into_iter().zip(numbers.into_iter().rev()) {
+        data.camera.up = glam::DVec3::new(number, other, 1.0);
+        data.camera.roll = pinhole::Angle {
+            degrees: number,
+            radians: other,
+        };
+        data.image.background = Color {
+            srgb: [1.0 / 3.0, 254.5, number.clamp(0.0, 255.0)],
+        };
+        let again = Scene::from_data(&data).unwrap();
+        assert_eq!(without_text(again.data()), without_text(&data));
+    }
+}
+
+#[test]
+fn a_repeated_object_gets_a_name_that_is_free() {
+    let text = "camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+        sphere Ball for i < 2, j < 2 { center (i, j, 0) }  sphere Ball_1_0 { center (0, 5, 0) }";
+    let scene = Scene::from_data(Scene::parse(text).unwrap().data()).unwrap();
+    let names = scene
+        .data()
+        .objects
+        .iter()
+        .filter_map(|it| it.name.as_deref());
+    let expected = ["Ball_0_0", "Ball_0_1", "Ball_1_0_", "Ball_1_1", "Ball_1_0"];
+    assert!(names.eq(expected), "{scene}");
+}
+
+#[test]
+fn saved_pictures_have_the_bytes_that_the_program_writes() {
+    let text = example_text("figure_9_9");
+    let folder = Folder::with([("a.scn", &text[..])]);
+    let sets = ["image.width=64", "image.height=36"];
+    for method in ["multi_jittered", "scatter", "exact"] {
+        let sets = sets.map(str::to_owned).into_iter();
+        let sets = sets
+            .chain([format!("sampler.method={method}")])
+            .collect::<Vec<_>>();
+        let mut scene: Scene = text.parse().unwrap();
+        for set in &sets {
+            scene = scene.with_set(set).unwrap();
+        }
+        let picture = scene.render().unwrap();
+        for ending in ["png", "exr"] {
+            let sets = sets.iter().map(|set| format!("--set {set}"));
+            let sets = sets.collect::<Vec<_>>().join(" ");
+            let said = folder.run(&format!("render a.scn {sets} -o program.{ending}"));
+            assert_eq!(said.status, 0, "{}", said.errors);
+            let path = folder.path(&format!("library.{ending}"));
+            picture.save(&path).unwrap();
+            let program = fs::read(folder.path(&format!("program.{ending}"))).unwrap();
+            assert!(fs::read(&path).unwrap() == program, "{method} {ending}");
+            let read = Picture::open(&path).unwrap();
+            assert!(read.rmse(&picture).unwrap() < 0.01);
+            assert_eq!(read.to_rgb8(), picture.to_rgb8());
+            // What was read can be written again, with its scene.
+            read.save(&path).unwrap();
+            assert!(fs::read(&path).unwrap() == program, "{method} {ending}");
+        }
+    }
+}
+
+#[test]
+fn a_changed_scene_is_in_its_picture() {
+    let mut data = Scene::parse(&example_text("figure_9_9"))
+        .unwrap()
+        .data()
+        .clone();
+    (data.image.width, data.image.height) = (32, 18);
+    data.camera.eye.y = 7.5;
+    let scene = Scene::from_data(&data).unwrap();
+    let folder = Folder::with([]);
+    scene.render().unwrap().save(folder.path("a.png")).unwrap();
+    folder.done("render a.png -o again.png");
+    let [first, again] = ["a.png", "again.png"].map(|name| fs::read(folder.path(name)).unwrap());
+    assert!(first == again);
+}
+
+#[test]
+fn mistakes_are_displayed_as_the_program_reports_them() {
+    let wrong = example_text("figure_9_9").replace("radius 1", "radus -1");
+    let folder = Folder::with([("scene", &wrong[..])]);
+    let said = folder.run("check scene");
+    let mistakes = Scene::parse(&wrong).unwrap_err();
+    assert_eq!(format!("{mistakes}\n"), said.errors);
+    assert_eq!(format!("{mistakes:?}\n"), said.errors);
+    assert_eq!(mistakes.iter().count(), 1);
+    let set = Scene::parse(&example_text("figure_9_9")).unwrap();
+    let said = set.with_set("camera.rol=8deg").unwrap_err().to_string();
+    assert!(said.contains("did you mean `roll`"), "{said}");
+}
+
+#[test]
+fn an_exact_scene_is_computed_by_either_way_to_render() {
+    let set = "sampler.method=exact";
+    let scene = Scene::parse(&example_text("figure_9_9")).unwrap();
+    let sizes = ["image.width=32", "image.height=18"];
+    let scene = sizes
+        .iter()
+        .fold(scene, |scene, set| scene.with_set(set).unwrap());
+    let exact = scene.render_exact().unwrap();
+    let rendered = scene.with_set(set).unwrap().render().unwrap();
+    assert_eq!(rendered.pixels(), exact.picture.pixels());
+    assert_eq!(exact.bounds.len(), 32 * 18);
+    assert!(exact.bound() < 1e-9, "{}", exact.bound());
+}
+
+#[test]
+fn pictures_are_judged() {
+    let scene = Scene::parse(&example_text("figure_9_9")).unwrap();
+    let sizes = ["image.width=96", "image.height=54"];
+    let scene = sizes
+        .iter()
+        .fold(scene, |scene, set| scene.with_set(set).unwrap());
+    let picture = scene.render().unwrap();
+    let verdict = scene.grade(&picture).unwrap();
+    assert!(
+        verdict
+            .to_string()
+            .starts_with("right but for sampling noise")
+    );
+    let exact = scene.render_exact().unwrap().picture;
+    assert_eq!(
+        scene.grade(&exact).unwrap().to_string(),
+        "right: equal to the exact picture"
+    );
+    let small = scene.with_set("image.width=95").unwrap().render().unwrap();
+    for error in [scene.grade(&small).err(), small.rmse(&picture).err()] {
+        let told = error.unwrap().to_string();
+        assert_eq!(told, "the sizes differ: 95 × 54 pixels and 96 × 54");
+    }
+    // A part of the picture says where it belongs.
+    let folder = Folder::with([("a.scn", &example_text("figure_9_9")[..])]);
+    folder.done(
+        "render a.scn --set image.width=96 --set image.height=54 --crop 40,20,30,20 -o part.png",
+    );
+    let part = Picture::open(folder.path("part.png")).unwrap();
+    let verdict = scene.grade(&part).unwrap();
+    assert!(
+        verdict.to_string().starts_with("right but for"),
+        "{verdict}"
+    );
+}
+
+#[test]
+fn errors_name_the_file_and_the_reason() {
+    let folder = Folder::with([("text.png", "camera {}")]);
+    let scene = Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }").unwrap();
+    let picture = scene.with_set("image.width=4").unwrap().render().unwrap();
+    let path = |name: &str| folder.path(name);
+    let told = |error: Error| error.to_string().replace(path("").to_str().unwrap(), "");
+    for (error, expected) in [
+        (
+            picture.save(path("a.jpg")).unwrap_err(),
+            "cannot write to a.jpg: a picture's file ends in .png or .exr",
+        ),
+        (
+            picture.save(path("none/a.png")).unwrap_err(),
+            "cannot write to none/a.png: there is no such folder",
+        ),
+        (
+            Picture::open(path("none.png")).unwrap_err(),
+            "cannot read none.png: there is no such file or folder",
+        ),
+        (
+            Picture::open(path("text.png")).unwrap_err(),
+            "it is no picture in PNG",
+        ),
+    ] {
+        let told = told(error);
+        assert!(told.starts_with(expected), "{told}");
+    }
+}
+
+#[test]
+fn colours_and_methods_are_read_as_the_language_writes_them() {
+    for (text, expected) in [
+        ("olive", "#808000"),
+        ("#fa0", "#ffaa00"),
+        ("rgb(255, 165, 0)", "#ffa500"),
+        ("OLIVE", "#808000"),
+    ] {
+        assert_eq!(text.parse::<Color>().unwrap().to_string(), expected);
+    }
+    for (text, part) in [
+        ("oliv", "did you mean `olive`"),
+        ("2", "a colour is wanted, and this is a number"),
+        ("rgb(300, 0, 0)", "300"),
+        ("olive teal", "teal"),
+        ("", "colour"),
+        ("#ff", "#ff"),
+        ("let", "let"),
+    ] {
+        let told = text.parse::<Color>().unwrap_err().to_string();
+        assert!(told.contains(part), "{text}: {told}");
+    }
+    for (method, _) in pinhole::schema::METHODS {
+        assert_eq!(method.to_string().parse::<Method>(), Ok(*method));
+    }
+    let told = "jitter".parse::<Method>().unwrap_err().to_string();
+    assert!(
+        told.starts_with("there is no method `jitter`; the methods are"),
+        "{told}"
+    );
+}
+
+#[test]
+fn the_two_example_programs_do_what_they_say() {
+    let folder = Folder::with([]);
+    dolly_zoom::dolly_zoom(&folder.path("")).unwrap();
+    let table = fs::read_to_string(folder.path("errors.csv")).unwrap();
+    let errors = table.lines().skip(1).map(|line| {
+        let error = line.rsplit(',').next().unwrap();
+        error.parse::<f64>().unwrap()
+    });
+    let errors: Vec<f64> = errors.collect();
+    assert!(
+        errors.iter().all(|error| (0.001..0.1).contains(error)),
+        "{table}"
+    );
+    for (frame, _) in errors.iter().enumerate() {
+        let picture = Picture::open(folder.path(&format!("frame_{frame}.png"))).unwrap();
+        assert_eq!((picture.width(), picture.height()), (320, 180));
+    }
+
+    let text = "camera { eye (0, 2, 8)  lookt (0, 1, 0) }  checkerboard {}";
+    let found = problems_as_json::problems(text);
+    assert_eq!(found[0]["line"], 1, "{found:#}");
+    assert_eq!(found[0]["column"], 25);
+    assert_eq!(found[0]["instead"], "write `lookat`");
+    let right = problems_as_json::problems(&example_text("figure_9_9"));
+    assert_eq!(right, serde_json::json!([]));
+}

@@ -1,0 +1,174 @@
+//! Data that no text could give are an error wherever a program can hand them in, and never a
+//! picture that looks right.
+
+use std::io::Cursor;
+
+use pinhole::{
+    Scene, SceneData,
+    area::Area,
+    film::{self, Film, Rounding, SizesDiffer, write_exr},
+    glam::DVec3,
+    grading::{Kind, Reference},
+    refine::coarse,
+    render::{self, Control, RenderError, render_as_asked, render_exact},
+    scene::{Count, Lens, Object, Shape, Sphere, TriangleOutline, View},
+    tracer::World,
+};
+
+use crate::scenes::{exact, example, read, sampling};
+
+/// Returns the examples' first scene, small, after a change.
+fn changed(change: impl Fn(&mut SceneData)) -> SceneData {
+    let mut data = example("figure_9_9", 32, 18);
+    change(&mut data);
+    data
+}
+
+#[test]
+fn data_that_break_a_condition_are_no_scene() {
+    let ball = |radius: f64| Sphere {
+        center: DVec3::Y,
+        radius,
+        color: pinhole::Color::BLACK,
+    };
+    type Change = (&'static str, fn(&mut SceneData));
+    let changes: [Change; 15] = [
+        ("`radius` must be more than 0", |it| {
+            if let Shape::Sphere(sphere) = &mut it.objects_mut()[0].shape {
+                sphere.radius = -1.0;
+            }
+        }),
+        ("stands on the point that it looks at", |it| {
+            it.camera.view = View::Lookat(it.camera.eye);
+        }),
+        ("NaN", |it| it.camera.eye.x = f64::NAN),
+        ("inf", |it| it.camera.eye.x = f64::INFINITY),
+        ("`far` must be more than `near`", |it| {
+            it.camera.far = Some(0.0)
+        }),
+        ("`near` must be at least 0", |it| it.camera.near = -1.0),
+        ("`d` must be more than 0", |it| {
+            it.camera.lens = Lens::Distance(0.0)
+        }),
+        ("`up` must be other than (0, 0, 0)", |it| {
+            it.camera.up = DVec3::ZERO
+        }),
+        ("`direction` must be other than", |it| {
+            it.camera.view = View::Direction(DVec3::ZERO);
+        }),
+        ("`width` must be at least 1", |it| it.image.width = 0),
+        ("`height` must be at most", |it| it.image.height = u32::MAX),
+        ("`per_pixel` must be at least 1", |it| {
+            it.sampler.count = Count::PerPixel(0);
+        }),
+        ("Ball", |it| {
+            let again = it.objects[0].clone();
+            it.objects_mut().push(again);
+        }),
+        ("lie on one line", |it| {
+            if let Shape::Triangle(triangle) = &mut it.objects_mut()[1].shape {
+                triangle.outline = TriangleOutline::Vertices([DVec3::ZERO; 3]);
+            }
+        }),
+        ("no extent along", |it| {
+            if let Shape::Box(cuboid) = &mut it.objects_mut()[2].shape {
+                cuboid.max = cuboid.min;
+            }
+        }),
+    ];
+    for (message, change) in changes {
+        let data = changed(change);
+        let told = Scene::from_data(&data).unwrap_err().to_string();
+        assert!(told.contains(message), "{message}:\n{told}");
+        assert!(World::try_new(&data).is_err(), "{message}");
+    }
+    for name in ["my ball", "camera", "for", "Ball {"] {
+        let data = changed(|it| it.objects_mut().push(Object::new(ball(1.0)).named(name)));
+        assert!(Scene::from_data(&data).is_err(), "{name}");
+    }
+    let data = changed(|it| it.objects_mut().push(Object::new(ball(1.0)).named("Other")));
+    assert!(World::try_new(&data).is_ok());
+}
+
+#[test]
+fn a_part_beyond_the_picture_is_an_error() {
+    let scene = changed(|_| ());
+    let (world, sampling, control) = (World::new(&scene), sampling(&scene), Control::default());
+    let mut exact_scene = scene.clone();
+    exact_scene.sampler.method = pinhole::Method::Exact;
+    let without_samples = crate::scenes::sampling(&exact_scene);
+    for part in [
+        Area::whole(33, 18),
+        Area::whole(32, 0),
+        "31,17,2,1".parse().unwrap(),
+        "40,3,1,1".parse().unwrap(),
+        "4294967295,0,4294967295,1".parse().unwrap(),
+    ] {
+        let ways = [
+            render::render(&world, &sampling, part, &control).err(),
+            render::render(&world, &without_samples, part, &control).err(),
+            render_as_asked::<[u8; 3]>(&world, &sampling, part, &control).err(),
+            render_exact(&world, part, &control).err(),
+            coarse(&world, part, 4, &control).err(),
+            Reference::new(&scene, part, Rounding::Byte, &control).err(),
+        ];
+        for error in ways {
+            assert!(matches!(error, Some(RenderError::Outside { .. })), "{part}");
+        }
+    }
+    let all = Area::whole(32, 18);
+    let film = render::render(&world, &without_samples, all, &control).unwrap();
+    assert_eq!(film, exact(&scene).film);
+}
+
+#[test]
+fn films_of_different_sizes_are_not_compared_or_written_as_parts() {
+    let film = |width, height| Film::from_fn(width, height, |x, _| [f64::from(x); 3]).unwrap();
+    let (a, b) = (film(4, 2), film(2, 4));
+    assert_eq!(film::rmse(&a, &b), Err(SizesDiffer([4, 2], [2, 4])));
+    assert_eq!(film::rmse(&a, &a), Ok(0.0));
+    for (part, whole) in [
+        (Area::whole(2, 4), Area::whole(4, 4)),
+        (Area::whole(4, 1), Area::whole(4, 4)),
+        ("1,0,4,2".parse().unwrap(), Area::whole(4, 4)),
+        (Area::whole(4, 2), Area::whole(2, 4)),
+    ] {
+        let mut file = Cursor::new(Vec::new());
+        let error = write_exr(&a, part, whole, &mut file).unwrap_err();
+        assert!(error.to_string().contains("4 × 2 pixels"), "{error}");
+        assert!(file.into_inner().is_empty());
+    }
+    assert_eq!(a.into_pixels().len(), 8);
+}
+
+#[test]
+fn a_picture_with_values_that_are_no_numbers_is_wrong() {
+    let scene = read(
+        "image { width 24  height 16 } camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+        sphere { center (0, 1, 0) } checkerboard {}",
+    );
+    let control = Control::default();
+    let reference = Reference::new(&scene, Area::whole(24, 16), Rounding::Float, &control).unwrap();
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for wrong in [1, 24 * 16] {
+            let mut film = reference.exact.film.clone();
+            film.pixels_mut()[..wrong].fill([0.0, value, 0.0]);
+            let comparison = reference.compare(&film, 0.5).unwrap();
+            assert_eq!(comparison.beyond, wrong as u64);
+            let picture = film::Picture::new(film, Rounding::Float);
+            let verdict = reference
+                .judge(&picture, None, &comparison, control.cancel)
+                .unwrap();
+            assert_eq!(verdict.kind, Kind::Wrong);
+            assert_eq!(verdict.mistakes[0].id, "not_finite");
+        }
+    }
+}
+
+#[test]
+#[should_panic(expected = "the sampling is of a picture of another size")]
+fn a_sampling_of_another_size_is_refused() {
+    let [small, large] = [16, 32].map(|width| example("figure_9_9", width, 9));
+    let (world, part) = (World::new(&small), Area::whole(16, 9));
+    let _ = render::render(&world, &sampling(&large), part, &Control::default());
+}
