@@ -103,6 +103,10 @@ fn map_channels(
     }
 }
 
+/// Maximum relative deviation of an estimated factor from a power of 2 that counts as that power.
+/// The rounding of bytes to 1/255 shifts a factor by less.
+const POWER: f64 = 0.005;
+
 /// Returns the factor between the observed and the expected light of cells of one colour, after a
 /// function: the median, refined by the channels that have nearly that factor. If all of them are
 /// full, it is the least that fills them. A factor near 1 is 1, and so is one that fewer than half
@@ -131,9 +135,14 @@ fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabul
     let [seen, mean] = near
         .iter()
         .fold([0.0; 2], |sums, pair| [0, 1].map(|i| sums[i] + pair[i]));
-    match seen / mean {
-        gain if (gain - 1.0).abs() < ALIKE => 1.0,
-        gain => gain,
+    let gain = seen / mean;
+    // A wrong count of samples is mostly a power of 2 times the right one.
+    let power = libm::exp2(libm::log2(gain).round());
+    let is_power = (gain / power - 1.0).abs() < POWER;
+    match gain {
+        _ if (gain - 1.0).abs() < ALIKE => 1.0,
+        _ if is_power => power,
+        _ => gain,
     }
 }
 

@@ -40,7 +40,7 @@ const NUMBER_PENALTY: f64 = 1.03;
 
 /// Number of rows that are compared on an exact picture, with the least difference on the tiny grid
 /// first. Comparing all of them takes as long as finding a single mistake does otherwise.
-const EXACT_ROWS: usize = 24;
+const EXACT_ROWS: usize = 32;
 
 /// Maximum number of combinations of mistakes that are examined because they may explain the
 /// picture only together (see `joint_rows`); those with the least difference come first.
