@@ -11,8 +11,12 @@
 
 #[path = "../tests/integration/grade/case.rs"]
 mod case;
+#[path = "../tests/integration/grade/hits.rs"]
+mod hits;
 #[path = "../tests/integration/grade/mistakes.rs"]
 mod mistakes;
+#[path = "../tests/integration/grade/scenes.rs"]
+mod scenes;
 #[path = "../tests/integration/grade/textbook.rs"]
 mod textbook;
 

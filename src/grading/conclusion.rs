@@ -10,6 +10,7 @@ use super::{
 use crate::{
     color::srgb_to_linear,
     film::{Film, Jpeg},
+    numbers::{short, significant},
     scene::Scene,
 };
 
@@ -81,6 +82,9 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     let beyond = |candidate: &Candidate| {
         judged(candidate).map_or(0.0, |found| (found.score.squares - noise).max(0.0))
     };
+    let shown = judge.predicted(last, &judge.fine);
+    let gain = shown.map_or(1.0, |shown| shown.gain);
+    let gain = short(significant(gain, 3));
     let mut before = Candidate::correct(scene);
     let all = beyond(&before).max(1e-12);
     let mut left = all;
@@ -113,7 +117,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
         }
         mistakes.push(NamedMistake {
             id: mistake.id(),
-            message,
+            message: message.replace("{gain}", &gain),
             help: mistake.help(scene),
             set,
             explains: ((left - now) / all).clamp(0.0, 1.0),

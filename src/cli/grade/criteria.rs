@@ -36,13 +36,13 @@ const BEGINNINGS: &[(Criterion, &str)] = &[
     ),
     (
         Criterion::Camera,
-        "window_ u_not_normalised fisheye mirrored upside_down turned_ transposed squeezed \
+        "window_ u_not_normalised fisheye mirrored upside_down turned_ transposed stride squeezed \
          aspect looks_back w_not_normalised parallel_rays nothing_seen eye_and_lookat",
     ),
     (
         Criterion::Colours,
-        "colors_exchanged video_range bytes_wrap channels gray not_encoded encoded_ gamma_ \
-         cut_off not_decoded decoded_twice inverted not_divided black one_colour transparent \
+        "colors_exchanged video_range bytes_wrap bytes_scaled channels gray not_encoded encoded_ gamma_ \
+         cut_off not_decoded decoded_twice inverted not_divided shaded black one_colour transparent \
          alpha background",
     ),
     (
@@ -100,10 +100,9 @@ pub fn ids() -> impl Iterator<Item = &'static str> {
     let fields = blocks
         .filter_map(schema::block)
         .flat_map(|block| block.fields);
-    let named = ["eye_and_lookat", "object_extra"].into_iter();
     let all: BTreeSet<_> = grading::mistake_ids()
         .chain(fields.map(|field| field.name))
-        .chain(named)
+        .chain(["eye_and_lookat"])
         .collect();
     all.into_iter()
 }

@@ -1,5 +1,7 @@
 //! How a program behaves otherwise than a right one.
 
+use glam::DVec3;
+
 /// Which of the surfaces that a ray crosses is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SeenSurface {
@@ -84,6 +86,23 @@ pub enum Spheres {
     UnitRays(f64),
     /// Only in the nearer of the two points.
     LesserRoot,
+    /// Only in the farther of the two points.
+    GreaterRoot,
+    /// By roots that are multiplied by a where they should be divided, with the view plane at this
+    /// distance.
+    TimesA(f64),
+}
+
+/// How a colour is shaded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Shading {
+    /// Not at all, which is correct.
+    #[default]
+    None,
+    /// By the cosine between the ray and the normal.
+    OfRay,
+    /// By the cosine between the normal and a direction to a light.
+    To(DVec3),
 }
 
 /// A fault in how one object is hit.
@@ -118,6 +137,12 @@ pub struct Behaviour {
     pub clips_distances: bool,
     /// How spheres are hit.
     pub spheres: Spheres,
+    /// Distance from the origin, along both axes of a checkerboard, at which it ends, in metres.
+    pub board_reach: f64,
+    /// Index of the axis that is normal to a checkerboard.
+    pub board_normal: usize,
+    /// How colours are shaded.
+    pub shading: Shading,
     /// The object that is hit wrongly, and how.
     pub hit: Option<(usize, HitFault)>,
 }
@@ -134,6 +159,9 @@ impl Default for Behaviour {
             rays: Rays::default(),
             clips_distances: false,
             spheres: Spheres::default(),
+            board_reach: f64::INFINITY,
+            board_normal: 1,
+            shading: Shading::default(),
             hit: None,
         }
     }
@@ -153,6 +181,7 @@ impl Behaviour {
             && !self.sees_behind()
             && self.aspect == 1.0
             && self.rays == Rays::Correct
+            && self.board_normal == 1
             && self.hit.is_none()
     }
 

@@ -32,6 +32,19 @@ pub fn map_channels(c: &mut Candidate, curve: fn(f64) -> f64) {
     }
 }
 
+/// Multiplies each channel by one factor between two functions, unless another effect is set.
+pub fn multiply(c: &mut Candidate, functions: [fn(f64) -> f64; 2]) {
+    if c.effects.is_empty() {
+        c.effects.push(Effect::Gain(functions));
+    }
+}
+
+/// Returns whether a checkerboard is drawn.
+pub fn has_board(c: &Candidate) -> bool {
+    let mut drawn = c.scene.objects.iter().zip(&c.is_drawn);
+    drawn.any(|(object, is_drawn)| *is_drawn && matches!(object.shape, Shape::Checkerboard(_)))
+}
+
 /// Shifts the samples by pixels to the right and down in the file.
 pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
@@ -114,10 +127,7 @@ pub fn set_seen_surface(c: &mut Candidate, visible: SeenSurface) {
 
 /// Sets the rule for a checkerboard's squares, if one is drawn and no rule is set.
 pub fn set_square_rule(c: &mut Candidate, is_first: fn(f64, f64) -> bool) {
-    let mut drawn = c.scene.objects.iter().zip(&c.is_drawn);
-    let is_seen =
-        drawn.any(|(object, is_drawn)| *is_drawn && matches!(object.shape, Shape::Checkerboard(_)));
-    if is_seen && c.behaviour.square_rule == SquareRule::default() {
+    if has_board(c) && c.behaviour.square_rule == SquareRule::default() {
         c.behaviour.square_rule = SquareRule(is_first);
     }
 }

@@ -11,11 +11,18 @@ pub struct Layout {
     pub is_upside_down: bool,
     /// Whether rows and columns are exchanged after that, in a square picture.
     pub is_transposed: bool,
+    /// Number of pixels by which a row is read too far behind the one before, at the end.
+    pub stride: i32,
 }
 
 impl Layout {
     /// Returns the pixel of a picture that is shown in the place of another one.
     pub fn source(self, (x, y): (u32, u32), [width, height]: [u32; 2]) -> (u32, u32) {
+        let wide = i64::from(width);
+        let all = wide * i64::from(height);
+        let at = i64::from(y) * (wide + i64::from(self.stride)) + i64::from(x);
+        let at = at.rem_euclid(all);
+        let (x, y) = ((at % wide) as u32, (at / wide) as u32);
         let (x, y) = if self.is_transposed { (y, x) } else { (x, y) };
         let x = if self.is_mirrored { width - 1 - x } else { x };
         let y = if self.is_upside_down {
@@ -35,6 +42,9 @@ impl Layout {
 
     /// Returns the part of a picture that is shown in the place of another part.
     pub fn sources(self, part: Area, size: [u32; 2]) -> Area {
+        if self.stride != 0 {
+            return Area::whole(size[0], size[1]);
+        }
         let last = (part.x + part.width - 1, part.y + part.height - 1);
         let (ax, ay) = self.source((part.x, part.y), size);
         let (bx, by) = self.source(last, size);

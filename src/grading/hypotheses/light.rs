@@ -139,6 +139,9 @@ pub enum Effect {
     Gray([f64; 3]),
     /// Each channel goes through a function.
     PerChannel(fn(f64) -> f64),
+    /// Each channel is multiplied by the factor that explains most of the picture, between these
+    /// two functions.
+    Gain([fn(f64) -> f64; 2]),
     /// Bytes are truncated instead of rounded.
     CutOff,
     /// The difference of a pixel from the mean of the 3 × 3 around it is added once more.

@@ -14,7 +14,7 @@ pub mod mistakes;
 pub mod parameters;
 
 pub use self::{
-    behaviour::{Behaviour, HitFault, Rays, SeenSurface, Spheres},
+    behaviour::{Behaviour, HitFault, Rays, SeenSurface, Shading, Spheres},
     candidate::{Candidate, Mistake, MistakeRow, Shows},
     layout::Layout,
     light::{Curve, Effect, STEP, Tabulated, encoded_quickly, is_near},

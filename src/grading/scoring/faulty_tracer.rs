@@ -11,7 +11,7 @@ use super::moments::Moments;
 use crate::{
     area::Area,
     color::Color,
-    grading::hypotheses::{Behaviour, Curve, HitFault, Rays, SeenSurface, Spheres},
+    grading::hypotheses::{Behaviour, Curve, HitFault, Rays, SeenSurface, Shading, Spheres},
     projection::Projection,
     reference::formulas::{by_vertices, corners, crossings, radians, vertices},
     scene::{Checkerboard, Cuboid, Scene, Shape, Sphere},
@@ -187,13 +187,14 @@ impl FaultyTracer {
                 continue;
             }
             let crossings = match (object.hit, &object.shape) {
-                (_, Shape::Sphere(sphere)) => match self.behaviour.spheres {
-                    Spheres::UnitRays(distance) => with_unit_rays(sphere, distance, eye, ray),
-                    Spheres::LesserRoot => {
-                        crossings(&object.shape, eye, ray, 0.0).map(|[lesser, _]| [lesser; 2])
-                    }
-                    Spheres::Correct => crossings(&object.shape, eye, ray, 0.0),
-                },
+                (_, Shape::Sphere(sphere)) => self.on_sphere(sphere, eye, ray),
+                (_, Shape::Checkerboard(board)) => {
+                    let normal = self.behaviour.board_normal;
+                    let t = (board.y - eye[normal]) / ray[normal];
+                    let [x, z] = self.on_board(eye + t * ray);
+                    let is_on_it = x.abs().max(z.abs()) < self.behaviour.board_reach;
+                    is_on_it.then_some([t; 2])
+                }
                 (Some(hit), Shape::Triangle(triangle)) => {
                     on_plane(&vertices(&triangle.outline), hit, eye, ray)
                 }
@@ -217,17 +218,55 @@ impl FaultyTracer {
         let point = eye + t * ray;
         let color = match object.shape {
             Shape::Checkerboard(Checkerboard { square, .. }) => {
-                let [x, z] = [point.x, point.z].map(|at| at / square);
+                let [x, z] = self.on_board(point).map(|at| at / square);
                 usize::from(!(self.behaviour.square_rule.0)(x, z))
             }
-            Shape::Box(Cuboid { min, max, .. }) => {
-                // The colour of the nearest face.
-                let off = (point - min).abs().min((point - max).abs());
-                off.min_position()
-            }
+            Shape::Box(ref cuboid) => face(cuboid, point),
             Shape::Sphere(_) | Shape::Triangle(_) => 0,
         };
-        Some(object.colors[color])
+        let shade = match self.behaviour.shading {
+            Shading::None => return Some(object.colors[color]),
+            Shading::OfRay => self.normal(&object.shape, point).dot(ray.normalize()).abs(),
+            Shading::To(light) => {
+                let normal = self.normal(&object.shape, point);
+                -normal.dot(ray).signum() * normal.dot(light)
+            }
+        };
+        Some(shade.max(0.0) * object.colors[color])
+    }
+
+    /// Returns a unit normal of a shape at a point of its surface, to either side.
+    fn normal(&self, shape: &Shape, point: DVec3) -> DVec3 {
+        match shape {
+            Shape::Sphere(Sphere { center, .. }) => (point - center).normalize(),
+            Shape::Triangle(triangle) => {
+                let [a, b, c] = vertices(&triangle.outline);
+                (b - a).cross(c - a).normalize()
+            }
+            Shape::Box(cuboid) => DVec3::AXES[face(cuboid, point)],
+            Shape::Checkerboard(_) => DVec3::AXES[self.behaviour.board_normal],
+        }
+    }
+
+    /// Returns the coordinates of a point along the axes of a checkerboard.
+    fn on_board(&self, point: DVec3) -> [f64; 2] {
+        let [x, z] = [0, 3 - self.behaviour.board_normal];
+        [point[x], point[z]]
+    }
+
+    /// Intersects a ray with a sphere.
+    fn on_sphere(&self, sphere: &Sphere, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
+        let roots = || crossings(&Shape::Sphere(*sphere), eye, ray, 0.0);
+        match self.behaviour.spheres {
+            Spheres::Correct => roots(),
+            Spheres::UnitRays(distance) => with_unit_rays(sphere, distance, eye, ray),
+            Spheres::LesserRoot => roots().map(|[lesser, _]| [lesser; 2]),
+            Spheres::GreaterRoot => roots().map(|[_, greater]| [greater; 2]),
+            Spheres::TimesA(distance) => {
+                let a = distance * distance * ray.length_squared();
+                roots().map(|roots| roots.map(|t| a * a * t))
+            }
+        }
     }
 
     /// Returns whether a crossing counts; `length` is the depth or distance per unit of t.
@@ -252,6 +291,12 @@ impl FaultyTracer {
             [one, other] => one.or(other),
         }
     }
+}
+
+/// Returns the axis across which a box has the face that is nearest to a point.
+fn face(Cuboid { min, max, .. }: &Cuboid, point: DVec3) -> usize {
+    let off = (point - min).abs().min((point - max).abs());
+    off.min_position()
 }
 
 /// Intersects a ray with a sphere by −b ± √(b² − c), which assumes length 1; the ray is scaled to

@@ -16,6 +16,13 @@ use crate::{
 /// Variance below which a pixel has one colour: at most about 1e-9 of it may have another.
 pub const FLAT: f64 = 1e-9;
 
+/// Light from which on a channel counts as full, which may be less than the program computed.
+const FULL: f64 = 0.99;
+/// Light of a channel whose byte is too small to tell a factor.
+const EMPTY: f64 = 0.01;
+/// Relative difference within which factors count as the same.
+const ALIKE: f64 = 0.03;
+
 /// Mean change of a truncated byte, in steps.
 const CUT_OFF: f64 = -0.5;
 
@@ -32,6 +39,8 @@ pub struct Prediction<'a> {
     pub curve: Curve,
     /// Whether bytes are truncated, not rounded.
     pub is_cut_off: bool,
+    /// Factor of `Effect::Gain`.
+    pub gain: f64,
     /// Differences of truncated bytes, cached because they take long to compute.
     of_cut_off: OnceCell<Vec<DVec3>>,
 }
@@ -61,6 +70,82 @@ fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
     cells
 }
 
+/// Maps each channel by a curve; `quick` is an approximation of it.
+fn map_channels(
+    mean: &mut [DVec3],
+    variance: &mut [DVec3],
+    curve: impl Fn(f64) -> f64,
+    quick: impl Fn(f64) -> f64,
+) {
+    let slope_of = |mean: f64, variance: f64| {
+        let mean = mean.clamp(0.0, 1.0);
+        // Slope over the range of noise: a quarter or all of a step or of one sample's deviation,
+        // whichever is greater. A clipped curve is flat on one side, so the steeper slope counts.
+        let slope = |part: f64| {
+            let by = variance.sqrt().max(STEP) * part;
+            let (low, high) = ((mean - by).max(0.0), (mean + by).min(1.0));
+            (quick(high) - quick(low)) / (high - low)
+        };
+        slope(0.25).abs().max(slope(1.0).abs())
+    };
+    // The last argument and value of `curve` for each channel. Most cells equal the one before, and
+    // a curve may be slow to evaluate.
+    let mut known = [[f64::NAN; 2]; 3];
+    for (mean, variance) in mean.iter_mut().zip(variance) {
+        for i in 0..3 {
+            let slope = slope_of(mean[i], variance[i]);
+            variance[i] *= slope * slope;
+            if known[i][0] != mean[i] {
+                known[i] = [mean[i], curve(mean[i])];
+            }
+            mean[i] = known[i][1];
+        }
+    }
+}
+
+/// Maximum relative deviation of an estimated factor from a power of 2 that counts as that power.
+/// The rounding of bytes to 1/255 shifts a factor by less.
+const POWER: f64 = 0.005;
+
+/// Returns the factor between the observed and the expected light of cells of one colour, after a
+/// function: the median, refined by the channels that have nearly that factor. If all of them are
+/// full, it is the least that fills them. A factor near 1 is 1, and so is one that fewer than half
+/// of the channels have.
+fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabulated) -> f64 {
+    let flat = (0..mean.len()).filter(|&at| variance[at].max_element() < FLAT);
+    let pairs = flat.flat_map(|at| [0, 1, 2].map(|i| [observed[at][i], mean[at][i]]));
+    let pairs = pairs.filter(|[seen, mean]| !seen.is_nan() && *mean > EMPTY);
+    let (full, pairs): (Vec<_>, Vec<_>) = pairs.partition(|[seen, _]| *seen > FULL);
+    let pairs = pairs
+        .into_iter()
+        .map(|pair| pair.map(|light| function.at(light)));
+    let pairs: Vec<_> = pairs.collect();
+    let mut ratios: Vec<f64> = pairs.iter().map(|[seen, mean]| seen / mean).collect();
+    if ratios.is_empty() {
+        let least = full.iter().map(|[_, mean]| 1.0 / function.at(*mean));
+        return least.fold(1.0, f64::max);
+    }
+    let middle = ratios.len() / 2;
+    let median = *ratios.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let is_near = |[seen, mean]: &&[f64; 2]| (seen / mean / median - 1.0).abs() < ALIKE;
+    let near: Vec<_> = pairs.iter().filter(is_near).collect();
+    if 2 * near.len() < pairs.len() {
+        return 1.0;
+    }
+    let [seen, mean] = near
+        .iter()
+        .fold([0.0; 2], |sums, pair| [0, 1].map(|i| sums[i] + pair[i]));
+    let gain = seen / mean;
+    // A wrong count of samples is mostly a power of 2 times the right one.
+    let power = libm::exp2(libm::log2(gain).round());
+    let is_power = (gain / power - 1.0).abs() < POWER;
+    match gain {
+        _ if (gain - 1.0).abs() < ALIKE => 1.0,
+        _ if is_power => power,
+        _ => gain,
+    }
+}
+
 impl<'a> Prediction<'a> {
     /// Creates a prediction of light that is encoded by a curve.
     pub fn new(observed: &'a [DVec3], width: usize, moments: Arc<Moments>, curve: Curve) -> Self {
@@ -70,6 +155,7 @@ impl<'a> Prediction<'a> {
             moments,
             curve,
             is_cut_off: false,
+            gain: 1.0,
             of_cut_off: OnceCell::new(),
         }
     }
@@ -99,31 +185,16 @@ impl<'a> Prediction<'a> {
                 }
                 Effect::PerChannel(curve) => {
                     let quick = Tabulated::new(curve);
-                    let slope_of = |mean: f64, variance: f64| {
-                        let mean = mean.clamp(0.0, 1.0);
-                        // Slope over the range of noise: a quarter or all of a step or of one
-                        // sample's deviation, whichever is greater. A clipped curve is flat on one
-                        // side, so the steeper slope counts.
-                        let slope = |part: f64| {
-                            let by = variance.sqrt().max(STEP) * part;
-                            let (low, high) = ((mean - by).max(0.0), (mean + by).min(1.0));
-                            (quick.at(high) - quick.at(low)) / (high - low)
-                        };
-                        slope(0.25).abs().max(slope(1.0).abs())
-                    };
-                    // The last argument and value of `curve` for each channel. Most cells equal the
-                    // one before, and a curve may be slow to evaluate.
-                    let mut known = [[f64::NAN; 2]; 3];
-                    for (mean, variance) in mean.iter_mut().zip(variance.iter_mut()) {
-                        for i in 0..3 {
-                            let slope = slope_of(mean[i], variance[i]);
-                            variance[i] *= slope * slope;
-                            if known[i][0] != mean[i] {
-                                known[i] = [mean[i], curve(mean[i])];
-                            }
-                            mean[i] = known[i][1];
-                        }
-                    }
+                    map_channels(mean, variance, curve, |light| quick.at(light));
+                }
+                Effect::Gain(functions) => {
+                    let [to, from] = functions;
+                    let quick = functions.map(Tabulated::new);
+                    let gain = gain(observed, mean, variance, &quick[0]);
+                    self.gain = gain;
+                    let curve = |light| from((gain * to(light)).min(1.0));
+                    let quick = |light| quick[1].at(gain * quick[0].at(light));
+                    map_channels(mean, variance, curve, quick);
                 }
                 Effect::CutOff => self.is_cut_off = true,
                 Effect::Sharpened => {

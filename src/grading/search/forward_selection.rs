@@ -12,7 +12,7 @@ use super::{
     joint,
     judge::{Judge, Judged, least},
     labels::labels,
-    numeric_mistakes::numeric_mistakes,
+    numeric_mistakes::{numeric_mistakes, slightly_wrong},
     patch::patch,
     plain_numbers::plain,
     residual::Residual,
@@ -40,7 +40,7 @@ const NUMBER_PENALTY: f64 = 1.03;
 
 /// Number of rows that are compared on an exact picture, with the least difference on the tiny grid
 /// first. Comparing all of them takes as long as finding a single mistake does otherwise.
-const EXACT_ROWS: usize = 24;
+const EXACT_ROWS: usize = 32;
 
 /// Maximum number of combinations of mistakes that are examined because they may explain the
 /// picture only together (see `joint_rows`); those with the least difference come first.
@@ -151,6 +151,9 @@ impl Search<'_> {
             for (_, one) in least(next.into_iter(), BEAM_WIDTH - examined.len()) {
                 examined.extend(self.examine(&one));
             }
+            if let Some(best) = beam.first() {
+                self.refine(best, &mut examined);
+            }
             // An extra patch can explain anything, so it is tried only where no other mistake
             // completes a set.
             for from in beam {
@@ -163,7 +166,22 @@ impl Search<'_> {
                 return;
             }
             examined.sort_by(|one, other| one.cost.total_cmp(&other.cost));
+            examined.truncate(BEAM_WIDTH);
             beam = examined;
+        }
+    }
+
+    /// Extends the best set of mistakes, unless the picture is explained, by numbers that are
+    /// slightly wrong, examines the new sets, and adds them to `examined`.
+    fn refine(&mut self, best: &Judged, examined: &mut Vec<Judged>) {
+        let judge = self.judge;
+        if self.explained.is_some() || !judge.work.may_go_on() {
+            return;
+        }
+        judge.compare_with(best.candidate());
+        for one in slightly_wrong(judge, best.candidate(), &suspects(judge, best)) {
+            // An examined set of the same kind has numbers that were fitted to a few samples.
+            examined.extend(self.examine(&one));
         }
     }
 
@@ -326,17 +344,17 @@ impl<'a> Extension<'a> {
         let rows = rows.filter_map(|one| judge.with_difference(one, &self.tiny));
         let rows: Rated = rows.collect();
         if !candidate.mistakes.is_empty() {
-            return rows;
+            return best_of_each_id(rows);
         }
         // Few samples cannot distinguish how far squares are visible, so a single mistake is
         // compared on an exact picture; its difference there is scaled to the tiny grid's.
         let Some((exactly, _)) = judge.with_difference(candidate.clone(), &judge.coarse) else {
-            return rows;
+            return best_of_each_id(rows);
         };
         let scale = self.difference / exactly.max(1e-12);
         let best = least(rows.into_iter(), EXACT_ROWS).into_iter();
         let best = best.filter_map(|(_, one)| judge.with_difference(one, &judge.coarse));
-        best.map(|(left, one)| (scale * left, one)).collect()
+        best_of_each_id(best.map(|(left, one)| (scale * left, one)).collect())
     }
 
     fn numbers(&self) -> Rated {
@@ -352,6 +370,18 @@ impl<'a> Extension<'a> {
         joint.truncate(JOINT_SETS);
         joint
     }
+}
+
+/// Keeps of the rows with one identifier and object the one with the least difference. Variants of
+/// one row would fill the beam otherwise.
+fn best_of_each_id(rows: Rated) -> Rated {
+    let mut known = BTreeSet::new();
+    let mut best = least(rows.into_iter(), usize::MAX);
+    best.retain(|(_, one)| match one.mistakes.last() {
+        Some(Mistake::Row(row, object)) => known.insert((row.id, *object)),
+        _ => true,
+    });
+    best
 }
 
 /// Multiplies a difference by the penalties for a candidate's mistakes and parameters.

@@ -92,7 +92,12 @@ impl<'a> Judge<'a> {
     /// Returns the level on which numbers are fitted: the middle one, or pixels if a curve is
     /// applied to light, because a curve of a mean is not the mean of the curve.
     pub fn fitting(&self, candidate: &Candidate) -> &Level<'a> {
-        let is_curve = |effect: &Effect| matches!(effect, Effect::PerChannel(_) | Effect::CutOff);
+        let is_curve = |effect: &Effect| {
+            matches!(
+                effect,
+                Effect::PerChannel(_) | Effect::Gain(_) | Effect::CutOff
+            )
+        };
         if candidate.effects.iter().any(is_curve) {
             self.central_crop()
         } else {

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::judge::{Judge, Judged, least};
+use super::judge::{CELL_STEP, Judge, Judged, least};
 use crate::{
     color::{Color, linear_to_srgb},
     grading::{
@@ -28,20 +28,7 @@ pub fn numeric_mistakes(
     tiny: &Level,
 ) -> Vec<(f64, Candidate)> {
     let candidate = from.candidate();
-    let is_suspect = |parameter: &Parameter| match parameter.owner {
-        Owner::Object(object) => suspects.iter().any(|&suspect| {
-            let [own, other] = [object, suspect].map(|index| &candidate.scene.objects[index]);
-            object == suspect || own.is_beside(other)
-        }),
-        // A wrong camera moves all objects.
-        Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => {
-            suspects.len() > 1 || candidate.scene.objects.len() == 1
-        }
-        _ => true,
-    };
-    let all = parameters::fittable(&candidate.scene).into_iter();
-    let is_named = |parameter: &Parameter| candidate.numeric().any(|(own, _)| own == parameter);
-    let all = all.filter(|parameter| is_suspect(parameter) && !is_named(parameter));
+    let all = suspected(candidate, suspects).into_iter();
     let prediction = judge.middle.predict(&from.rendering);
     let started = all.filter_map(|parameter| {
         let numbers = parameter.numbers(&candidate.scene);
@@ -77,6 +64,69 @@ pub fn numeric_mistakes(
         least(tried.into_iter().filter_map(fit), 1).pop()
     });
     fitted.collect()
+}
+
+/// Number of parameters that are fitted on the coarse grid from the scene's own numbers: those with
+/// the least difference after one round.
+const NEAR_OWN: usize = 3;
+
+/// Fits each parameter of the camera and of boards that may be wrong to the coarse grid from its
+/// present numbers. Returns the best few candidates that differ less from the picture than
+/// `candidate`.
+///
+/// The samples of the tiny grid cannot tell that these numbers are slightly wrong if most of the
+/// picture is a board with small squares: there, any move changes what the samples see.
+pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) -> Vec<Candidate> {
+    let level = &judge.coarse;
+    let Some((difference, _)) = judge.with_difference(candidate.clone(), level) else {
+        return Vec::new();
+    };
+    let fit = |start: &Candidate, rounds: [usize; 2]| {
+        let free = Vec::from_iter(candidate.numbers().len()..start.numbers().len());
+        let (fitted, found) = judge.fit(start, &free, level, CELL_STEP, rounds)?;
+        (found.left < difference).then_some((found.left, fitted))
+    };
+    let mut all = suspected(candidate, suspects);
+    all.retain(|parameter| match parameter.owner {
+        Owner::Camera => true,
+        Owner::Object(object) => is_board(candidate, object) && !parameter.is_color(),
+        Owner::Image => false,
+    });
+    let once = all.into_iter().filter_map(|parameter| {
+        let numbers = parameter.numbers(&candidate.scene);
+        let start = candidate.with(Mistake::Numbers(parameter, numbers))?;
+        fit(&start, [1, 0])
+    });
+    let best = least(once, NEAR_OWN).into_iter();
+    let best = best.filter_map(|(_, one)| fit(&one, [3, 1]));
+    let best = least(best, NEAR_OWN).into_iter();
+    best.map(|(_, one)| one).collect()
+}
+
+/// Returns whether an object is a checkerboard.
+fn is_board(candidate: &Candidate, object: usize) -> bool {
+    candidate.scene.objects[object].shape.center().is_none()
+}
+
+/// Returns the parameters of a candidate's scene that may be wrong and are not named yet.
+fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
+    let is_suspect = |parameter: &Parameter| match parameter.owner {
+        Owner::Object(object) => suspects.iter().any(|&suspect| {
+            let [own, other] = [object, suspect].map(|index| &candidate.scene.objects[index]);
+            object == suspect || own.is_beside(other)
+        }),
+        // A wrong camera moves all objects. It is not suspected if only one bounded object is
+        // wrong; a board alone may outweigh all other objects.
+        Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => match suspects {
+            [sole] if candidate.scene.objects.len() > 1 => is_board(candidate, *sole),
+            _ => true,
+        },
+        _ => true,
+    };
+    let is_named = |parameter: &Parameter| candidate.numeric().any(|(own, _)| own == parameter);
+    let mut all = parameters::fittable(&candidate.scene);
+    all.retain(|parameter| is_suspect(parameter) && !is_named(parameter));
+    all
 }
 
 /// Returns the median colours of the picture where the prediction shows one of the given colours

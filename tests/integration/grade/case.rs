@@ -6,7 +6,8 @@ use image::RgbImage;
 use serde_json::Value;
 
 use super::{
-    mistakes::{GROUPS, Mistake, scene},
+    mistakes::{GROUPS, Mistake},
+    scenes::scene,
     textbook::{Program, SAMPLINGS},
 };
 

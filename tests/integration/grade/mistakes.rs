@@ -1,11 +1,14 @@
-//! Mistakes that a class makes, as changes of a correct program; and scenes in which they are
-//! visible.
+//! Mistakes that a class makes, as changes of a correct program.
 
 use glam::{DVec3, dvec3};
 use image::{RgbImage, imageops};
 
-use super::textbook::{
-    Axes, Behind, Encoding, Object, Program, Sampling, Shape, Squares, Visible, light, sharpened,
+use super::{
+    scenes::shift,
+    textbook::{
+        Axes, Behind, Encoding, Object, Program, Roots, Shape, Squares, Visible, light, sharpened,
+        with_stride,
+    },
 };
 
 /// A mistake that a student's program may have.
@@ -84,7 +87,9 @@ const OF_THE_PICTURE: &[Mistake] = &[
     pixels("not_decoded", |color| {
         color.map(|byte| (255.0 * (f64::from(byte) / 255.0).sqrt()).round() as u8)
     }),
-    row("not_divided twice", |p| p.gain = 2.0),
+    row("not_divided light is multiplied by about 2", |p| {
+        p.gain = 2.0
+    }),
     row("not_divided half", |p| p.gain = 0.5),
     row("half_pixel", |p| p.offset = 0.5),
 ];
@@ -114,6 +119,15 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("camera.d|camera.fov", |p| p.distance *= 0.8),
     row("camera.eye", |p| p.eye += dvec3(0.4, -0.3, 0.5)),
     row("camera.lookat", |p| p.lookat += dvec3(0.3, 0.2, -0.1)),
+    // Numbers that are slightly wrong.
+    row("roll has a wrong value|camera.roll", |p| {
+        p.roll += 1_f64.to_radians()
+    }),
+    row("d has a wrong value|camera.d|camera.fov", |p| {
+        p.distance += 0.05
+    }),
+    row("eye has a wrong value", |p| p.eye.y += 0.1),
+    row("lookat has a wrong value", |p| p.lookat.z += 0.3),
 ];
 
 /// Mistakes of a student's program in the place, the squares or the colours of the checkerboard.
@@ -153,7 +167,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
         });
     }),
     row("depth_ignored", |p| p.visible = Visible::Last),
-    row("sphere_near_root", |p| p.misses_root = true),
+    row("sphere_near_root", |p| p.roots = Roots::Lesser),
     row("triangle_anchor", |p| {
         if let Some(&mut Shape::Triangle([a, b, c])) = p.shape("Sail") {
             shift(p, "Sail", (b + c - 2.0 * a) / 3.0);
@@ -218,6 +232,39 @@ const OTHERS: &[Mistake] = &[
     }),
     row("wider_pixel", |p| p.pixel = 2.0),
     row("samples_narrow", |p| p.pixel = 0.5),
+    row("not_divided light is multiplied by about 1.3", |p| {
+        p.gain = 1.3
+    }),
+    row("not_divided sixteen", |p| p.gain = 16.0),
+    pixels("bytes_scaled bytes are multiplied by about 0.8", |color| {
+        scaled(color, 0.8)
+    }),
+    pixels("bytes_scaled bytes are multiplied by about 1.3", |color| {
+        scaled(color, 1.3)
+    }),
+    picture("stride further right", |picture| with_stride(picture, -1)),
+    picture("stride further left", |picture| with_stride(picture, 1)),
+    row("shaded the ray", |p| {
+        p.shade = |normal, ray| normal.dot(ray).abs()
+    }),
+    row("shaded (1, 1, 1)", |p| {
+        p.shade = |normal, _| lit(normal, DVec3::ONE)
+    }),
+    row("shaded (0, 1, 0)", |p| {
+        p.shade = |normal, _| lit(normal, DVec3::Y)
+    }),
+    row("sphere_far_root", |p| p.roots = Roots::Greater),
+    row("sphere_times_a", |p| {
+        (p.axes, p.roots) = (Axes::LongRays, Roots::TimesA)
+    }),
+    row("board_finite", |p| p.reach = 5.0),
+    row("board_turned", |p| p.squares = Squares::Turned),
+    row("board_upright", |p| p.is_upright = true),
+    row("board_truncated the coordinate x", |p| {
+        p.squares = Squares::TruncatedX
+    }),
+    row("board_stripes z alone", |p| p.squares = Squares::StripesZ),
+    row("board_moved along z", |p| p.squares = Squares::MovedZ),
     pixels("gamma_18", |color| color.map(|byte| power(byte, 1.8))),
     pixels("decoded_twice", |color| color.map(decoded_twice)),
     picture("sharpened", sharpened),
@@ -283,163 +330,6 @@ const OTHERS: &[Mistake] = &[
     }),
 ];
 
-/// Returns the scene `name`, as a correct program and as text. `figure` is the assignment's
-/// picture, turned a little. `street` has the same names, a closer camera, a far plane and more
-/// objects. The other scenes are variants of the figure for mistakes that need one: a near plane
-/// that clips objects, another lens, a low window, a box with colours for its faces, or the floor
-/// as the first object.
-pub fn scene(name: &str) -> (Program, String) {
-    let (mut program, mut text) = match name {
-        "street" => (street(), STREET.to_owned()),
-        _ => (figure(), FIGURE.to_owned()),
-    };
-    match name {
-        "clipped" => {
-            program.near = 6.5;
-            text = text.replace("d 2.75", "d 2.75  near 6.5");
-        }
-        "cut" => {
-            program.near = 9.0;
-            text = text.replace("d 2.75", "d 2.75  near 9");
-        }
-        "lens" => {
-            program.distance = 1.0 / libm::tan(20_f64.to_radians());
-            text = text.replace("d 2.75", "fov 40deg");
-        }
-        "low" => {
-            program.view_height = 1.6;
-            text = text.replace("d 2.75", "d 2.75  view_height 1.6");
-        }
-        "painted" => {
-            program.faces = Some([[210, 180, 140], [245, 222, 179], [205, 133, 63]]);
-            text = text.replace("-0.5) }", "-0.5)  colors (tan, wheat, peru) }");
-        }
-        "backwards" => {
-            program.objects.reverse();
-            text = text.lines().rev().map(|line| format!("{line}\n")).collect();
-        }
-        _ => {}
-    }
-    (program, text)
-}
-
-const FIGURE: &str = "image { width WIDTH  height HEIGHT }
-camera { eye (3, 3.5, 8)  lookat (0.2, 0.8, 0)  roll 10deg  d 2.75 }
-sphere Ball { center (-1.6, 1, 0) }
-triangle Sail { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1)  sides (2, 2, 1) }
-box Crate { center (2, 0.75, -0.5) }
-checkerboard Floor { colors (gray, white) }
-";
-
-const STREET: &str = "image { width WIDTH  height HEIGHT  background midnightblue }
-camera { eye (-2.5, 2, 6)  lookat (0.4, 0.7, 0)  up (0.3, 1, 0.1)  roll -20deg  d 2  far 30 }
-sphere Ball { center (-0.9, 0.8, 0.5)  radius 0.8 }
-triangle Sail { centroid (0.2, 1, 0.6)  normal (0.3, 0, 1)  sides (2, 2, 1) }
-box Crate { center (2, 0.75, -0.5) }
-checkerboard Floor { square 0.8  colors (gray, #f0e6c8) }
-sphere Moon { center (2.2, 2.4, -3)  radius 0.6  color #dcdcdc }
-box House { center (-2.25, 1, -3)  size (1.5, 2, 2)  color #8b4513 }
-";
-
-fn figure() -> Program {
-    // This is the assignment's triangle, given by its vertices: the two ends of the base and the
-    // apex.
-    let (base, height) = (1.0, 15_f64.sqrt() / 2.0);
-    let normal = dvec3(0.3, 0.0, 1.0).normalize();
-    let right = DVec3::Y.cross(normal);
-    let middle = dvec3(0.2, 1.0, 0.6);
-    let foot = middle - DVec3::Y * (height / 3.0);
-    let corners = [
-        foot - right * (base / 2.0),
-        foot + right * (base / 2.0),
-        foot + DVec3::Y * height,
-    ];
-    Program {
-        size: [320, 180],
-        background: [0, 0, 0],
-        eye: dvec3(3.0, 3.5, 8.0),
-        lookat: dvec3(0.2, 0.8, 0.0),
-        up: DVec3::Y,
-        roll: 10_f64.to_radians(),
-        distance: 2.75,
-        view_height: 2.0,
-        near: 0.0,
-        far: f64::INFINITY,
-        objects: vec![
-            Object {
-                name: "Ball",
-                shape: Shape::Sphere(dvec3(-1.6, 1.0, 0.0), 1.0),
-                color: [128, 128, 0],
-            },
-            Object {
-                name: "Sail",
-                shape: Shape::Triangle(corners),
-                color: [0, 128, 128],
-            },
-            Object {
-                name: "Crate",
-                shape: Shape::Box(dvec3(1.75, 0.0, -1.5), dvec3(2.25, 1.5, 0.5)),
-                color: [255, 165, 0],
-            },
-            Object {
-                name: "Floor",
-                shape: Shape::Board(0.0, 1.0, [255, 255, 255]),
-                color: [128, 128, 128],
-            },
-        ],
-        sampling: Sampling::Regular,
-        samples: 1,
-        is_wide: false,
-        is_squeezed: false,
-        aspect: 1.0,
-        axes: Axes::Right,
-        gain: 1.0,
-        clips_distances: false,
-        misses_edge: false,
-        is_parallelogram: false,
-        misses_root: false,
-        misses_axis: false,
-        faces: None,
-        pixel: 1.0,
-        offset: 0.0,
-        behind: Behind::Unseen,
-        visible: Visible::Nearest,
-        squares: Squares::Floored,
-        parity: 0,
-        encoding: Encoding::Srgb,
-        averages_encoded: false,
-        cuts_bytes: false,
-        change: |bytes| bytes,
-        afterwards: None,
-    }
-}
-
-fn street() -> Program {
-    let mut street = figure();
-    street.background = [25, 25, 112];
-    street.eye = dvec3(-2.5, 2.0, 6.0);
-    street.lookat = dvec3(0.4, 0.7, 0.0);
-    street.up = dvec3(0.3, 1.0, 0.1);
-    street.roll = -20_f64.to_radians();
-    street.distance = 2.0;
-    street.far = 30.0;
-    street.objects[0].shape = Shape::Sphere(dvec3(-0.9, 0.8, 0.5), 0.8);
-    street.objects[3].shape = Shape::Board(0.0, 0.8, [240, 230, 200]);
-    street.objects.extend([
-        Object {
-            name: "Moon",
-            shape: Shape::Sphere(dvec3(2.2, 2.4, -3.0), 0.6),
-            color: [220, 220, 220],
-        },
-        Object {
-            name: "House",
-            shape: Shape::Box(dvec3(-3.0, 0.0, -4.0), dvec3(-1.5, 2.0, -2.0)),
-            color: [139, 69, 19],
-        },
-    ]);
-    street
-}
-
 /// Decodes an sRGB byte to light, and encodes it again by the exponent 1/`power` instead of sRGB.
 fn power(byte: u8, power: f64) -> u8 {
     (255.0 * libm::pow(light(f64::from(byte) / 255.0), 1.0 / power)).round() as u8
@@ -447,6 +337,16 @@ fn power(byte: u8, power: f64) -> u8 {
 
 fn decoded_twice(byte: u8) -> u8 {
     (255.0 * light(light(f64::from(byte) / 255.0))).round() as u8
+}
+
+/// Multiplies bytes.
+fn scaled(color: [u8; 3], by: f64) -> [u8; 3] {
+    color.map(|byte| (by * f64::from(byte)).round() as u8)
+}
+
+/// Returns the share of a distant light that a surface gets.
+fn lit(normal: DVec3, light: DVec3) -> f64 {
+    normal.dot(light.normalize()).max(0.0)
 }
 
 /// Returns the weighted mean of a colour's encoded channels, as a gray.
@@ -460,16 +360,6 @@ fn gray(color: [u8; 3], weights: [f64; 3]) -> [u8; 3] {
 fn board(program: &mut Program, change: impl Fn(&mut f64, &mut f64, &mut [u8; 3])) {
     if let Some(Shape::Board(y, square, second)) = program.shape("Floor") {
         change(y, square, second);
-    }
-}
-
-fn shift(program: &mut Program, name: &str, by: DVec3) {
-    match program.shape(name) {
-        Some(Shape::Sphere(center, _)) => *center += by,
-        Some(Shape::Triangle(corners)) => corners.iter_mut().for_each(|corner| *corner += by),
-        Some(Shape::Box(least, greatest)) => (*least, *greatest) = (*least + by, *greatest + by),
-        Some(Shape::Board(y, ..)) => *y += by.y,
-        None => {}
     }
 }
 

@@ -5,7 +5,9 @@ mod case;
 mod classes;
 mod command;
 mod forms;
+mod hits;
 mod mistakes;
+mod scenes;
 mod textbook;
 
 use std::sync::atomic::AtomicBool;
@@ -59,10 +61,12 @@ fn every_mistake_can_be_made_in_every_scene() {
         "lens",
         "low",
         "painted",
+        "sunk",
         "backwards",
+        "level",
         "empty",
     ] {
-        let (mut right, _) = mistakes::scene(name);
+        let (mut right, _) = scenes::scene(name);
         if name == "empty" {
             right.objects.clear();
         }

@@ -93,10 +93,31 @@ pub enum Squares {
     Sum,
     /// Takes the first coordinate, rounded down, so that the board has stripes.
     Stripes,
+    /// Takes the second coordinate, rounded down.
+    StripesZ,
+    /// Adds the first coordinate, truncated, and the second, rounded down.
+    TruncatedX,
+    /// Adds the first coordinate, rounded down, and the second, rounded to the nearest integer.
+    MovedZ,
+    /// Adds the two coordinates, each rounded down, of a board that is turned by 45 degrees.
+    Turned,
     /// The number is odd if at least one of the two coordinates, rounded down, is odd.
     BothEven,
     /// The number is odd if the product of the sines of the two coordinates is negative.
     Sines,
+}
+
+/// The roots of a sphere that are tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Roots {
+    /// Both, the nearer one first.
+    Both,
+    /// The nearer one.
+    Lesser,
+    /// The farther one.
+    Greater,
+    /// Both, multiplied by a instead of divided by it.
+    TimesA,
 }
 
 /// Mistake in the camera's axes or rays. The axes are u (right), v (up) and w (against the view
@@ -178,10 +199,15 @@ pub struct Program {
     /// Whether the test of one of a triangle's edges is missing.
     pub misses_edge: bool,
     pub is_parallelogram: bool,
-    /// Whether the greater root of a sphere's quadratic equation, its far side, is not tried.
-    pub misses_root: bool,
+    pub roots: Roots,
     /// Whether boxes have no faces perpendicular to z.
     pub misses_axis: bool,
+    /// Distance from the origin, along x and z, at which boards end.
+    pub reach: f64,
+    /// Whether boards have y and z exchanged.
+    pub is_upright: bool,
+    /// Share of a colour's light that is seen, by the normal towards the eye and the ray.
+    pub shade: fn(DVec3, DVec3) -> f64,
     /// Colours of the boxes' faces perpendicular to x, y and z; `None` if faces have the box's
     /// colour.
     pub faces: Option<[[u8; 3]; 3]>,
@@ -271,8 +297,8 @@ impl Program {
                     Axes::Parallel => (self.eye + across, -w),
                     _ => (self.eye, ray),
                 };
-                let color = self.trace(from, ray, -w.normalize());
-                sum += DVec3::from(color.map(|byte| light[usize::from(byte)]));
+                let (color, share) = self.trace(from, ray, -w.normalize());
+                sum += share * DVec3::from(color.map(|byte| light[usize::from(byte)]));
             }
             let mean = (self.gain * sum / f64::from(self.samples)).to_array();
             let bytes = mean.map(|part| {
@@ -331,129 +357,6 @@ impl Program {
             }
         }
     }
-
-    /// Returns the colour of the surface that a ray from the point `from` shows, or the background.
-    /// `view` is the view direction.
-    fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> [u8; 3] {
-        // Of two surfaces, the one with the smaller value counts as nearer. With [`Behind::First`],
-        // surfaces behind the eye, where t is negative, come first.
-        let order = |t: f64| {
-            if self.behind == Behind::First {
-                t
-            } else {
-                t.abs()
-            }
-        };
-        let counts = |t: &f64| {
-            let along = if self.clips_distances {
-                1.0
-            } else {
-                ray.dot(view)
-            };
-            let depth = t.abs() * along;
-            let is_before = self.behind != Behind::Unseen || *t > 1e-9;
-            is_before && depth > self.near && depth < self.far
-        };
-        let mut seen: Option<(f64, &Object)> = None;
-        for object in &self.objects {
-            let hits = self.hits(&object.shape, from, ray).into_iter().flatten();
-            let first = hits
-                .filter(counts)
-                .min_by(|a, b| order(*a).total_cmp(&order(*b)));
-            let Some(t) = first else {
-                continue;
-            };
-            let is_seen = seen.is_none_or(|(other, _)| match self.visible {
-                Visible::Nearest => order(t) < order(other),
-                Visible::First => false,
-                Visible::Last => true,
-                Visible::Farthest => t > other,
-            });
-            if is_seen {
-                seen = Some((t, object));
-            }
-        }
-        seen.map_or(self.background, |(t, object)| {
-            self.color(object, from + t * ray)
-        })
-    }
-
-    fn color(&self, object: &Object, at: DVec3) -> [u8; 3] {
-        let (square, second) = match (&object.shape, self.faces) {
-            (Shape::Board(_, square, second), _) => (*square, *second),
-            (Shape::Box(least, greatest), Some(faces)) => {
-                let off = (at - least).abs().min((at - greatest).abs());
-                return faces[off.min_position()];
-            }
-            _ => return object.color,
-        };
-        let number = |x: f64| match self.squares {
-            Squares::Truncated => (x / square) as i64,
-            Squares::Rounded => (x / square).round() as i64,
-            _ => (x / square).floor() as i64,
-        };
-        let moved = if self.squares == Squares::Moved {
-            square / 2.0
-        } else {
-            0.0
-        };
-        let (i, k) = (number(at.x + moved), number(at.z) + self.parity);
-        let is_second = match self.squares {
-            Squares::Floored | Squares::Moved | Squares::Truncated | Squares::Rounded => {
-                (i + k) % 2 != 0
-            }
-            Squares::Sum => ((at.x + at.z) / square).floor() as i64 % 2 != 0,
-            Squares::BothEven => i % 2 != 0 || k % 2 != 0,
-            Squares::Stripes => i % 2 != 0,
-            Squares::Sines => libm::sin(at.x / square) * libm::sin(at.z / square) < 0.0,
-            Squares::Remainder => (i + k) % 2 == 1,
-            Squares::Remainders => i % 2 != k % 2,
-        };
-        if is_second { second } else { object.color }
-    }
-
-    /// Returns the ray parameters at which a ray hits a shape.
-    fn hits(&self, shape: &Shape, eye: DVec3, ray: DVec3) -> [Option<f64>; 2] {
-        match *shape {
-            Shape::Sphere(center, radius) => {
-                let from = eye - center;
-                let (b, c) = (from.dot(ray), from.length_squared() - radius * radius);
-                let root = (b * b - c).sqrt();
-                let greater = Some(-b + root).filter(|_| !self.misses_root);
-                [greater, Some(-b - root)].map(|t| t.filter(|t| !t.is_nan()))
-            }
-            Shape::Triangle([a, b, c]) => {
-                let (ab, ac) = (b - a, c - a);
-                let normal = ab.cross(ac);
-                let t = (a - eye).dot(normal) / ray.dot(normal);
-                let at = eye + t * ray - a;
-                let area = normal.length_squared();
-                let beta = at.cross(ac).dot(normal) / area;
-                let gamma = ab.cross(at).dot(normal) / area;
-                let is_within = if self.is_parallelogram {
-                    beta <= 1.0 && gamma <= 1.0
-                } else {
-                    beta + gamma <= 1.0
-                };
-                let is_in = beta >= 0.0 && (gamma >= 0.0 || self.misses_edge) && is_within;
-                [Some(t).filter(|_| is_in), None]
-            }
-            Shape::Box(least, greatest) => {
-                let far = if self.misses_axis {
-                    1e9 * DVec3::Z
-                } else {
-                    DVec3::ZERO
-                };
-                let (a, b) = ((least - far - eye) / ray, (greatest + far - eye) / ray);
-                let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
-                [leave, enter].map(|t| Some(t).filter(|_| enter <= leave))
-            }
-            Shape::Board(y, ..) => {
-                let t = (y - eye.y) / ray.y;
-                [Some(t).filter(|t| t.is_finite()), None]
-            }
-        }
-    }
 }
 
 /// Sharpens a picture: adds to each pixel its difference from the mean of the 3 × 3 pixels around
@@ -471,6 +374,15 @@ pub fn sharpened(picture: &RgbImage) -> RgbImage {
         own.map2(mean, |own, mean| {
             (2 * i16::from(own) - i16::from(mean)).clamp(0, 255) as u8
         })
+    })
+}
+
+/// Reads rows that are `by` pixels longer or shorter than those that were written.
+pub fn with_stride(picture: &RgbImage, by: i64) -> RgbImage {
+    let [width, height] = [picture.width(), picture.height()].map(i64::from);
+    RgbImage::from_fn(picture.width(), picture.height(), |x, y| {
+        let at = (i64::from(y) * (width + by) + i64::from(x)).rem_euclid(width * height);
+        *picture.get_pixel((at % width) as u32, (at / width) as u32)
     })
 }
 
