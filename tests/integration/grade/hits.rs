@@ -5,8 +5,8 @@ use glam::DVec3;
 use super::textbook::{Behind, Object, Program, Roots, Shape, Squares, Visible};
 
 impl Program {
-    /// Returns the colour that a ray sees, and the share of its light. The ray starts at `from`, and
-    /// `view` is the view direction.
+    /// Returns the colour that a ray sees, and the share of its light. The ray starts at `from`,
+    /// and `view` is the view direction.
     pub fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> ([u8; 3], f64) {
         // With a mistake, surfaces behind the eye count as nearest, or are compared by their
         // distance.
