@@ -85,12 +85,14 @@ pub mod files;
 mod lock;
 #[doc(hidden)]
 pub mod math;
-mod numbers;
+#[doc(hidden)]
+pub mod numbers;
 pub mod source;
 #[doc(hidden)]
 pub mod suggest;
 #[cfg_attr(target_family = "wasm", path = "one_thread.rs")]
-mod threads;
+#[doc(hidden)]
+pub mod threads;
 
 pub mod schema;
 pub mod syntax;
