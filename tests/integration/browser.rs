@@ -56,7 +56,7 @@ fn the_report_page_fits_the_window_and_shows_every_picture() {
         };
         for (path, expected) in [
             ("/wide", json!(0)),
-            ("/images", json!(11)),
+            ("/images", json!(20)),
             ("/broken", json!(0)),
             ("/cut", json!([])),
             ("/page", json!([ink, paper])),
