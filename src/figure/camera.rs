@@ -144,7 +144,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
         canvas.dot("red", outside.at(end), 5.0);
     }
     canvas.label("red", [outside.at(end); 2], &*met);
-    canvas.finish(
+    canvas.finish_cropped(
         "A pinhole camera, seen from outside",
         &format!(
             "All rays leave the eye. The window lies at the distance d = {distance} along the view direction −w and is {} tall. \

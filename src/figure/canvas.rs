@@ -37,6 +37,9 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 @media(prefers-color-scheme:dark){.paper{fill:#15181d}.fill{fill-opacity:.65}text{stroke:#15181d}.ink{color:#eceff4}.faint{color:#a3adb8}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
+/// Empty rows that a cropped figure keeps above and below what is drawn, in SVG units.
+const MARGIN: f64 = 12.0;
+
 /// Cost of a label that covers one segment of a mark. For comparison, moving a label one step
 /// farther away from its point costs 6. A label is placed where its total cost is least.
 const MARK: f64 = 40.0;
@@ -49,6 +52,8 @@ const FILL: f64 = 7.0;
 /// A drawing that is being built.
 pub struct Canvas {
     size: DVec2,
+    /// Top and bottom of what is drawn, except for paths in SVG notation.
+    rows: [f64; 2],
     marks: String,
     /// Segments that labels should not cover, each with the cost of covering it.
     obstacles: Vec<([DVec2; 2], f64)>,
@@ -62,6 +67,7 @@ impl Canvas {
     pub fn new(height: f64) -> Self {
         Self {
             size: DVec2::new(WIDTH, height),
+            rows: [height, 0.0],
             marks: String::new(),
             obstacles: Vec::new(),
             labels: Vec::new(),
@@ -86,6 +92,7 @@ impl Canvas {
     }
 
     fn path(&mut self, class: &str, points: &[DVec2], more: &str) {
+        points.iter().for_each(|point| self.cover(point.y, point.y));
         let mut path = String::new();
         for (point, command) in points.iter().zip("M".chars().chain(std::iter::repeat('L'))) {
             let _ = write!(path, "{command}{}", pair(*point));
@@ -121,6 +128,7 @@ impl Canvas {
     }
 
     fn circle(&mut self, class: &str, at: DVec2, radius: f64, more: &str) {
+        self.cover(at.y - radius, at.y + radius);
         for across in [DVec2::ONE, DVec2::new(1.0, -1.0)] {
             let ends = [at - across * radius, at + across * radius];
             self.obstacles.push((ends, MARK));
@@ -150,6 +158,7 @@ impl Canvas {
                 _ => text,
             };
         }
+        self.cover(at.y - LETTERS, at.y + LETTERS * 0.3);
         let [x, y] = [at.x, at.y].map(length);
         let _ = writeln!(
             self.marks,
@@ -157,16 +166,34 @@ impl Canvas {
         );
     }
 
+    /// Extends the rows that are drawn to those from `top` to `bottom`.
+    fn cover(&mut self, top: f64, bottom: f64) {
+        self.rows = [self.rows[0].min(top), self.rows[1].max(bottom)];
+    }
+
+    /// Returns the file as [`finish`](Self::finish) does, without the empty rows at the top and at
+    /// the bottom.
+    pub fn finish_cropped(mut self, title: &str, description: &str) -> String {
+        self.place_labels();
+        let [top, bottom] = self.rows;
+        self.file([top - MARGIN, bottom + MARGIN], title, description)
+    }
+
     /// Returns the file, with a title and a description for screen readers.
     pub fn finish(mut self, title: &str, description: &str) -> String {
         self.place_labels();
-        let [width, height] = [self.size.x, self.size.y].map(length);
+        let height = self.size.y;
+        self.file([0.0, height], title, description)
+    }
+
+    fn file(self, [top, bottom]: [f64; 2], title: &str, description: &str) -> String {
+        let [width, top, height] = [self.size.x, top, bottom - top].map(length);
         let (title, description) = (escaped(title), escaped(description));
         let marks = self.marks;
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-labelledby=\"t d\">\n\
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 {top} {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-labelledby=\"t d\">\n\
             <title id=\"t\">{title}</title>\n<desc id=\"d\">{description}</desc>\n<style>{STYLE}</style>\n\
-            <path class=\"paper swatch\" d=\"M0 0H{width}V{height}H0Z\"/>\n{marks}</svg>\n"
+            <path class=\"paper swatch\" d=\"M0 {top}h{width}v{height}H0Z\"/>\n{marks}</svg>\n"
         )
     }
 

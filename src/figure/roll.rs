@@ -26,7 +26,7 @@ pub fn draw(scene: &Scene) -> String {
     let degrees = number(roll.in_degrees());
     before_and_after(&mut canvas, scene);
     picture(&mut canvas, scene);
-    canvas.finish(
+    canvas.finish_cropped(
         "The camera's roll",
         &format!(
             "On the left the picture's frame before the roll, dashed, with u and v, and after it, with u′ and v′, seen from the eye: \

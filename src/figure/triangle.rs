@@ -124,7 +124,7 @@ pub fn draw(triangle: &Triangle) -> String {
             number(spin.in_degrees())
         ),
     };
-    canvas.finish(
+    canvas.finish_cropped(
         "The measures of a triangle",
         &format!(
             "A triangle with the sides {}; c is the base, a leads from its left end to the apex, b from its right end. \

@@ -127,16 +127,17 @@ fn texts_lie_in_the_figure_and_none_upon_another() {
                 assert!(svg.contains(part), "{what}: {part}");
             }
             assert!(!svg.contains("NaN") && !svg.contains("inf"), "{what}");
-            let (_, size) = svg.split_once("viewBox=\"0 0 ").unwrap();
-            let mut size = size
-                .split(['"', ' '])
-                .map(|side| side.parse::<f64>().unwrap());
-            let size = DVec2::new(size.next().unwrap(), size.next().unwrap());
+            let (_, view) = svg.split_once("viewBox=\"").unwrap();
+            let numbers = view.split(['"', ' ']).take(4);
+            let numbers = numbers.map(|number| number.parse::<f64>().unwrap());
+            let view: Vec<f64> = numbers.collect();
+            let corner = DVec2::new(view[0], view[1]);
+            let size = DVec2::new(view[2], view[3]);
             let texts = texts(&svg);
             count += texts.len();
             for (at, (text, [min, max])) in texts.iter().enumerate() {
                 assert!(
-                    min.cmpge(DVec2::ZERO).all() && max.cmple(size).all(),
+                    min.cmpge(corner).all() && max.cmple(corner + size).all(),
                     "{what}: {text}"
                 );
                 for (other, [from, to]) in &texts[..at] {
