@@ -14,18 +14,20 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width; above it, the
-/// arc is computed in double-double. All arcs of a curve across the pixel then contribute at most
-/// 4e-15 square pixels, far below the default tolerance of 9e-10.
+/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width in pixels.
+/// Above it, the arc is computed again in double-double. With this value, all arcs of a curve
+/// across the pixel contribute at most 4e-15 square pixels to the error, far below the default
+/// tolerance of 9e-10.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
-/// Maximum |dy/dx| of a line that is treated as a function y(x); above it, the line counts as
-/// vertical, because its x changes by less than eight unit roundoffs across the pixel.
+/// Maximum |dy/dx| of a line that is treated as a function y(x). A steeper line counts as vertical,
+/// because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Minimum distance in y between the pixel and a branch, its bulge over the chord included, at
-/// which the branch is ignored. It is divided by the branch's largest |y| or by 1, whichever is
-/// greater. Rounding errors of y are millions of times smaller.
+/// Minimum distance in y, in pixels, between the pixel and a conic's branch (one of its two
+/// functions y(x)) at which the branch is ignored. If the branch's largest |y| is above 1, the
+/// distance is a fraction of this |y| instead. The value is millions of times the rounding errors
+/// of y, so that no branch inside the pixel is ignored.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).
@@ -44,18 +46,19 @@ pub enum Track<'a> {
     Branch {
         /// The conic.
         graph: &'a ConicGraph,
-        /// Sign of the root √Δ: 1 or −1.
+        /// Sign of the square root in the branch's formula y = (−b ± √Δ)/C ([`ConicGraph`]): 1 or
+        /// −1.
         side: f64,
     },
 }
 
-/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions of x:
+/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions of x, its branches:
 ///
 /// y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − C·g, g = Ax² + 2Dx + F
 #[derive(Clone, Copy, Debug)]
 pub struct ConicGraph {
     factors: [Double; 6],
-    /// Coefficients of x², 2x and 1 in Δ, a polynomial in x.
+    /// Coefficients of x², 2x and 1 in Δ, the polynomial in x under the root in the formula for y.
     delta: [Double; 3],
 }
 
@@ -65,7 +68,8 @@ pub struct ConicSpan<'a> {
     graph: &'a ConicGraph,
     /// Values of x at the left end, in the middle and at the right end.
     x: [f64; 3],
-    /// Values of √Δ at the left end, in the middle and at the right end.
+    /// Values of √Δ, the root in the formula for y, at the left end, in the middle and at the right
+    /// end.
     roots: [f64; 3],
 }
 
@@ -93,8 +97,8 @@ impl ConicGraph {
         }
     }
 
-    /// Returns the values of x inside the pixel at which the conic has vertical tangents, where its
-    /// two functions begin and end.
+    /// Returns the values of x inside the pixel at which the conic has a vertical tangent. Its two
+    /// functions y(x) begin or end there.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         let [p, q, r] = self.delta;
         // Δ is px² + 2qx + r; its roots are computed without cancellation.
@@ -107,7 +111,8 @@ impl ConicGraph {
         roots.into_iter().flatten().filter(|x| x.abs() < 0.5)
     }
 
-    /// Returns √Δ at `x`, or 0 if Δ is negative.
+    /// Returns √Δ, the root in the conic's formula for y ([`ConicGraph`]), at `x`. Returns 0 if Δ
+    /// is negative.
     fn root(&self, x: f64) -> f64 {
         let [p, q, r] = &self.delta;
         let at = Double::from_f64(x);
@@ -128,13 +133,15 @@ impl ConicGraph {
         })
     }
 
-    /// Computes y at `x` of the function with the sign `side` (1 or −1), where `root` is √Δ at `x`.
+    /// Computes y at `x` of the conic's branch with the sign `side` (1 or −1). `root` is √Δ, the
+    /// root in the formula for y, at `x`.
     fn y(&self, x: f64, root: f64, side: f64) -> f64 {
         let [a, b, c, d, e, f] = &self.factors;
         let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
-        // Of the two equal formulas (−b ± √Δ)/C and g/(−b ∓ √Δ), use the one without cancellation.
+        // Of the two equal formulas for y (`ConicGraph`), (−b ± √Δ)/C and g/(−b ∓ √Δ), the one
+        // whose sum does not cancel is used.
         if minus * side >= 0.0 {
             (minus + root) / c.hi
         } else {
@@ -144,8 +151,8 @@ impl ConicGraph {
         }
     }
 
-    /// Computes in double-double the point at `x` of the function with the sign `side`, and √Δ
-    /// times `side` there.
+    /// Computes in double-double the point at `x` of the conic's branch with the sign `side` (1 or
+    /// −1), and there the root √Δ in the formula for y, with this sign.
     fn end_in_double(&self, x: f64, side: f64) -> ArcEnd<Double> {
         let [a, b, c, d, e, f] = &self.factors;
         let [p, q, r] = &self.delta;
@@ -175,18 +182,18 @@ impl ConicGraph {
 }
 
 impl<'a> ConicSpan<'a> {
-    /// Returns the function with the sign `side` as a track, with its section over the range.
-    /// Returns `None` if the function is not finite or lies outside the pixel. The section is
-    /// `None` if the branch turns too much to be represented by one arc; the caller then halves the
-    /// range.
+    /// Returns the conic's branch with the sign `side` (1 or −1) as a track, and its section over
+    /// the range of x. Returns `None` if the branch is not finite or lies outside the pixel. The
+    /// section is `None` if the branch turns too much to be represented by one arc; the caller then
+    /// halves the range.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
         if !y[1].is_finite() {
             return None;
         }
-        // If the branch's curvature has one sign, the branch is nowhere farther from its chord than
-        // twice its distance in the middle, `sagitta`.
+        // If the branch is curved in one direction only, its distance from the chord is nowhere
+        // more than twice `sagitta`, the distance in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -205,9 +212,9 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // A branch without an arc may be too flat to distinguish its tangents. If its middle is
-            // within `flat`, the rounding error, of the chord, it is treated as straight. Each y
-            // has six roundings, and the mean of two y adds two.
+            // A branch may be so flat that rounding does not leave it an arc. It is treated as
+            // straight if the distance between its middle and the chord is at most the rounding
+            // error `flat`. Each y has six roundings, and the mean of two y adds two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -254,8 +261,9 @@ impl<'a> ConicSpan<'a> {
     }
 }
 
-/// A point of a conic, with a signed √Δ ([`ConicGraph`]) there: it has the sign of the branch, and
-/// is half of the derivative of the conic's form with respect to y.
+/// A point of a conic on one of its two branches, and the root ±√Δ ([`ConicGraph`]) there, with the
+/// sign of the branch. The root is half of the derivative of the conic's quadratic form with
+/// respect to y.
 struct ArcEnd<T> {
     at: [T; 2],
     root: T,
@@ -347,7 +355,8 @@ impl Track<'_> {
         (slope.abs() <= MAX_SLOPE && start.is_finite()).then_some(Self::Line { slope, start })
     }
 
-    /// Computes y at `x`. A branch must have a point there.
+    /// Computes y of the track at `x`. If the track is a branch of a conic, the branch must have a
+    /// point at `x`.
     pub fn y(&self, x: f64) -> f64 {
         match self {
             Self::Level(y) => *y,
@@ -417,8 +426,7 @@ impl Section {
 
     /// Returns two bounds for arcs over the same range of x: how far this section rises above
     /// `other`, and how far the two are apart in y. Returns `None` unless both are arcs that bulge
-    /// to the same side. If the arcs are nearly parallel, the bounds are tight, even if the arcs
-    /// nearly coincide.
+    /// to the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
     ///
     /// Derivation: compare points with the same curve parameter, with heights measured from the
     /// direction of this section's chord. If the weights are equal, a point of each arc is the same
@@ -446,8 +454,8 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
-        // The coordinates of each arc's points have rounding errors of about twenty operations.
-        // These count for both arcs, in the three points as well as in the chord from which heights
+        // The coordinates of each arc's points have rounding errors of about twenty operations. The
+        // errors of both arcs count, in the three points as well as in the chord from which heights
         // are measured.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest

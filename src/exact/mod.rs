@@ -69,39 +69,45 @@ use self::{
 /// colour. It is a little below 1e-9, so that the result is within 1e-9 even after the rounding of
 /// sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
-/// Maximum number of curves that pass through a whole pixel; with more, the pixel is quartered
-/// before anything is computed. n curves cross at about n² points, where all curves have to be
-/// examined; a quarter has only about half of the curves. Measured: with 6 instead of 12, a dozen
-/// objects take 10 % longer. A heap of 300 objects takes twice as long with 24 as with 6, and seven
-/// times as long with 96 as with 24.
+/// Maximum number of curves that pass through a whole pixel. With more curves, the pixel is
+/// quartered before anything is computed. n curves cross at about n² points, where all curves have
+/// to be examined; a quarter has only about half of the curves. Measured: with 6 instead of 12, a
+/// dozen objects take 10 % longer. A heap of 300 objects takes twice as long with 24 as with 6, and
+/// seven times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
-/// Number by which the maximum number of curves grows with each quartering. Curves that pass
-/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap of
-/// objects: with 1 instead of 4, the time is two thirds; with 16, it is four times as long.
+/// Number by which the maximum number of curves in a square part of a pixel grows with each
+/// quartering. Curves that pass through the same small part are unlikely to be separated in smaller
+/// ones. Measured on a heap of objects: with 1 instead of 4, the time is two thirds; with 16, it is
+/// four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
-/// Maximum number of times per pixel that an already computed piece is quartered to reduce its
-/// bound. The piece with the largest bound comes first, while the pixel's bound exceeds the
-/// tolerance. Near a point that a few curves share, each quartering reduces the bound to a quarter;
-/// 16 of them reduce it by a factor of 2^32.
+/// Maximum number of times per pixel that an already computed part of the pixel is quartered to
+/// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest
+/// bound comes first. Near a point that a few curves share, each quartering reduces the bound to a
+/// quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
-/// Maximum memory of a pixel's queued pieces, in bytes; above it, the pixel is not divided any
-/// further, and uncomputed pieces count as errors. The limit excludes memory that a piece needs
-/// only while it is computed, and does not apply to a pixel that is a single piece.
+/// Maximum memory of a pixel's queued parts, in bytes. Above it, the pixel is not divided any
+/// further, and uncomputed parts count as errors. The limit excludes memory that a part needs only
+/// while it is computed, and does not apply to a pixel that is not divided. The value, 64 MiB, is a
+/// choice.
 const MAX_MEMORY: usize = 64 << 20;
-/// Minimum side, in pixels, of a piece that is quartered because too many curves pass through it. A
-/// smaller piece counts as an error instead; its area is less than a unit roundoff of the pixel's
-/// area.
+/// Minimum side of a square part of a pixel that is quartered because too many curves pass through
+/// it, in pixels. A smaller part counts as an error instead; its area is less than a unit roundoff
+/// of the pixel's area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
-/// Work that a piece ([`PixelPiece`]) takes from its pixel's work limit, in units of about 50 ns.
-/// Work constants need not be precise, because they only stop computations that take too long.
+/// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
+/// about 50 ns. A rough value is enough, because the budget only stops computations that take too
+/// long.
 const PIECE_WORK: f64 = 100.0;
-/// Work charged per candidate object of a piece, in units of about 50 ns.
+/// Work charged to a pixel's budget per object that may be seen in a part of the pixel, in units of
+/// about 50 ns. A rough value is enough, because the budget only stops computations that take too
+/// long.
 const OBJECT_WORK: f64 = 4.0;
-/// Work charged per ordered pair of curves in a piece with a conic, in units of about 50 ns.
-/// Without it, the regions' work accounts for only half of the time measured for a heap of 10⁴
-/// spheres.
+/// Work charged to a pixel's budget per ordered pair of curves in a part of the pixel with a conic,
+/// in units of about 50 ns. Without it, the work charged for regions is only half of the time
+/// measured for a heap of 10⁴ spheres.
 const SLABS_WORK: f64 = 60.0;
-/// Work charged per pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
+/// Work per pixel that shows only a few squares of a checkerboard, in units of about 50 ns. It
+/// counts towards the limit on the picture's work, for which a rough value is enough.
 const BOARD_PIXEL_WORK: u64 = 10;
 
 /// A computed pixel. Each colour has N values from 0 to 1, by default its three channels in linear
@@ -119,7 +125,7 @@ pub struct ExactPixel<const N: usize = 3> {
 pub struct Integrator<'a, const N: usize = 3> {
     pub(crate) world: &'a World,
     quartering: Quartering<'a>,
-    /// Values of each colour of the world's palette, by its index there (slot).
+    /// Values of each colour of the world's palette, by the colour's index there (its slot).
     colors: Vec<[f64; N]>,
     /// Requested error bound: the fraction of a pixel's area that may have a wrong colour.
     tolerance: f64,
@@ -135,7 +141,7 @@ struct PixelPiece {
     state: PieceState,
 }
 
-/// State of the computation of a piece.
+/// State of the computation of a part of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PieceState {
     /// Nothing is computed yet, because too many curves pass through the piece or the budget is
@@ -158,8 +164,8 @@ impl PixelPiece {
         self.area() * self.shares.bound
     }
 
-    /// Returns the memory in bytes of the piece's vectors. The piece itself is counted with the
-    /// queue.
+    /// Returns the memory of the piece's vectors, in bytes. The memory of the piece itself is
+    /// counted with the queue.
     fn memory(&self) -> usize {
         let candidates = self.candidates.capacity() * size_of::<VisibilityCandidate>();
         let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
@@ -262,9 +268,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Calls `show` with each area in which only one object is seen, and with each other pixel,
-    /// together with the objects' shares, by palette slot. The world must be made by
-    /// [`World::by_object`], so that slots stand for objects. Above the work limit, a pixel's
-    /// middle counts for the whole pixel. Returns whether all shares are known to within 1e-6.
+    /// together with the shares of the area that the objects cover, by palette slot. The world must
+    /// be made by [`World::by_object`], so that slots stand for objects. Above the work limit, a
+    /// pixel's middle counts for the whole pixel. Returns whether all shares are known to within
+    /// 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();

@@ -1,10 +1,9 @@
 //! The lines that one edge of a polygon crosses, and the direct sum over these crossings.
 //!
 //! In: the series X along an edge ([`green`](super::green) derives it), and the point where the
-//! edge crosses its first line. Out: the alternating sum Σ (−1)^j·X over the crossings j, computed
-//! in lanes that the compiler vectorises, with a bound on truncation and rounding errors. The sum
-//! is divided into blocks of consecutive crossings, each of which uses as few terms of X as its
-//! depth allows.
+//! edge crosses its first line. Out: the alternating sum Σ (−1)^j·X over the crossings j, with a
+//! bound on truncation and rounding errors. The compiler vectorises the sum. It is divided into
+//! blocks of consecutive crossings, each of which uses as few terms of X as its depth allows.
 
 use super::homography::{BoundedSum, UNIT};
 use super::special::{reduce_double, waves};
@@ -13,12 +12,15 @@ use std::f64::consts::PI;
 
 use multiversion::multiversion;
 
-/// Maximum number of terms of the series X ([`EdgeSeries`]). The omitted terms count as an error.
+/// Maximum number of terms of the series X ([`EdgeSeries`]), by which a checkerboard is integrated
+/// along an edge. The omitted terms count as an error. With 20 terms, the last term is at most
+/// about 2e-17 of the first, because squares nearer than `NEAR_SQUARES` are integrated one by one
+/// instead.
 pub(super) const MAX_TERMS: usize = 20;
 /// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
-/// truncation error of a block is limited to the tolerance divided by this number. The depth m
-/// grows by half over a block, so that after 15 blocks, a block has `MAX_BLOCK` crossings. The
-/// longest sum, 300,000 crossings, has 74 such blocks.
+/// truncation error of each block is limited to the tolerance divided by this number, so that all
+/// blocks together keep the tolerance. The longest sum, 300,000 crossings, has about 15 blocks that
+/// grow up to `MAX_BLOCK` crossings, and then about 74 of this length.
 const MAX_BLOCKS: f64 = 128.0;
 
 /// Minimum number of crossings in a block of the sum over an edge's crossings. With this many,
@@ -30,12 +32,14 @@ const MIN_BLOCK: f64 = 16.0;
 /// changes by at most about 10 %.
 const MAX_BLOCK: f64 = 4096.0;
 
-/// Number of running sums in which the terms (−1)^j·X of the crossings j are added, so that the
-/// compiler vectorises the loop: crossing j goes to sum j mod `LANES`. The number is even, so that
-/// all terms of a sum have one sign.
+/// Number of running sums in which the terms (−1)^j·X of the crossings j are added: crossing j goes
+/// to sum j mod `LANES`. The compiler vectorises the loop, and the widest vectors hold eight `f64`.
+/// The number is even, so that all terms of a sum have one sign.
 const LANES: usize = 8;
-/// Number of crossings of an edge after which its coordinate t ([`EdgeSeries`]) is computed anew in
-/// double-double, so that the errors of its steps from crossing to crossing do not add up.
+/// Number of crossings of an edge after which the coordinate t along the edge ([`EdgeSeries`]) is
+/// computed anew in double-double. In between, t advances in `f64`, with an error that grows with
+/// the number of steps. A larger number would make the error larger; a smaller one would use the
+/// slow double-double more often.
 const CHUNK: usize = 64;
 
 /// The series X along an edge, where t is the coordinate along the edge, m the depth, and A_k are
@@ -67,8 +71,9 @@ impl EdgeSeries {
         sum * u * u
     }
 
-    /// Returns an upper bound of the absolute value of term `k` of X at the depth `depth`. It
-    /// follows from |A_k+1| ≤ ½π^(−k).
+    /// Returns an upper bound of the absolute value of term `k` of the series X ([`EdgeSeries`]) at
+    /// the depth `depth`. It follows from |A_k+1| ≤ ½π^(−k) for the periodic Euler polynomial
+    /// A_k+1.
     pub(super) fn size(&self, k: usize, depth: f64) -> f64 {
         let u = 1.0 / depth;
         let mut size = 0.5 * self.factors[k].abs() * u * u;
@@ -78,8 +83,9 @@ impl EdgeSeries {
         size
     }
 
-    /// Returns the number of terms of X needed in a sum over `lines` crossings, of which the
-    /// nearest has the depth `depth`, and the sum's truncation error. The error is at most `limit`.
+    /// Returns the number of terms of the series X that a sum over `lines` crossings needs, and the
+    /// sum's truncation error, which is at most `limit`. The nearest crossing has the depth
+    /// `depth`.
     fn terms_for(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
         let (mut terms, mut left) = (self.terms, 0.0);
         while terms > 1 {
@@ -129,12 +135,12 @@ impl LineCrossings {
             let (terms, left) = series.terms_for(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // The error of t consists of two roundings, and of three roundings of the distance from
-            // the start of the chunk, which is half a chunk on average. The slope of X is at most π
-            // times the bound of X, so that an error of t causes π times as large an error of X.
-            // The factor 4 of `reach` covers these roundings with a margin. A term of X has 14
-            // roundings of its own, derived in `green`. The running sum of a lane has one rounding
-            // for each number added.
+            // The error of the coordinate t consists of two roundings, and of three roundings of
+            // the distance from the start of the chunk, which is half a chunk on average. The slope
+            // of X is at most π times the bound of X, so that an error of t causes π times as large
+            // an error of X. The factor 4 of `reach` covers these roundings with a margin. A term
+            // of X has 14 roundings of its own, derived in `green`. The running sum of a lane has
+            // one rounding for each number added.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
@@ -188,7 +194,8 @@ impl LineCrossings {
         reduce_double(&self.reduced[1].plus(&Double::from_f64(1.0)))
     }
 
-    /// Computes X at crossing `j` + `i`. `t` is the coordinate t at crossing `j`, in half turns.
+    /// Computes the series X ([`EdgeSeries`]) at crossing `j` + `i`. `t` is the coordinate along
+    /// the edge at crossing `j`, in half turns.
     #[inline(always)]
     fn at<const TERMS: usize, const ROWS: usize>(
         &self,
@@ -208,8 +215,9 @@ impl LineCrossings {
     }
 }
 
-/// Computes Σ (−1)^j·X over `count` crossings that follow the first `done` crossings of the edge,
-/// with j = 0 at the first of them. Uses at least `terms` terms of X ([`EdgeSeries`]).
+/// Computes Σ (−1)^j·X for the series X ([`EdgeSeries`]) over `count` crossings that follow the
+/// first `done` crossings of the edge, with j = 0 at the first of them. Uses at least `terms` terms
+/// of X.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

@@ -1,10 +1,14 @@
 //! The board's integral over a polygon of many squares, as a sum along its boundary, by Green's
-//! theorem with periodic Euler polynomials. The symbols a, b, m, K, s are those of [`Homography`].
+//! theorem with periodic Euler polynomials.
 //!
 //! In: a convex polygon in which the depth m changes little from square to square, and which may
 //! reach the horizon. Out: the integral of the board's sign, with an error bound. The bound covers
 //! the truncation of the series and of sums over crossings, rounding errors, and the displacement
 //! of squares by rounding errors of the forms.
+//!
+//! In the formulas, (a, b) is a point of the board's plane, in squares, and s is the square wave, 1
+//! and −1 in turn from square to square. A unit of the plane at the depth m covers K/m³ square
+//! pixels, where K is a constant ([`Homography`]). n is the number of terms of a series.
 //!
 //! With the periodic Euler polynomials A_k of [`waves`] and J = K/m³, the sum
 //!
@@ -47,24 +51,30 @@ use crate::math::{Double, Real};
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Maximum error from truncating the series P, Ψ and X (module documentation) over a polygon, as a
-/// fraction of the pixel's tolerance; the number of terms is chosen accordingly.
+/// Maximum error from truncating the series along the edges and at the corners of a polygon (X, P
+/// and Ψ of the module's documentation), as a fraction of the pixel's tolerance. The number of
+/// terms is chosen accordingly. The fraction is small, because the sums over the crossings of edges
+/// may use up all of the tolerance ([`FINITE_TAIL`]).
 const TRUNCATION: f64 = 1e-3;
 
 /// Maximum truncation error of the sum over the crossings of an edge that ends before the horizon,
-/// as a fraction of the pixel's tolerance, if another edge of the polygon ends on the horizon. At
-/// most two edges of each kind contribute noticeably. Their errors add up to twice the tolerance,
-/// of which half counts, because a colour's share is half of the integral of signs.
+/// as a fraction of the pixel's tolerance, if another edge of the polygon ends on the horizon. The
+/// fraction for edges that end on the horizon is [`ENDLESS_TAIL`]; the split between the two kinds
+/// is a choice. At most two edges of each kind contribute noticeably. Their errors add up to twice
+/// the tolerance. Half of this counts, because a colour's share is half of the integral of signs.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
 /// Maximum truncation error of the sum over the crossings of an edge that ends on the horizon, as a
-/// fraction of the pixel's tolerance. Together with [`FINITE_TAIL`], it adds up to 1.
+/// fraction of the pixel's tolerance. It is what [`FINITE_TAIL`], the fraction for other edges,
+/// leaves of 1.
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 /// Maximum truncation error of the sum over the crossings of an edge, as a fraction of the pixel's
-/// tolerance, if no edge of the polygon reaches the horizon. Only two edges then recede and have
-/// long sums; the sums over other edges hardly contribute (`tail::level`).
+/// tolerance, if no edge of the polygon reaches the horizon. It is the whole tolerance, because
+/// only the two edges that recede from the eye have long sums; the sums over other edges hardly
+/// contribute.
 const ONLY_FINITE_TAIL: f64 = 1.0;
 /// Minimum fraction of the pixel's tolerance that the truncated sums over a polygon may use up. A
-/// polygon of a larger area may use that area, in square pixels, as its fraction.
+/// polygon whose area, in square pixels, is larger than this fraction may use its area as the
+/// fraction instead. The minimum keeps the sums over tiny polygons short.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
 /// Factors (k + 1)!/2 of the terms of the series X ([`EdgeSeries`]), by the index k.
@@ -91,9 +101,10 @@ pub(super) fn sum(
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
     // The polygons of a pixel divide its tolerance among them in proportion to their areas, but
-    // each gets at least `MIN_SHARE`. The omitted terms of all polygons then add up to about those
-    // of a single polygon. The limits of the tails (`FINITE_TAIL` and the two that follow it)
-    // assume four edges, so that a polygon of more edges gets proportionally less per edge.
+    // each gets at least the fraction `MIN_SHARE`. The omitted terms of all polygons then add up to
+    // about those of a single polygon. The limits of truncated sums (`FINITE_TAIL` and the
+    // constants after it) assume four edges, so that a polygon of more edges gets proportionally
+    // less per edge.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
@@ -127,7 +138,8 @@ pub(super) fn sum(
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
             // Term k of Ψ has at most 3k + 4 roundings and is less than 2^−k of term 0. The
-            // roundings add up to Σ (3k + 4)/2^k = 14 of term 0. The product with K has two more.
+            // roundings add up to Σ (3k + 4)/2^k = 14 roundings of term 0. The product with K has
+            // two more.
             sum.bound += (16.0 * UNIT + 2.0 * board.density_error) * size;
         }
     }
@@ -229,32 +241,36 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 /// changes more along the edge, and c is the other; m is the depth. The sum over the edge's
 /// crossings runs over the lines of constant c.
 struct Edge {
-    /// Sign of the integral ρ·∫ s(c) dX in the polygon's sum: +1 if the boundary runs from the near
-    /// to the far end and t is b, or if neither holds; otherwise −1.
+    /// Sign, +1 or −1, with which the edge's integral ρ·∫ s(c) dX is added to the polygon's
+    /// integral. It is +1 if t is b and the polygon's boundary runs from the near to the far end,
+    /// or if neither is true.
     sign: f64,
-    /// Weight of the difference of Ψ between the edge's ends: 1 if t is b, 0 if t is a.
+    /// Factor of the difference of Ψ, the [`potential`], between the edge's ends in the polygon's
+    /// integral: 1 if the coordinate t is b, and 0 if t is a.
     potential: f64,
     c: f64,
     t: f64,
     depth: f64,
-    /// Values of c, t and m at the far end; `None` if the far end is on the horizon.
+    /// Values of the coordinates c and t and of the depth m at the far end. `None` if the far end
+    /// is on the horizon.
     end: Option<(f64, f64, f64)>,
-    /// Number of lines of constant c that the edge crosses; infinite if the edge ends on the
-    /// horizon.
+    /// Number of lines of the board on which the coordinate c is constant and which the edge
+    /// crosses. Infinite if the edge ends on the horizon.
     count: Double,
-    /// Change of t from the near to the far end; infinite if the far end is on the horizon.
+    /// Change of the coordinate t from the near to the far end. Infinite if the far end is on the
+    /// horizon.
     length: f64,
-    /// The slope dc/dt of the edge, ρ.
+    /// Slope dc/dt of the edge in the board's plane; ρ in formulas.
     rho: f64,
-    /// The change dm/dt of the depth m along the edge.
+    /// Derivative dm/dt of the depth m along the edge.
     climb: f64,
-    /// The slope ∂m/∂t of the depth m on the floor.
+    /// Partial derivative ∂m/∂t of the depth m in the board's plane, with constant c.
     slope: f64,
-    /// Change of t from one crossed line to the next.
+    /// Change of the coordinate t from one crossed line to the next.
     stride: Double,
     /// Change of the depth m from one crossed line to the next.
     rise: f64,
-    /// Direction in which c changes along the edge, +1 or −1.
+    /// Sign of the change of the coordinate c from the near to the far end: +1 or −1.
     sense: f64,
 }
 
@@ -349,8 +365,8 @@ impl Edge {
                 rise: self.rise,
                 count: self.count,
             };
-            // At the first crossed line, the square wave s(c) changes by −2·s(c) of the near end.
-            // The changes at the following lines alternate in sign.
+            // At the first crossed line, the square wave s(c) changes by −2 times its value at the
+            // near end. The changes at the following lines alternate in sign.
             let tolerance = 0.5 * tolerance / self.rho.abs();
             let jumps = tail::sum(&crossings, &series, tolerance, budget);
             sum.value += 2.0 * start * jumps.value;

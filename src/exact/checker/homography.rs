@@ -15,15 +15,15 @@ use crate::math::{Double, Real, two_product};
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
 /// Minimum absolute value of the determinant of the matrix of the board's three linear forms
-/// ([`Homography`]), each scaled so that its largest factor is 1 to 2. Below it, the matrix counts
-/// as singular and gets this determinant, so that the inverse and its products are finite; the
-/// error bound then covers the whole polygon.
+/// ([`Homography`]), each scaled so that its largest factor is 1 to 2. A matrix with a smaller
+/// determinant counts as singular and gets this determinant, so that the inverse and its products
+/// are finite. The error bound then covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
 /// Maximum displacement of the horizon by rounding errors, in pixels, at which
 /// [`Homography::corner`] moves corners onto the horizon that rounding may have kept off it. With a
-/// larger displacement, no corner is moved. The error bound includes the move. A move of this
-/// length costs about a hundredth of the default tolerance.
+/// larger displacement, no corner is moved. The error bound includes the move; a move of this
+/// length adds about a hundredth of the default tolerance to it.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound
@@ -52,27 +52,34 @@ pub(in crate::exact) struct BoundedSum {
 /// pixels, where K = 1/|det M|.
 #[derive(Clone, Debug)]
 pub(in crate::exact) struct Homography {
-    /// The forms N_a and N_b.
+    /// The linear forms N_a and N_b, the numerators of the floor's coordinates a = N_a/L and b =
+    /// N_b/L.
     pub across: [[f64; 3]; 2],
-    /// The form L, scaled by a power of two so that its largest factor is between 1 and 2.
+    /// The linear form L, the denominator of the floor's coordinates; 0 on the horizon. It is
+    /// scaled by a power of two so that its largest factor is between 1 and 2.
     pub below: [f64; 3],
     /// Slopes of the depth m on the floor, ∂m/∂a and ∂m/∂b.
     pub slope: [f64; 2],
-    /// The factor K of the density K/m³.
+    /// Factor K of the floor's density in the picture: a unit of the floor at the depth m covers
+    /// K/m³ square pixels.
     pub density: f64,
-    /// Maximum relative error of `density`, compared with the exact K of the rounded forms.
+    /// Maximum relative error of `density` due to rounding in its computation. The rounding of the
+    /// forms themselves is not included.
     pub density_error: f64,
-    /// Sign of det M, which depends on whether the floor is seen mirrored.
+    /// Sign of the determinant of the matrix of the three forms. It depends on whether the floor is
+    /// seen mirrored.
     pub orientation: f64,
     /// Maximum displacement of a corner of a polygon, or of a line of the board, by rounding
     /// errors: |dx| + |dy|, in pixels.
     displacement: f64,
     /// Unit vector along the horizon.
     horizon: DVec2,
-    /// Maximum displacement of a point perpendicular to the horizon by rounding errors, in pixels:
-    /// its value for a point on the horizon, and its increase per unit of L.
+    /// Maximum displacement of a point perpendicular to the horizon by rounding errors, in pixels.
+    /// The first number is the displacement of a point on the horizon, and the second its increase
+    /// per unit of the form L (`below`).
     across_horizon: [f64; 2],
-    /// Maximum L of a point that counts as on the horizon, because only rounding keeps it off.
+    /// Maximum value of the form L (`below`), which is 0 on the horizon, of a point that counts as
+    /// on the horizon. Only rounding keeps such a point off it.
     horizon_tolerance: f64,
 }
 
@@ -157,8 +164,8 @@ impl Homography {
         // Squares may be of any size. N_a and N_b are therefore scaled like L, each by its own
         // power of two, before the matrix is inverted.
         let [(a, of_a), (b, of_b)] = across.map(normalized);
-        // Each of `columns` is a column of det M·M⁻¹ (`Homography`). Each component is accurate to
-        // two roundings of its own value.
+        // The columns of det M·M⁻¹, where M is the matrix of the three forms. Each component is
+        // accurate to two roundings of its own value.
         let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
         let det = determinant(&a, &b, &below);
         let is_singular = det.abs() <= MIN_DETERMINANT;
@@ -169,9 +176,10 @@ impl Homography {
                 below[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
             })
             .sum();
-        // Returns the maximum relative error of 1/det M. Each of the three factors of a product has
-        // a relative error of one `unit`; the products and their sums, in double-double, have
-        // errors of two `unit`s each. The division adds roundings in `f64`.
+        // Returns the maximum relative error of 1/det M, where M is the matrix of the three forms.
+        // Each of the three factors of a product has a relative error of one `unit`; the products
+        // and their sums, in double-double, have errors of two `unit`s each. The division adds
+        // roundings in `f64`.
         let det_off = |unit: f64| {
             if is_singular {
                 f64::INFINITY
@@ -183,8 +191,8 @@ impl Homography {
         // has one more.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
-        // Errors e of the forms displace a point by v = M⁻¹·e, so that L(v) = e_L. The displacement
-        // starts from the rounding errors of the point's own coordinates.
+        // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
+        // forms. The displacement starts from the rounding errors of the point's own coordinates.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -248,8 +256,8 @@ impl Homography {
         Corner { floor, depth }
     }
 
-    /// Returns whether [`Self::corner`] treats the point `at` as on the horizon although L is
-    /// positive there, because only rounding keeps the point off the horizon.
+    /// Returns whether [`Self::corner`] treats the point `at` as on the horizon although the form L
+    /// (`below`) is positive there, because only rounding keeps the point off the horizon.
     pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
         let level = form(&self.below, at);
         level > 0.0 && level <= self.horizon_tolerance
@@ -262,14 +270,15 @@ impl Homography {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
         // The factors of each form have three roundings, its value has four, and the quotient N/L
-        // has one. This sum of 8 is doubled because the error of L may be as large as half of L.
+        // has one. The total of 8 is doubled, because the error of L may be as large as half of L.
         (place, 16.0 * UNIT / level * terms)
     }
 
     /// Returns an upper bound of the change of a polygon's integral by rounding errors of the
     /// forms, in square pixels: the area that the polygon's boundary sweeps when it is displaced.
     ///
-    /// Errors e of the forms displace a point by v = M⁻¹·e, with L(v) = e_L. Points near the
+    /// Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
+    /// forms. The displacement changes the form L only by its error, L(v) = e_L. Points near the
     /// horizon therefore hardly move perpendicular to the horizon, even if they move far along it.
     pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);

@@ -37,19 +37,20 @@ pub(super) use self::{
     special::square_wave,
 };
 
-/// Distance of the near squares from the line on the floor where the depth m is 0, in squares:
-/// nearer squares are cut out one by one, and the board beyond is integrated along its boundary by
-/// Green's theorem. Beyond this distance, term n of the series X is at most n/(18π) of the previous
-/// term. The 20 terms therefore reach 20!/(18π)²⁰, about 2e-17.
+/// Distance up to which squares count as near, in squares, measured from the line in the board's
+/// plane where the depth m is 0. Near squares are cut out one by one; the board beyond is
+/// integrated along its boundary by Green's theorem. Beyond 18 squares, term n of the series X used
+/// there is at most n/(18π) of the previous term. Its 20 terms therefore reach 20!/(18π)²⁰, about
+/// 2e-17.
 const NEAR_SQUARES: f64 = 18.0;
-/// Number of squares in a polygon up to which all of them are cut out one by one, however far away
-/// they are; with more, only near squares are. Not critical: with 6 or 96, the measured running
-/// time changes by at most about 10 %.
+/// Maximum number of squares in a polygon at which all of them are cut out one by one, however far
+/// away they are. With more squares, only near ones are. Not critical: with 6 or 96, the measured
+/// running time changes by at most about 10 %.
 const MAX_CUT_SQUARES: f64 = 24.0;
-/// Maximum depth m = 1/L ([`Homography`]) at which squares are cut out one by one. The distance to
-/// the horizon in the picture is then only a thousand rounding errors, because the largest factor
-/// of L is about 1. If squares are so large that even farther ones count as near, the colours
-/// beyond are treated as unknown.
+/// Maximum depth m = 1/L ([`Homography`]) at which squares are cut out one by one. At this depth,
+/// the distance to the horizon in the picture is only a thousand rounding errors, because the
+/// largest factor of the form L is about 1. If squares are so large that even farther ones count as
+/// near, the colours beyond this depth are treated as unknown.
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {
@@ -82,8 +83,9 @@ impl Homography {
             });
         }
         if polygon.iter().any(|&at| self.is_set_on_horizon(at)) {
-            // `Self::corner` moves these corners to the horizon. The move displaces squares at most
-            // as far as rounding does, so that the same bound is added a second time.
+            // `Self::corner` moves corners to the horizon that only rounding keeps off it. The move
+            // displaces squares at most as far as rounding does, so that the same bound is added a
+            // second time.
             sum.bound += self.displacement_error(&visible.polygon);
         }
         sum.within(polygon)

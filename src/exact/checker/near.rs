@@ -19,13 +19,14 @@ use super::{
 use crate::math::two_sum;
 
 /// Maximum number of corners that cutting may add to the rest of a polygon, the part from which no
-/// squares are cut yet. Above it, the area of the rest is added to the error bound, and cutting
-/// ends. Exact cuts add at most two corners, both on the last line. Many more show that the lines
-/// are closer to each other than rounding errors.
+/// squares are cut yet. With more corners, the area of the rest is added to the error bound, and
+/// cutting ends. Exact cuts add at most two corners, both on the last line. Many more show that the
+/// lines are closer to each other than rounding errors, so that cutting is useless.
 const MAX_EXTRA_CORNERS: usize = 32;
 
-/// Maximum board coordinate, in squares, in a polygon that is cut; beyond it, the integral is
-/// unknown. Up to it, the numbers of a square and of its neighbours are exact in `f64`.
+/// Maximum absolute value of a board coordinate, in squares, in a polygon that is cut into squares.
+/// In a polygon with larger coordinates, the integral is unknown. Up to this value, the number of a
+/// square and those of its neighbours are exact in `f64`.
 const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
@@ -70,8 +71,9 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
     tally.sum()
 }
 
-/// Cuts a convex polygon into the strips between neighbouring lines of one of the board's two
-/// families, one strip after another. `rest` is the part that is not yet cut off.
+/// Cutter of a convex polygon into the strips between neighbouring lines of one of the board's two
+/// families (columns or rows of squares), one strip after another. `rest` is the part that is not
+/// yet cut off.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],
@@ -160,8 +162,9 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The factors of the line's form have three roundings of these sizes, and its value has
-        // four. The chord's end points have four more roundings, which are added below.
+        // The factors of the line's form have three roundings of terms of the given size, and its
+        // value has four. The chord's end points have four more roundings, which are added to the
+        // error below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);

@@ -2,16 +2,17 @@
 //! vectorises.
 //!
 //! In: eight pixels that show only a checkerboard. The board has two families of lines, and the
-//! same number of each family cross every pixel. Out: the integral over each pixel, with a bound on
-//! the rounding errors of areas and on the displacement of lines by rounding.
+//! same number of lines of each family cross every pixel. Out: the integral over each pixel, with a
+//! bound on the rounding errors of areas and on the displacement of lines by rounding.
 //!
-//! The lines of the family with fewer lines cut the pixel into strips; σ_i is the sign of the
-//! squares in strip i. Let H_k be the side of line k of the other family on which squares have
-//! greater numbers, and W_k the signed area of the strips there:
+//! The lines of the family with fewer lines cut the pixel into strips. The sign σ_i = (−1)^i
+//! alternates from strip to strip. Let H_k be the side of line k of the other family on which
+//! squares have greater numbers, and W_k the signed area of the strips there:
 //!
 //! W_k = Σ_i σ_i·|strip i ∩ H_k|.
 //!
-//! W_0 is the signed area of all strips. The sign of squares changes at each line, so that
+//! W_0 is the signed area of all strips, and s_0 the sign of the pixel's first square. The sign of
+//! squares changes at each line, so that
 //!
 //! ∬ s(a)·s(b) dx dy = s_0·(W_0 + 2·Σ_k (−1)^k·W_k).
 //!
@@ -36,12 +37,12 @@ use super::{
 };
 use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
-/// Maximum number of lines that cut a pixel into strips; pixels with more lines in both families
-/// are not computed here. The buffer of 34 sides of 320 bytes each then stays in the first-level
-/// cache.
+/// Maximum number of lines that cut a pixel into strips. A pixel with more lines in both of the
+/// board's families is not computed in lanes. With 6 lines, the buffer of 34 sides of 320 bytes
+/// each stays in the first-level cache.
 pub(super) const MAX_STRIP_LINES: usize = 6;
 
-/// Number of pixels that are computed at once; the widest vectors have as many lanes.
+/// Number of pixels that are computed at once. The widest vectors hold as many `f64`.
 pub(super) const PIXELS: usize = 8;
 
 /// One number per pixel.
@@ -62,8 +63,8 @@ pub(super) struct BoardLanes {
     /// has the second. The first square is the one with the smallest number in each family of
     /// lines.
     sign: Lanes,
-    /// Number of the square at each corner of the pixel, for each pixel. It is counted in the
-    /// family with fewer lines, from the smallest number in the pixel.
+    /// Number of the square at each corner of the pixel, for each pixel. Squares are counted across
+    /// the family of lines with fewer lines, from the smallest number in the pixel.
     squares: [Lanes; 4],
 }
 

@@ -130,8 +130,8 @@ fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
         let mut j = first;
         while j <= last {
             let seen = |q: DVec2| inverse * q.extend(1.0);
-            // A square may reach behind the eye, where m is negative. It is clipped well before the
-            // eye.
+            // A square may reach behind the eye, where the depth m is negative. It is clipped well
+            // before the eye.
             let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
                 .map(|(x, y)| DVec2::new(i + x, j + y));
             let before = clip(&corners, |q| seen(q).z - 0.5 * nearest);
@@ -218,7 +218,7 @@ fn wide_views() {
                 foot: DVec2::new(0.3, 0.45),
             };
             let found = view.board().alone(&PIXEL);
-            // The terms of the board's forms are larger than the pixel's side by this factor.
+            // `size` is the factor by which the terms of the board's forms exceed the pixel's side.
             let size = view.place.length();
             agree_in_size(found, brute(view.forms(), &PIXEL), size, 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
@@ -384,7 +384,7 @@ fn the_widest_views() {
                 let found = view.board().alone(&polygon);
                 let (expected, left) = brute_limit(&view, &polygon, most);
                 let error = (found.value - expected).abs();
-                // `brute_limit` is not exact here, because the focal length is finite, which
+                // `brute_limit` is exact only for a focal length of 0. The finite focal length
                 // displaces lines.
                 assert!(
                     error <= found.bound + left + 1e-11 + 1e3 * focal,

@@ -4,8 +4,10 @@
 //! [`green`](super::green). Out: Σ (−1)^j·X over the crossings j, with a bound on truncation and
 //! rounding errors.
 //!
-//! Crossing j lies at t_j = t + τ·j, with the depth m_j = g·(w + j), and the square wave changes
-//! its sign at every crossing. The periodic Euler polynomials are the Fourier series
+//! Crossing j has the coordinate t_j = t + τ·j along the edge and the depth m_j = g·(w + j), where
+//! τ and g are the steps of both from crossing to crossing, and g·w is the depth at the first
+//! crossing. The square wave changes its sign at every crossing. The periodic Euler polynomials are
+//! the Fourier series
 //!
 //! A_k(t) = Im (4/π)·Σ_n e^(iπnt)/(n·(iπn)^k) over the odd n.
 //!
@@ -44,28 +46,32 @@ use super::special::Complex;
 use crate::math::{Double, Real};
 
 /// Number of terms of the series X ([`EdgeSeries`]) whose sums over an edge's crossings are
-/// computed by Fourier modes; later terms count as an error.
+/// computed by Fourier modes. Later terms, which fall with a higher power of the depth, count as an
+/// error. If the crossings recede, those at which this error would be too large are added one by
+/// one instead.
 const MODE_TERMS: usize = 3;
 
-/// Maximum number of crossings of an edge that are all added one by one; above it, Fourier modes
-/// are tried. So many crossings take 60 µs, 3 ns each. Not critical: with 5000 or 80,000, the
-/// measured running time changes by less than 10 %.
+/// Maximum number of crossings of an edge that are all added one by one. With more crossings,
+/// Fourier modes are tried. Adding 20,000 crossings takes 60 µs, 3 ns each. Not critical: with 5000
+/// or 80,000, the measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
 /// Maximum number of an edge's crossings that are added one by one, and maximum number n of a
-/// Fourier mode; the crossings or modes beyond count as an error. So many take a few milliseconds.
+/// Fourier mode. The crossings or modes beyond count as an error. Adding 300,000 of them takes a
+/// few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
 /// Fraction of an edge's tolerance up to which the edge's whole sum is left out: if an upper bound
 /// of the sum is at most this fraction, the bound counts as an error instead. Skipped Fourier modes
-/// may have the same fraction. The fractions of all kinds of errors add up to less than 1.
+/// may use up the same fraction. The fractions of all kinds of errors must add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
 /// Fraction of an edge's tolerance for the error of leaving out the later terms of the series X
 /// ([`EdgeSeries`]), which are not summed by Fourier modes. Not critical: with 0.0125 or 0.2, the
 /// measured running time changes by less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
-/// Work charged to the pixel's budget per crossing that is added directly, in units of about 50 ns.
+/// Approximate time to add one crossing directly, in units of about 50 ns, which is charged to the
+/// pixel's budget.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
 /// Work charged to the pixel's budget per unit of the last Fourier mode's number n, in units of
-/// about 50 ns. Only odd numbers have modes.
+/// about 50 ns. Only odd numbers have modes, so that a mode costs twice this value.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over all crossings of
@@ -92,8 +98,8 @@ pub(super) fn sum(
         return unknown;
     }
     if all.rise * lines < all.depth {
-        // As m less than doubles between the edge's ends, the Fourier modes of a sum from one end
-        // to infinity would decay too slowly. `level` sums between the two ends.
+        // The depth m less than doubles between the edge's ends, so that the Fourier modes of a sum
+        // from one end to infinity would decay too slowly. `level` sums between the two ends.
         let sum = level::sum(all, series, trivial, tolerance, budget);
         if sum.bound > tolerance && lines <= MAX_TERMS_ADDED {
             return one_by_one(lines).unwrap_or(sum);
@@ -128,8 +134,9 @@ pub(super) fn sum(
 }
 
 /// Returns the amplitudes of the first terms of the series X ([`EdgeSeries`]) in the Fourier mode n
-/// = 1. They are computed for factors of 1, the first being `first` and each other `next` of the
-/// one before, and then multiplied by `series.factors`.
+/// = 1. For a term whose factor is 1, the amplitude is `first` for the first term, and `next` of
+/// the previous term's amplitude for each later term. It is multiplied by the term's factor in
+/// `series.factors`.
 fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f64; MODE_TERMS] {
     let (mut amplitudes, mut unit) = ([0.0; MODE_TERMS], first);
     for (amplitude, factor) in amplitudes.iter_mut().zip(&series.factors[1..=series.terms]) {

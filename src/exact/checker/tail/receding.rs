@@ -20,15 +20,16 @@ const MODE_COST: f64 = 4.0;
 /// faster.
 const FIRST_MODES: f64 = 31.0;
 /// Fraction of an edge's tolerance for the error of leaving out all Fourier modes beyond the last
-/// computed one.
+/// computed one. It is the largest of the fractions for different kinds of errors, which must add
+/// up to less than 1, because a smaller one would need more modes.
 const BEYOND_LAST_SHARE: f64 = 0.6;
 /// Fraction of an edge's tolerance for the truncation error of the Lerch series ([`lerch`]) in the
 /// first term of the series X ([`EdgeSeries`]). Not critical: with 0.005 or 0.08, the measured
 /// running time changes by less than 10 %.
 const LERCH_SHARE: f64 = 0.02;
 /// Minimum of w, the depth m divided by its step from crossing to crossing, at which the Lerch
-/// series ([`lerch`]) is expanded in 1/w. Each term is then at most about s/w, a third, of the
-/// previous term; s is at most 5.
+/// series of exponents s = 3 to 5 ([`lerch`]) is expanded in 1/w. Each term of the expansion is
+/// then at most about s/w, a third, of the previous term.
 const MIN_W: f64 = 16.0;
 /// Angle |θ| of a Fourier mode, in radians, below which |1 − e^iθ|² = 2 − 2·cos θ is replaced by a
 /// lower bound in θ², because the subtraction cancels most digits there.
@@ -43,8 +44,8 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     let g = all.rise;
     let factor = series.factors[1].abs();
     // At the depth `cheapest`, the total work is least: (m − m_0)/g crossings are added one by one,
-    // and κ/2m Fourier modes give the remaining sum. m_0 is the depth at the first crossing, g the
-    // step of m.
+    // and κ/2m Fourier modes (`kappa`) give the remaining sum. m is the depth, m_0 its value at the
+    // first crossing, and g its step from crossing to crossing.
     let kappa =
         (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND_LAST_SHARE * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
