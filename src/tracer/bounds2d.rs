@@ -27,13 +27,14 @@ pub struct Extent {
     pub nearest: f64,
 }
 
-/// Amount by which a bound of an object that is computed as a quotient is widened, as a fraction of
-/// the bound's value: 2^−40. The few rounding errors of such a bound amount to 2^−50.
+/// Fraction of its value by which a computed bound of an object is widened: 2^−40. It is far more
+/// than the few rounding errors of such a bound, about 2^−50, so that the bound is certainly not
+/// too tight.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum of a number that an object's bounds are computed from. An object with a smaller one
-/// counts as unbounded. Rounding errors, 2^−53 of a number, then stay far above 1e-308, below which
-/// `f64` loses digits.
+/// Minimum of the numbers from which an object's bounds are computed. If one is smaller, the object
+/// counts as unbounded. The limit keeps rounding errors, 2^−53 of a number, far above 1e-308, below
+/// which `f64` loses digits.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
@@ -58,12 +59,14 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
         let hull = match (&object, shape.cuboid(), corners) {
-            // In such a wide view, products with Z (`ahead`) may underflow and lose digits.
+            // In an extremely wide view, Z (`ahead`) is so small that products with it may
+            // underflow and lose digits.
             _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), ..) => of_sphere(sphere, ahead),
             (_, Some(cuboid), _) => of_corners(&cuboid::corners(fast, cuboid), ahead),
             (_, None, Some(corners)) => of_corners(&corners, ahead),
-            // What covers the window is near enough for any other kind.
+            // Other kinds of objects have no hull. They get the whole window as bounds, and only
+            // their depth is limited.
             (_, None, None) => Hull::Unbounded,
         };
         let extent = match hull {
@@ -86,8 +89,7 @@ enum Hull {
     Behind,
     /// All of the hull is in front of the eye.
     Ahead(Extent),
-    /// The hull is on both sides of the eye, or unlimited, or its numbers exceed the range of
-    /// `f64`.
+    /// The hull is on both sides of the eye, or infinite, or its numbers exceed the range of `f64`.
     Unbounded,
 }
 

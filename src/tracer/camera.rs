@@ -106,11 +106,11 @@ impl Basis {
 /// Bounds on the [`Direction`]s of rays through sample points.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<R> {
-    /// Maximum of |X|.
+    /// Maximum of |X|, the component to the right of a ray's direction.
     pub x: R,
-    /// Maximum of |Y|.
+    /// Maximum of |Y|, the component downwards of a ray's direction.
     pub y: R,
-    /// The value of Z.
+    /// Z, the component ahead, which is the same for all rays.
     pub z: R,
 }
 
@@ -121,7 +121,7 @@ impl<R: Copy> Window<R> {
     }
 }
 
-/// The camera in one precision.
+/// The camera of a picture, with its numbers in the precision `T`.
 #[derive(Clone, Debug)]
 pub struct Camera<T: Real> {
     /// Position of the eye, in world coordinates.
@@ -132,9 +132,9 @@ pub struct Camera<T: Real> {
     pub exponent: i32,
     /// Unit vectors to the right, down and ahead, in world coordinates.
     pub axes: [Ball3<T>; 3],
-    /// Side of a pixel, in units of X and Y of a [`Direction`].
+    /// Side of a pixel, in the unit of X and Y, the first two components of a [`Direction`].
     pub pitch: T,
-    /// The Z of all [`Direction`]s.
+    /// Component Z of all [`Direction`]s.
     pub z: T,
     /// Half the picture's width and height, in pixels.
     pub half: DVec2,

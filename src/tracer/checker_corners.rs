@@ -25,22 +25,24 @@ use crate::{
 };
 
 /// Minimum ratio of the form ℓ in a board coordinate N/ℓ ([`CheckerForms`]) to the error bound f of
-/// ℓ; with a smaller ratio, the coordinate's error counts as unbounded. With e the error bound of
+/// ℓ. With a smaller ratio, the coordinate's error counts as unbounded. With e the error bound of
 /// N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ for ratios from 4 on. The
 /// error bound uses the factor 4 instead of 4/3.
 const MIN_CLEARANCE: f64 = 4.0;
 
-/// Maximum error of a board coordinate, in squares; with a larger error, the squares that a pixel
-/// shows are not computed. At 1/4, the square that a pixel's corner lies in is certain only if the
-/// corner lies in the middle half of that square's width.
+/// Maximum error of a board coordinate, in squares, at which the squares that a pixel shows are
+/// computed from the coordinates of its corners. With an error of 1/4, the square at a corner is
+/// certain only if the corner lies in the middle half of the square's width. With a larger error,
+/// few squares would be certain.
 const MAX_ERROR: f64 = 0.25;
 
-/// Maximum side of a block of pixels at whose corners the board's squares are computed together, in
-/// pixels. It is also the side of the squares with which quartering begins.
+/// Maximum side of a block of pixels at whose corners a board's squares are computed together, in
+/// pixels. It is also the side of the areas with which quartering begins, and must therefore be a
+/// power of two. The value itself is a choice.
 pub(super) const SIDE: usize = 32;
 
-/// Number of entries for the pixel corners in a row of a block: there are 33 corners, rounded up to
-/// whole vectors of eight.
+/// Number of entries for the pixel corners in a row of a block of pixels. The row has 33 corners,
+/// which are rounded up to whole vectors of eight.
 const LANES: usize = 40;
 
 /// The squares of a board that one pixel shows, known from the squares at the pixel's corners.
@@ -79,7 +81,7 @@ struct CornerRow {
 /// The squares of a checkerboard that a run of pixels, or one pixel, shows.
 #[derive(Clone, Copy, Debug)]
 pub enum ShownSquares<'a> {
-    /// One colour, in a run of pixels; `true` for the second colour.
+    /// A run of pixels that show one colour; `true` if it is the second colour.
     One(bool),
     /// A few squares, in one pixel.
     Squares(&'a CheckerPixel),
@@ -197,8 +199,8 @@ impl BoardBlock {
         }
     }
 
-    /// Calls `each` with the runs and pixels of row `row`, which lies between the rows of corners
-    /// `above` and `below`. Stops if `each` breaks.
+    /// Calls `each` with the runs of one colour and with the other pixels in row `row`, which lies
+    /// between the rows of corners `above` and `below`. Stops if `each` breaks.
     fn row(
         &self,
         row: u32,
@@ -362,7 +364,7 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
 }
 
 /// The position on a checkerboard as ratios of linear forms: x = N₀/ℓ and z = N₁/ℓ, in squares. x
-/// and z rounded down are the indices of a square.
+/// and z rounded down are the indices of a square. `across` has N₀ and N₁, and `below` is ℓ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CheckerForms {
     pub(crate) across: [LocalForm; 2],
@@ -387,23 +389,23 @@ impl CheckerForms {
         }
     }
 
-    /// Returns the least value of ℓ over the rectangle. Returns `None` if it is not clearly
-    /// positive.
+    /// Returns the least value of the form ℓ (`below`) over the rectangle. Returns `None` if it is
+    /// not clearly positive.
     fn least(&self) -> Option<f64> {
         let least = self.below.factors[2] - self.below.spread() * UP;
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)
     }
 
     /// Returns an upper bound of the error of the board coordinate `across`/ℓ, whose absolute value
-    /// is at most `greatest`. The value of ℓ must be at least `least`.
+    /// is at most `greatest`. ℓ is the form `below`, and its value must be at least `least`.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
         let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
     /// Returns the ranges of the squares in the rectangle, in x and in z, as first and last square.
-    /// A range may have one square too many at each end. Returns `None` if ℓ is not clearly
-    /// positive or an error is too large.
+    /// A range may have one square too many at each end. Returns `None` if the form ℓ (`below`) is
+    /// not clearly positive or an error is too large.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));

@@ -152,9 +152,9 @@ impl<T: Real> Convex<T> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }
 
-    /// Returns the crossing of the ray with that one of the planes of `faces` that has the least
-    /// inverse depth, or the greatest if `which` is `Greater`. `start` is the index of the first of
-    /// `faces` among all faces. Returns `None` if there are no faces.
+    /// Returns the crossing of the ray with one of the planes of `faces`: the plane with the least
+    /// inverse depth, or with the greatest if `which` is `Greater`. `start` is the index of the
+    /// first of `faces` among all faces. Returns `None` if there are no faces.
     ///
     /// If two inverse depths are not clearly different, the centre of the returned ball may differ
     /// from the exact extreme, by at most the larger of the two radii. The crossing then belongs to

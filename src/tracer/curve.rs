@@ -13,12 +13,13 @@ use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
-/// Error bound of a boundary line ([`BoundaryLine::rad`]) from which on the line is computed again
-/// in a higher precision than double-double: eight unit roundoffs of `f64`. Storing the line's
-/// factors as `f64` alone costs three.
+/// Minimum error bound of a boundary line ([`BoundaryLine::rad`]) at which the line is computed
+/// again in a higher precision than double-double. The value is eight unit roundoffs of `f64`. A
+/// much smaller one would be useless, because storing the line's factors as `f64` alone costs
+/// three.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
-/// A curve that separates objects in a pixel.
+/// A curve that separates what is seen in a pixel.
 #[derive(Clone, Debug)]
 pub enum Boundary {
     /// A line.
@@ -159,15 +160,16 @@ impl<T: Real> SubPixelFrame<T> {
     }
 
     /// Returns the curve of rays that hit two spheres at equal depths, by the spheres' radical
-    /// plane. On it, |q − c|² − R² is equal for both spheres, so that
+    /// plane. For a point q of the plane, |q − c|² − R² is equal for both spheres, so that
     ///
     /// 2 (c' − c)·q = C' − C,
     ///
-    /// with the centres c and c', and C = c·c − R². Returns `None` for concentric spheres.
+    /// with the centres c and c', the radius R of each sphere, and C = c·c − R². Returns `None` for
+    /// concentric spheres.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
         let ((c, square), (d, other)) = (a.parts(), b.parts());
-        // The two spheres have units of length of their own. The lengths of one are converted to
-        // the unit of the other.
+        // Each sphere has its own unit of length. The lengths of `b` are converted to the unit of
+        // `a`.
         let exponent = libm::frexp(a.scale()).1 - libm::frexp(b.scale()).1;
         let d = d.map(|x| x.scaled(exponent));
         let other = other.scaled(2 * exponent);
@@ -247,7 +249,7 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     // Unit of the rounding errors of the quotients and of their conversion to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-    // The error bound covers the roundings of the quotient and of the slope's conversion to `f64`.
+    // The error bound covers the roundings of the quotient, and the rounding of the slope to `f64`.
     let rad = rad.scaled(exponent).to_f64() / slope.to_f64().abs() * (1.0 + 8.0 * f64::UNIT);
     Boundary::Line(BoundaryLine {
         factors,
@@ -294,13 +296,14 @@ fn double<T: Real>(x: &T) -> Double {
 }
 
 impl Conic {
-    /// Returns an upper bound of the area between the true conic and the computed one, in pixels.
-    /// All points between them satisfy |F| ≤ ε, where F is the computed form and ε its error bound.
-    /// The result is the least of three bounds of the area of these points:
+    /// Returns an upper bound of the area between the true conic and the computed one, in square
+    /// pixels. All points between them satisfy |F| ≤ ε, where F is the computed form and ε its
+    /// error bound. The result is the least of three bounds of the area of these points:
     ///
     /// - By the coarea formula, 2ε · length/(least gradient). A conic in the pixel is no longer
     ///   than twice the pixel's perimeter.
-    /// - For an ellipse, 2πε/√(AC − B²), the difference of two ellipses' areas.
+    /// - For an ellipse, 2πε/√(AC − B²), the difference of two ellipses' areas. A, B and C are the
+    ///   factors of x², 2xy and y².
     /// - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg (1973)
     ///   for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest |F| is at
     ///   least 1/16: some factor is at least 1/2, and each factor is a combination of values of F.

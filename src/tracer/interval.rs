@@ -20,7 +20,7 @@ pub struct Cover {
     pub inverse_depth: Interval,
 }
 
-/// Position of an interval of numbers relative to 0.
+/// Position of an interval relative to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Side {
     Above,

@@ -48,8 +48,8 @@ pub struct Sphere<T: Real> {
     rad_b: T::Radius,
 }
 
-/// Number of roundings of a value of Q ([`Sphere`]), in units of [`Real::UNIT`]: twelve in the
-/// value of a linear form, twice as many in its square, and eight in the sum of squares.
+/// Number of roundings of a value of Q ([`Sphere`]), in units of [`Real::UNIT`]. A linear form has
+/// 12 roundings, its square therefore 24, and the sum of squares adds 8.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -61,8 +61,8 @@ impl<T: Real> Sphere<T> {
             .iter()
             .map(Ball::size)
             .fold(radius_ball.size(), Radius::max);
-        // The exponent is limited so that the power of two is within the range of `f64`. A factor
-        // of 2^74 too much or too little does no harm.
+        // The exponent is limited so that the power of two is within the range of `f64`. The limit
+        // may leave the lengths 2^74 times too large or too small, which does no harm.
         let exponent = (-greatest.exponent()).clamp(-1000, 1000);
         let from_eye = from_eye.map(|x| x.scaled(exponent));
         let radius_ball = radius_ball.scaled(exponent);
@@ -107,9 +107,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // This is the highest precision, after which no other is tried. The errors are
-            // therefore bounded for this ray alone: in the middle of the widest views, they are far
-            // smaller than elsewhere.
+            // After the highest precision, no other is tried. Its errors are therefore bounded for
+            // this ray alone: in the middle of the widest views, they are far smaller than
+            // elsewhere.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
@@ -163,8 +163,8 @@ impl<T: Real> Sphere<T> {
     }
 
     /// Returns the crossing where the ray leaves the sphere, given Q (`q`) and c·r (`b`) as in
-    /// [`Sphere`]. Of the two formulas for its inverse depth, this uses the one without
-    /// cancellation.
+    /// [`Sphere`]. Its inverse depth is computed by one of two equal formulas, the one that does
+    /// not cancel.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
@@ -195,7 +195,8 @@ impl Sphere<f64> {
     /// Returns the centre and the radius of a ball that certainly contains the sphere, in the
     /// sphere's own unit of length. Returns `None` if the eye is not outside the sphere.
     pub fn ball(&self) -> Option<([f64; 3], f64)> {
-        // Factor that covers the rounding errors of the radius, three roundings of 2^−53 each.
+        // Factor that covers the rounding errors of the radius. These are only three roundings of
+        // 2^−53 each, far less than 2^−40.
         const ROOT_SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
         let radius = (self.square + self.rad_square).sqrt() + 2.0 * self.rad_c;
         (self.side == Ordering::Greater).then_some((self.center, radius * ROOT_SLACK))
@@ -322,10 +323,10 @@ impl Sphere<f64> {
     /// rounding errors so far.
     fn widened(&self, range: Interval) -> Interval {
         // Factor by which the ends of a range are widened. It covers a few roundings of 2^−53, and
-        // a relative error of C of at most 2^−30.
+        // a relative error of C ([`Sphere`]) of at most 2^−30.
         const WIDER: f64 = 1.0 + 1.0 / (1u64 << 30) as f64;
         let power = self.power.rad / self.power.size();
-        // For an eye on the surface, C is 0 and its relative error does not matter.
+        // If the eye is on the surface, C is 0 and its relative error does not matter.
         if power < WIDER - 1.0 || self.side == Ordering::Equal {
             Interval {
                 low: range.low / WIDER / WIDER * self.scale,
@@ -447,8 +448,8 @@ fn radii<T: Real>(
     let r_square = x * x + y * y + z * z;
     rad_q = rad_q + rad_square * r_square + (square * r_square + cross) * unit;
     let rad_b = rad_c * (x + y + z) + (cx * x + cy * y + cz * z) * unit;
-    // Numbers that are too small for normal numbers have errors of up to `TINY`, also Z. No
-    // coordinate of the centre is greater than 2.
+    // Numbers below the normal numbers, possibly also Z, have errors of up to `TINY`. No coordinate
+    // of the centre is greater than 2, so that a multiple of `TINY` covers all these errors.
     let tiny = T::TINY * 64.0;
     ((rad_q + tiny) * UP, (rad_b + tiny) * UP)
 }

@@ -1,7 +1,7 @@
 //! A pixel, or a square part of one, for exact integration.
 //!
-//! In: a pixel, and quarterings of it. Out: points of the part as offsets from the pixel's centre.
-//! Offsets have no rounding error, because sides are powers of two.
+//! In: a pixel that is quartered repeatedly. Out: points of a part as offsets from the pixel's
+//! centre. Offsets have no rounding error, because sides are powers of two.
 
 use glam::DVec2;
 

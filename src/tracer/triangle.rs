@@ -50,7 +50,8 @@ fn by_vertices<T: Real>(
 /// form matters.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
-        // a × b = a × (b − a), and the difference b − a is computed without cancellation.
+        // Because a × b = a × (b − a), the difference b − a is used, which is computed without
+        // cancellation.
         let along: Ball3<T> = array::from_fn(|i| Ball::difference(b[i], a[i]));
         let along = camera.turned(&scaled_to_one(&along));
         let normal = cross(&scaled_to_one(corner), &along);
@@ -128,8 +129,8 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
 
 /// A plane n·q = h, with points q relative to the eye. n and h are divided by the greatest
 /// component of n, and each number is then correctly rounded. All triangles in one plane therefore
-/// get equal n and h, whatever the lengths of their normals. In a plane along the axes, these equal
-/// those of a box's face.
+/// get equal n and h, whatever the lengths of their normals. If a box's face lies in the plane, it
+/// has the same n and h.
 struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,

@@ -1,7 +1,8 @@
-//! The grid of a quadtree: whole numbers for positions in the view plane and for nearness.
+//! The grid of a quadtree: whole numbers for positions in the view plane and for inverse depths.
 //!
-//! In: coordinates in the view plane, and inverse depths. Out: units of the grid, and the upper
-//! half of an `f64`'s bits. Both conversions are monotone, and bounds are rounded outwards.
+//! In: coordinates in the view plane, and inverse depths. Out: units of the grid, and [`Nearness`]
+//! values, the upper half of an `f64`'s bits. Both conversions are monotone, and bounds are rounded
+//! outwards.
 
 use crate::tracer::{
     bounds2d::Extent,
@@ -10,13 +11,14 @@ use crate::tracer::{
     local_form::Patch,
 };
 
-/// Ratio of the side of the quadtree's root cell to the longer side of the camera's window. The
-/// root cell is wider by a sixteenth on each side. Rectangles of pixels at the picture's edge are
-/// therefore inside it, even with rounding errors.
+/// Ratio of the side of the quadtree's root cell to the longer side of the camera's window. With
+/// 1.125, the root cell is wider than the window by a sixteenth on each side. Rectangles of pixels
+/// at the picture's edge are therefore inside it, even with rounding errors.
 const ROOT_MARGIN: f64 = 1.125;
 
-/// Binary logarithm of the side of the quadtree's root cell in units of the grid. In a picture
-/// 100,000 pixels wide, a pixel is about a hundred units long.
+/// Binary logarithm of the side of the quadtree's root cell in units of the grid. Rounding
+/// positions to units hardly matters, because even in a picture 100,000 pixels wide, a pixel is
+/// about a hundred units long.
 pub(super) const LEVELS: u32 = 24;
 
 /// A rectangle of the view plane in units of the grid; both ends are included.
@@ -26,7 +28,7 @@ pub struct Rectangle {
     pub(super) high: [u32; 2],
 }
 
-/// The bounds of an object in the view plane, and its maximum nearness.
+/// The bounds of an object in the view plane, and an upper bound of its inverse depth.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundedObject {
     /// Rectangle in which the object may be seen.
@@ -53,7 +55,7 @@ pub struct CellGrid {
 }
 
 impl Nearness {
-    /// The least nearness, which hides nothing.
+    /// The least value, which is less than that of any object, so that it hides nothing.
     pub const NONE: Self = Self(0);
 
     /// Rounds a non-negative number up. Returns the greatest nearness for NaN and negative numbers.
@@ -161,8 +163,8 @@ impl CellGrid {
         (low[0] <= high[0] && low[1] <= high[1]).then_some(Rectangle { low, high })
     }
 
-    /// Returns the rectangle that contains all rays through a patch, clipped to the window. Returns
-    /// `None` if the patch lies outside of the window.
+    /// Returns the rectangle of the grid that contains all rays through the rectangle `patch` of
+    /// the view plane, clipped to the window. Returns `None` if `patch` lies outside of the window.
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         let center = [patch.center.x, patch.center.y];
         self.ends([0, 1].map(|i| Interval::about(center[i], 0.5 * patch.sides[i])))

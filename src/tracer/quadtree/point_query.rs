@@ -10,7 +10,8 @@ use super::{
 
 impl Cells {
     /// Calls `visit` with the objects that the ray through a point may hit, until `visit` fails.
-    /// `visit` returns a nearness; objects at or below it are hidden and are skipped.
+    /// `visit` returns a rounded inverse depth; objects that are nowhere nearer are hidden and are
+    /// skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -37,8 +38,8 @@ impl Cells {
 }
 
 /// Calls `visit` with the objects of one list that the ray through a point may hit, the nearest
-/// first. Stores in `hidden` the nearness that `visit` returns, and stops at the first object at or
-/// below it.
+/// first. Stores in `hidden` the rounded inverse depth that `visit` returns, and stops at the first
+/// object that is nowhere nearer.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[BoundedObject],

@@ -105,9 +105,9 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// In a crowd of objects, `nearby` finds the objects around every square of the picture. With these
-/// objects alone, some pixels are known to have one colour, and all sample points get the same
-/// colour as by the quadtree.
+/// In a crowd of objects, `nearby` finds the objects around every square of the picture. If only
+/// these objects are tested, some pixels are known to have one colour, and all sample points get
+/// the same colour as by the quadtree.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

@@ -1,9 +1,10 @@
 //! The camera and the objects in each precision: `f64`, double-double, and big numbers, the highest
-//! precision, which decides everything.
+//! precision.
 //!
 //! In: the numbers of the scene. Out: frames and objects in the requested precision. In precisions
 //! higher than `f64`, objects are prepared when they are first requested. A decision that one
-//! precision leaves in doubt, by its error bounds, is made in the next precision.
+//! precision leaves uncertain, by its error bounds, is made in the next precision. The highest
+//! precision decides everything.
 
 use glam::{DVec2, DVec3};
 
@@ -104,8 +105,8 @@ impl<T: Real> SceneFrame<T> {
 pub trait Precision: Real {
     fn frame(geometry: &Geometry) -> &SceneFrame<Self>;
 
-    /// Returns the object with the index `index` in this precision. Prepares it if it is not
-    /// cached.
+    /// Returns the object with the index `index` in the precision of `Self`. Prepares it if it is
+    /// not cached.
     fn object(geometry: &Geometry, index: usize) -> ObjectRef<'_, Self> {
         let SceneFrame { camera, cache, .. } = Self::frame(geometry);
         let prepare = || geometry.numbers[index].object(camera);
