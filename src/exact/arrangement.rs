@@ -1,4 +1,5 @@
-//! Divides a sub-pixel into convex cells if its boundaries are all straight lines.
+//! Divides a sub-pixel (a pixel or a square part of one) into convex cells if its boundaries are
+//! all straight lines.
 //!
 //! In: the lines that pass through the sub-pixel. Out: the cells, each with a point inside, added
 //! to [`Regions`]. The sub-pixel starts as one cell; each line in turn cuts the cells that it

@@ -1,4 +1,4 @@
-//! The boundaries of what is seen in a sub-pixel.
+//! The boundaries of what is seen in a sub-pixel (a pixel or a square part of one).
 //!
 //! In: a sub-pixel and its candidates, the objects that may be seen in it. Out: the lines and
 //! conics that may separate colours in it: silhouettes, intersections of surfaces, and
@@ -138,8 +138,8 @@ pub fn curves(
     out.len() <= max_curves
 }
 
-/// Merges curves with equal forms, such as those of objects that share planes or edges. A merged
-/// curve gets the largest error of the curves that it replaces.
+/// Merges curves with equal equations, such as those of objects that share planes or edges. A
+/// merged curve gets the largest error of the curves that it replaces.
 fn merge_equal_curves(curves: &mut Vec<Boundary>) {
     curves.sort_by_cached_key(Boundary::key);
     curves.dedup_by(|again, curve| {
@@ -309,7 +309,7 @@ impl Boundary {
                 }
             }
         }
-        // A form and its negative describe the same curve, and adding 0 turns −0 into 0.
+        // An equation and its negative describe the same curve, and adding 0 turns −0 into 0.
         let leading = factors.iter().find(|factor| **factor != 0.0);
         let sign = 1_f64.copysign(leading.copied().unwrap_or(1.0));
         factors.map(|factor| (factor * sign + 0.0).to_bits())

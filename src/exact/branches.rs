@@ -82,7 +82,7 @@ pub struct Section {
     /// The arc, and the side to which it bulges: 1 for greater y, −1 for smaller y. `None` if the
     /// section is straight.
     pub arc: Option<(f64, Arc)>,
-    /// Maximum distance in y between the track and this section.
+    /// Maximum distance in y between the curve ([`Track`]) and this approximation.
     pub error: f64,
 }
 
@@ -101,7 +101,8 @@ impl ConicGraph {
     /// functions y(x) begin or end there.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         let [p, q, r] = self.delta;
-        // Δ is px² + 2qx + r; its roots are computed without cancellation.
+        // Δ, the polynomial under the root in the formula for y, is px² + 2qx + r. Its zeros are
+        // computed without cancellation.
         let discriminant = q.times(&q).minus(&p.times(&r));
         let roots = (discriminant.hi >= 0.0).then(|| {
             let root = discriminant.sqrt().hi;
@@ -121,8 +122,8 @@ impl ConicGraph {
         delta.hi.max(0.0).sqrt()
     }
 
-    /// Returns the two functions over the range of x from `left` to `right`, or `None` if the conic
-    /// has no point at the middle x.
+    /// Returns the conic's two functions y(x) over the range of x from `left` to `right`. Returns
+    /// `None` if the conic has no point at the middle x.
     pub fn span(&self, left: f64, right: f64) -> Option<ConicSpan<'_>> {
         let x = [left, 0.5 * (left + right), right];
         let middle = self.root(x[1]);
@@ -182,10 +183,10 @@ impl ConicGraph {
 }
 
 impl<'a> ConicSpan<'a> {
-    /// Returns the conic's branch with the sign `side` (1 or −1) as a track, and its section over
-    /// the range of x. Returns `None` if the branch is not finite or lies outside the pixel. The
-    /// section is `None` if the branch turns too much to be represented by one arc; the caller then
-    /// halves the range.
+    /// Returns the conic's branch with the sign `side` (1 or −1) as a function y(x) ([`Track`]),
+    /// and an arc or chord that approximates it ([`Section`]). Returns `None` if the branch is not
+    /// finite or lies outside the pixel. The section is `None` if the branch turns too much to be
+    /// represented by one arc; the caller then halves the range.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
@@ -226,9 +227,9 @@ impl<'a> ConicSpan<'a> {
         Some((Track::Branch { graph, side }, section))
     }
 
-    /// Returns the arc with the ends `ends` and the end tangents of the function with the sign
-    /// `side`, and an error bound of the area between arc and chord. Returns `None` if the tangents
-    /// do not intersect between the ends, or if the arc turns by more than 120°.
+    /// Returns the arc with the ends `ends` and the end tangents of the conic's branch with the
+    /// sign `side` (1 or −1), and an error bound of the area between arc and chord. Returns `None`
+    /// if the tangents do not intersect between the ends, or if the arc turns by more than 120°.
     fn arc(&self, ends: [DVec2; 2], side: f64) -> Option<(Arc, f64)> {
         let Self { graph, roots, .. } = self;
         let [start, end] = ends;
@@ -347,7 +348,7 @@ impl Tangents {
 }
 
 impl Track<'_> {
-    /// Returns the track of a line, or `None` if the line is vertical or steeper than
+    /// Returns a line as a function y(x). Returns `None` if the line is vertical or steeper than
     /// [`MAX_SLOPE`].
     pub fn of_line(line: &BoundaryLine) -> Option<Self> {
         let [a, b, c] = line.factors;
@@ -355,7 +356,7 @@ impl Track<'_> {
         (slope.abs() <= MAX_SLOPE && start.is_finite()).then_some(Self::Line { slope, start })
     }
 
-    /// Computes y of the track at `x`. If the track is a branch of a conic, the branch must have a
+    /// Computes y of the curve at `x`. If the curve is a branch of a conic, the branch must have a
     /// point at `x`.
     pub fn y(&self, x: f64) -> f64 {
         match self {
@@ -365,15 +366,14 @@ impl Track<'_> {
         }
     }
 
-    /// Returns the straight section of the track from x = `left` to x = `right`.
+    /// Returns the chord of the curve from x = `left` to x = `right`.
     pub fn straight(&self, left: f64, right: f64) -> Section {
         Section::straight([left, 0.5 * (left + right), right].map(|x| self.y(x)))
     }
 }
 
 impl Section {
-    /// Returns a straight section with the given y at the left end, in the middle, and at the right
-    /// end.
+    /// Returns a chord with the given y at the left end, in the middle, and at the right end.
     pub fn straight(y: [f64; 3]) -> Self {
         Self {
             y,
@@ -382,10 +382,10 @@ impl Section {
         }
     }
 
-    /// Returns an upper bound of the section's y at `x` if `up` is 1, and a lower bound if `up` is
-    /// −1. On the side to which the arc bulges, the bound follows the two tangents; on the other
-    /// side, it follows the chord. The section's error is included. `x` must be `left`, `right`, or
-    /// the x of a control point.
+    /// Returns a bound of the curve's y at `x`: an upper bound if `up` is 1, and a lower bound if
+    /// `up` is −1. On the side to which the arc bulges, the bound follows the arc's two end
+    /// tangents; on the other side, it follows the chord. The approximation error is included. `x`
+    /// must be `left`, `right`, or the x of a control point.
     fn hull(&self, up: f64, x: f64, left: f64, right: f64) -> f64 {
         let chord = |a: DVec2, b: DVec2| {
             if b.x > a.x {
@@ -408,13 +408,13 @@ impl Section {
         at + up * self.error
     }
 
-    /// Returns an upper bound of this section's y minus that of `other` over the range of x from
-    /// `left` to `right`. If it is negative, this section is certainly below `other`.
+    /// Returns an upper bound of this curve's y minus that of `other` over the range of x from
+    /// `left` to `right`. If the bound is negative, this curve is certainly below `other`.
     pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
         let controls = [self, other].map(|section| section.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
-        // The bounds of both sections are straight between these values of x, so that their
-        // difference is greatest at one of them.
+        // The bounds of both curves are linear in x between the ends and the control points, so
+        // that their difference is greatest at one of these x.
         let hulls = places
             .into_iter()
             .flatten()
@@ -424,12 +424,12 @@ impl Section {
         hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// Returns two bounds for arcs over the same range of x: how far this section rises above
-    /// `other`, and how far the two are apart in y. Returns `None` unless both are arcs that bulge
-    /// to the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
+    /// Returns two bounds for arcs over the same range of x: how far this arc rises above `other`,
+    /// and how far the two are apart in y. Returns `None` unless both curves are arcs that bulge to
+    /// the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
     ///
     /// Derivation: compare points with the same curve parameter, with heights measured from the
-    /// direction of this section's chord. If the weights are equal, a point of each arc is the same
+    /// direction of this arc's chord. If the weights are equal, a point of each arc is the same
     /// weighted mean of that arc's three control points. A difference in x counts times the slope
     /// of the steepest tangent. A difference in weight moves a point by at most this difference
     /// times the point's distance from the control point.
@@ -468,13 +468,14 @@ impl Section {
         Some([rise + off, apart + off])
     }
 
-    /// Returns the integral of y over x. `left` and `right` must be the ends of the section.
+    /// Returns the integral of y over x from `left` to `right`, which must be the ends of the
+    /// curve.
     pub fn integral(&self, left: f64, right: f64) -> f64 {
         let chord = 0.5 * (right - left) * (self.y[0] + self.y[2]);
         chord + self.arc.map_or(0.0, |(bulge, arc)| bulge * arc.area())
     }
 
-    /// Returns an upper bound of the distance in y between two sections over the same range of x.
+    /// Returns an upper bound of the distance in y between two curves over the same range of x.
     /// Returns infinity unless both are straight or both are arcs that bulge to the same side. The
     /// bound is tight if the curves are nearly equal.
     pub fn distance(&self, other: &Self) -> f64 {

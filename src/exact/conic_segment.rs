@@ -270,11 +270,12 @@ fn over_one_square(area: f64, sign: f64) -> BoundedSum {
     }
 }
 
-/// The ends of an arc's pieces, and the sum of the integrals over the pieces' segments.
+/// The ends of the pieces into which an arc is cut, and the sum of the integrals over the segments
+/// between the pieces and their chords.
 struct Chords {
     points: Vec<DVec2>,
     sum: BoundedSum,
-    /// Maximum area of a piece's segment that is neglected, in square pixels.
+    /// Maximum area between a piece of the arc and its chord that is neglected, in square pixels.
     neglected: f64,
 }
 

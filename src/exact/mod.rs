@@ -114,7 +114,7 @@ const BOARD_PIXEL_WORK: u64 = 10;
 /// light, and the pixel has the mean of each value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactPixel<const N: usize = 3> {
-    /// Mean of each value.
+    /// Mean of each of the colour's values over the pixel's area.
     pub mean: [f64; N],
     /// Maximum absolute error of each mean.
     pub bound: f64,
@@ -132,10 +132,10 @@ pub struct Integrator<'a, const N: usize = 3> {
     work: PictureWork,
 }
 
-/// A square part of a pixel, whose colour shares are computed separately.
+/// A square part of a pixel (a piece), for which the colours' shares are computed separately.
 struct PixelPiece {
     sub_pixel: SubPixel,
-    /// Objects that may be seen in the piece.
+    /// Objects that may be seen in this part of the pixel.
     candidates: Vec<VisibilityCandidate>,
     shares: Shares,
     state: PieceState,
@@ -144,27 +144,27 @@ struct PixelPiece {
 /// State of the computation of a part of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PieceState {
-    /// Nothing is computed yet, because too many curves pass through the piece or the budget is
-    /// spent.
+    /// Nothing is computed yet, because too many curves pass through this part of the pixel or the
+    /// budget is spent.
     Crowded,
     Computed,
-    /// The piece is computed and will not be quartered, because quartering the piece that contains
-    /// it reduced the bound by less than half.
+    /// The shares of this part are computed, and it will not be quartered: quartering the part that
+    /// contains it reduced the error bound by less than half.
     Final,
 }
 
 impl PixelPiece {
-    /// Returns the area of the piece as a fraction of the pixel.
+    /// Returns the area of this part as a fraction of the pixel.
     fn area(&self) -> f64 {
         self.sub_pixel.side * self.sub_pixel.side
     }
 
-    /// Returns the maximum error of the pixel's mean that this piece may cause.
+    /// Returns the maximum error of the pixel's mean that this part of the pixel may cause.
     fn bound(&self) -> f64 {
         self.area() * self.shares.bound
     }
 
-    /// Returns the memory of the piece's vectors, in bytes. The memory of the piece itself is
+    /// Returns the memory of this part's vectors, in bytes. The memory of the part itself is
     /// counted with the queue.
     fn memory(&self) -> usize {
         let candidates = self.candidates.capacity() * size_of::<VisibilityCandidate>();
@@ -226,7 +226,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut curves = Vec::new();
         let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
-        // Checkerboard pixels that are computed alone, because the batches are not accurate enough.
+        // Checkerboard pixels that are computed alone, because too many lines cross them or the
+        // result of their batch was not accurate enough.
         let mut deferred = Vec::new();
         let is_over = || cancel.load(Relaxed) || self.work.is_exceeded();
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
@@ -250,7 +251,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // `Quartering::new` sets no limit on candidates, so that no part is crowded.
+                // `Quartering::new` sets no limit on the number of objects in a part, so that no
+                // part is crowded.
                 PicturePart::Crowded { .. } => {
                     unreachable!("every part of an exact picture is quartered")
                 }
@@ -268,10 +270,10 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Calls `show` with each area in which only one object is seen, and with each other pixel,
-    /// together with the shares of the area that the objects cover, by palette slot. The world must
-    /// be made by [`World::by_object`], so that slots stand for objects. Above the work limit, a
-    /// pixel's middle counts for the whole pixel. Returns whether all shares are known to within
-    /// 1e-6.
+    /// together with the shares of the area that the objects cover, by palette index. The world
+    /// must be made by [`World::by_object`], so that palette indices stand for objects. Above the
+    /// work limit, a pixel's middle counts for the whole pixel. Returns whether all shares are
+    /// known to within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -300,7 +302,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         is_exact
     }
 
-    /// Computes the mean of the pixel (`x`, `y`), in which only the candidates may be seen.
+    /// Computes the mean of the pixel (`x`, `y`). `candidates` are the objects that may be seen in
+    /// it.
     fn pixel(
         &self,
         x: u32,
@@ -340,8 +343,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue of pieces grows by copying to twice the memory; the old memory
-                // exists until then.
+                // A full queue of parts of the pixel grows by copying to twice the memory; the old
+                // memory exists until then.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -438,8 +441,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film.set(pixel.x, pixel.y, self.mean(&shares, bound));
     }
 
-    /// Computes the shares of a piece. If too many curves pass through the piece or the budget is
-    /// spent, the piece is [`Crowded`](PieceState::Crowded), with a bound of 1.
+    /// Computes the colours' shares in a part of a pixel. If too many curves pass through the part
+    /// or the budget is spent, the result is [`Crowded`](PieceState::Crowded), with a bound of 1.
     fn piece(
         &self,
         sub_pixel: SubPixel,

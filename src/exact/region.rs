@@ -36,8 +36,8 @@ const BIG_RAY_WORK: f64 = 200.0;
 /// Shares of the colours in a pixel or sub-pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
-    /// Slots (indices) of the world's palette, each with the share of the sub-pixel's area that
-    /// shows its colour. The shares add up to 1 except for rounding.
+    /// Indices into the world's palette, each with the share of the sub-pixel's area that shows its
+    /// colour. The shares add up to 1 except for rounding.
     pub by_slot: Vec<(usize, f64)>,
     /// Maximum share of the sub-pixel that may have the wrong colour.
     pub bound: f64,
@@ -80,7 +80,8 @@ pub struct Region<'a> {
 }
 
 impl<'a> Regions<'a> {
-    /// Starts the sum for a sub-pixel in which only `candidates` may be seen.
+    /// Starts the sum of the colours' shares for a sub-pixel. `candidates` are the objects that may
+    /// be seen in it.
     pub fn new(
         world: &'a World,
         sub_pixel: SubPixel,
@@ -108,7 +109,7 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         }
         let Some(at) = self.board(object) else {
-            // This is unreachable, because only checkerboards have two colours.
+            // This is unreachable: only checkerboards have two colours.
             self.add_doubtful_area(region.area);
             return self.shares.add(first, region.area);
         };

@@ -59,8 +59,9 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     for curve in curves {
         match curve {
             Boundary::Line(line) => {
-                // The line is at most √2 long and is displaced by at most 2·`line.rad` (see
-                // `arrangement`), and 2·√2 < 3. `ROUNDING` covers the rounding errors of areas.
+                // The line is at most √2 long. It is displaced by at most 2·`line.rad`, because the
+                // larger of its factors of x and y is at least 1/2, and 2·√2 < 3. `ROUNDING` covers
+                // the rounding errors of areas.
                 regions.add_doubtful_area(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
@@ -87,8 +88,9 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // Each slab may keep one pair of neighbours that may cross in this area, and all such areas
-    // together are at most the pixel's tolerance.
+    // Area up to which two neighbouring curves of a slab may overlap without a cut. If there is one
+    // such pair in each of the `MAX_ADDED_SLABS` slabs, their areas add up to the pixel's
+    // tolerance.
     let doubtful_limit = regions.budget.tolerance / MAX_ADDED_SLABS as f64;
     let mut all = Slabs {
         lines,
@@ -215,9 +217,9 @@ fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right
     });
 }
 
-/// Returns the x at which to cut a slab in which two tracks may cross. This is their crossing if
-/// their order at one end of the slab differs from the order in the middle; otherwise, it is the
-/// middle.
+/// Returns the x at which to cut a slab (a vertical strip) in which two curves may cross. This is
+/// the x of their crossing if their order at one end of the slab differs from the order in the
+/// middle; otherwise, it is the middle.
 fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, right: f64) -> f64 {
     let middle = 0.5 * (left + right);
     let gap = |x: f64| upper.y(x) - lower.y(x);

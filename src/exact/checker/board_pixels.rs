@@ -39,7 +39,8 @@ pub(in crate::exact) struct BoardBatches {
     buffer: StripBuffer,
 }
 
-/// A queue of pixels that are crossed by the same numbers of lines of the board's two families.
+/// A queue of pixels that are crossed by the same number of lines between the board's columns, and
+/// by the same number of lines between its rows.
 #[derive(Debug, Default)]
 struct Batch {
     /// The queued pixels. A queue of [`PIXELS`] pixels is computed and emptied at once.
@@ -96,8 +97,8 @@ impl BoardBatches {
 
 impl Batch {
     /// Computes the queued pixels, calls `emit` with each and its integral, and empties the queue.
-    /// `crossing` has the numbers of lines of the board's two families that cross each pixel, the
-    /// smaller number first.
+    /// `crossing` has the number of lines between columns of the board that cross each pixel, and
+    /// the number of those between rows, the smaller number first.
     fn compute(
         &mut self,
         crossing: [usize; 2],

@@ -1,9 +1,10 @@
 //! The lines that one edge of a polygon crosses, and the direct sum over these crossings.
 //!
-//! In: the series X along an edge ([`green`](super::green) derives it), and the point where the
-//! edge crosses its first line. Out: the alternating sum Σ (−1)^j·X over the crossings j, with a
-//! bound on truncation and rounding errors. The compiler vectorises the sum. It is divided into
-//! blocks of consecutive crossings, each of which uses as few terms of X as its depth allows.
+//! In: the series X along an edge, the edge's term of a board's integral at a crossed line
+//! ([`green`](super::green) derives it), and the point where the edge crosses its first line. Out:
+//! the alternating sum Σ (−1)^j·X over the crossings j, with a bound on truncation and rounding
+//! errors. The compiler vectorises the sum. It is divided into blocks of consecutive crossings,
+//! each of which uses as few terms of X as its depth allows.
 
 use super::homography::{BoundedSum, UNIT};
 use super::special::{reduce_double, waves};
@@ -36,14 +37,15 @@ const MAX_BLOCK: f64 = 4096.0;
 /// to sum j mod `LANES`. The compiler vectorises the loop, and the widest vectors hold eight `f64`.
 /// The number is even, so that all terms of a sum have one sign.
 const LANES: usize = 8;
-/// Number of crossings of an edge after which the coordinate t along the edge ([`EdgeSeries`]) is
-/// computed anew in double-double. In between, t advances in `f64`, with an error that grows with
-/// the number of steps. A larger number would make the error larger; a smaller one would use the
-/// slow double-double more often.
+/// Number of crossings of an edge after which the coordinate t along the edge is computed anew in
+/// double-double. In between, t advances in `f64`, with an error that grows with the number of
+/// steps. A larger number would make the error larger; a smaller one would use the slow
+/// double-double more often.
 const CHUNK: usize = 64;
 
-/// The series X along an edge, where t is the coordinate along the edge, m the depth, and A_k are
-/// the periodic Euler polynomials ([`waves`]):
+/// The series X along an edge, the edge's term of a board's integral at a crossed line. With the
+/// coordinate t along the edge, the depth m, and the periodic Euler polynomials A_k ([`waves`]), it
+/// is
 ///
 /// X = Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … `terms`
 pub(super) struct EdgeSeries {
@@ -107,17 +109,17 @@ pub(super) struct LineCrossings {
     /// double-double. Their unit is a square of the board, half a period (half a turn) of the
     /// square wave; whole turns are subtracted.
     pub reduced: [Double; 2],
-    /// Depth m at the first line.
+    /// Depth m of the edge at the first line that it crosses.
     pub depth: f64,
-    /// Step of the depth m from line to line.
+    /// Step of the depth m from one crossed line to the next.
     pub rise: f64,
-    /// Number of lines, an integer; infinite if the edge ends on the horizon.
+    /// Number of crossed lines, an integer; infinite if the edge ends on the horizon.
     pub count: Double,
 }
 
 impl LineCrossings {
-    /// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over the first
-    /// `lines` crossings, crossing by crossing, in blocks.
+    /// Computes the alternating sum Σ (−1)^j·X over the first `lines` crossings j, one by one, in
+    /// blocks. X is an edge's term of a board's integral at a crossed line ([`EdgeSeries`]).
     ///
     /// Over each block, the depth m grows by half, unless that takes fewer than [`MIN_BLOCK`] or
     /// more than [`MAX_BLOCK`] crossings. Each block uses as few terms of X as `tolerance`, the
@@ -188,8 +190,9 @@ impl LineCrossings {
         reduce_double(&t.plus(&stride.times(j)))
     }
 
-    /// Returns the step of t from line to line plus 1, in half turns, reduced by whole turns. The
-    /// added half turn stands for the sign (−1)^j, which alternates from crossing to crossing.
+    /// Returns the step of the coordinate t from crossing to crossing, plus 1, in half turns,
+    /// reduced by whole turns. The added half turn stands for the sign (−1)^j, which alternates
+    /// from crossing to crossing.
     pub(super) fn alternating_step(&self) -> Double {
         reduce_double(&self.reduced[1].plus(&Double::from_f64(1.0)))
     }
@@ -215,9 +218,9 @@ impl LineCrossings {
     }
 }
 
-/// Computes Σ (−1)^j·X for the series X ([`EdgeSeries`]) over `count` crossings that follow the
-/// first `done` crossings of the edge, with j = 0 at the first of them. Uses at least `terms` terms
-/// of X.
+/// Computes the sum Σ (−1)^j·X over `count` crossings that follow the first `done` crossings of an
+/// edge, with j = 0 at the first of them. X is the edge's term of a board's integral at a crossed
+/// line ([`EdgeSeries`]), of which at least `terms` terms are used.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

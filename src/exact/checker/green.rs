@@ -137,9 +137,9 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // Term k of Ψ has at most 3k + 4 roundings and is less than 2^−k of term 0. The
-            // roundings add up to Σ (3k + 4)/2^k = 14 roundings of term 0. The product with K has
-            // two more.
+            // Term k of the potential Ψ has at most 3k + 4 roundings and is less than 2^−k of term
+            // 0. The roundings add up to Σ (3k + 4)/2^k = 14 roundings of term 0. The product with
+            // the density factor K has two more.
             sum.bound += (16.0 * UNIT + 2.0 * board.density_error) * size;
         }
     }
@@ -196,9 +196,9 @@ fn terms(
     best
 }
 
-/// Returns two values at a corner: Ψ, the potential whose differences along the edges contribute to
-/// the integral, up to the order `terms`; and J = K/m³, to which the rounding error of Ψ is
-/// proportional.
+/// Returns two values at a corner of a polygon. The first is Ψ, up to the order `terms`: a
+/// potential whose differences along the edges contribute to the integral. The second is the
+/// density J = K/m³, to which the rounding error of Ψ is proportional.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),
@@ -241,36 +241,39 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 /// changes more along the edge, and c is the other; m is the depth. The sum over the edge's
 /// crossings runs over the lines of constant c.
 struct Edge {
-    /// Sign, +1 or −1, with which the edge's integral ρ·∫ s(c) dX is added to the polygon's
-    /// integral. It is +1 if t is b and the polygon's boundary runs from the near to the far end,
-    /// or if neither is true.
+    /// Sign, +1 or −1, with which the edge's integral is added to the polygon's. It is +1 if both
+    /// of the following hold or neither does: the polygon's boundary runs from the edge's near end
+    /// to its far end; and t, the coordinate that changes more along the edge, is b.
     sign: f64,
-    /// Factor of the difference of Ψ, the [`potential`], between the edge's ends in the polygon's
-    /// integral: 1 if the coordinate t is b, and 0 if t is a.
+    /// Factor of the difference of the potential Ψ ([`potential`]) between the edge's ends in the
+    /// polygon's integral. It is 1 if t, the coordinate that changes more along the edge, is b, and
+    /// 0 if t is a.
     potential: f64,
     c: f64,
     t: f64,
     depth: f64,
-    /// Values of the coordinates c and t and of the depth m at the far end. `None` if the far end
-    /// is on the horizon.
+    /// Values of the coordinates c and t ([`Edge`]) and of the depth m at the far end. `None` if
+    /// the far end is on the horizon.
     end: Option<(f64, f64, f64)>,
-    /// Number of lines of the board on which the coordinate c is constant and which the edge
-    /// crosses. Infinite if the edge ends on the horizon.
+    /// Number of lines of the board that the edge crosses and on which the coordinate c ([`Edge`])
+    /// is constant. Infinite if the edge ends on the horizon.
     count: Double,
-    /// Change of the coordinate t from the near to the far end. Infinite if the far end is on the
-    /// horizon.
+    /// Change of t, the coordinate that changes more along the edge, from the near to the far end.
+    /// Infinite if the far end is on the horizon.
     length: f64,
-    /// Slope dc/dt of the edge in the board's plane; ρ in formulas.
+    /// Slope dc/dt of the edge, where c and t are its coordinates in the board's plane ([`Edge`]).
     rho: f64,
-    /// Derivative dm/dt of the depth m along the edge.
+    /// Derivative dm/dt of the depth m along the edge, where t is the coordinate that changes more.
     climb: f64,
-    /// Partial derivative ∂m/∂t of the depth m in the board's plane, with constant c.
+    /// Partial derivative ∂m/∂t of the depth m in the board's plane, where t is the coordinate that
+    /// changes more along the edge.
     slope: f64,
-    /// Change of the coordinate t from one crossed line to the next.
+    /// Change of t, the coordinate that changes more along the edge, from one crossed line to the
+    /// next.
     stride: Double,
     /// Change of the depth m from one crossed line to the next.
     rise: f64,
-    /// Sign of the change of the coordinate c from the near to the far end: +1 or −1.
+    /// Sign, +1 or −1, of the change of the coordinate c ([`Edge`]) from the near to the far end.
     sense: f64,
 }
 
@@ -330,9 +333,9 @@ impl Edge {
         })
     }
 
-    /// Computes the edge's contribution ρ·∫ s(c) dX to the polygon's integral, with the square wave
-    /// s and the series X, from the near to the far end. `tolerance` limits the truncation error of
-    /// the sum over crossings.
+    /// Computes the edge's contribution to the polygon's integral, ρ·∫ s(c) dX from the near to the
+    /// far end, with the slope ρ = dc/dt, the square wave s and the series X ([`EdgeSeries`]).
+    /// `tolerance` limits the truncation error of the sum over crossings.
     fn integral(
         &self,
         board: &Homography,
@@ -372,9 +375,9 @@ impl Edge {
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // X at each end has 14 roundings of its first term: term k has 3k + 4 roundings and is less
-        // than 2^−k of the first. The constant covers both ends. Every term is also proportional to
-        // K, which has an error of its own.
+        // The series X at each end of the edge has 14 roundings of its first term: term k has 3k +
+        // 4 roundings and is less than 2^−k of the first. The constant covers both ends. Every term
+        // is also proportional to the density factor K, which has an error of its own.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

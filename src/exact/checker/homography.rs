@@ -94,8 +94,8 @@ pub(super) struct Corner {
     pub depth: f64,
 }
 
-/// The part of a convex polygon of the picture that shows the floor (L ≥ 0), with the polygon's
-/// segment on the horizon.
+/// The part of a convex polygon of the picture that shows the floor, with the polygon's segment on
+/// the horizon.
 #[derive(Debug)]
 pub(super) struct VisiblePart {
     pub polygon: Vec<DVec2>,
@@ -219,7 +219,8 @@ impl Homography {
         }
     }
 
-    /// Returns the part of a convex polygon that shows the floor, where L ≥ 0.
+    /// Returns the part of a convex polygon that shows the floor, where the form L (`below`) is not
+    /// negative.
     pub(super) fn visible(&self, polygon: &[DVec2]) -> VisiblePart {
         let (mut above, mut visible) = (Vec::new(), Vec::with_capacity(polygon.len() + 1));
         let level = |at| form(&self.below, at);
@@ -230,9 +231,9 @@ impl Homography {
         }
     }
 
-    /// Returns the floor and the depth at a point of the visible part. The point counts as on the
-    /// horizon if it is an end of the part's segment on the horizon, if L is within the rounding
-    /// tolerance of 0, or if the floor's coordinates overflow.
+    /// Returns the floor and the depth at a point of the visible part of a polygon. The point
+    /// counts as on the horizon if it is an end of the part's segment on the horizon, if the form L
+    /// (`below`) is within the rounding tolerance of 0, or if the floor's coordinates overflow.
     pub(super) fn corner(&self, at: DVec2, visible: &VisiblePart) -> Corner {
         let is_on_horizon = |horizon: [DVec2; 2]| horizon.contains(&at);
         let level = if visible.horizon.is_some_and(is_on_horizon) {
@@ -264,8 +265,8 @@ impl Homography {
     }
 
     /// Returns one coordinate of the floor that the point `at` shows, in squares, and its maximum
-    /// rounding error. `axis` is 0 for a and 1 for b; `level` is the value of L at the point and
-    /// must be greater than 0.
+    /// rounding error. `axis` is 0 for a and 1 for b. `level` is the value of the form L (`below`)
+    /// at the point and must be greater than 0.
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);

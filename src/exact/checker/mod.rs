@@ -54,8 +54,9 @@ const MAX_CUT_SQUARES: f64 = 24.0;
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {
-    /// Integrates the board's sign s(a)·s(b) over the part of a convex polygon that shows the
-    /// floor, in square pixels. The result does not depend on the polygon's orientation.
+    /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over the part of
+    /// a convex polygon that shows the floor, in square pixels. The result does not depend on the
+    /// polygon's orientation.
     pub fn over(&self, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
         let visible = self.visible(polygon);
         if visible.polygon.len() < 3 {
@@ -64,8 +65,8 @@ impl Homography {
         if self.squares(&visible.polygon) <= MAX_CUT_SQUARES {
             return near::sum(self, &visible.polygon, budget).within(polygon);
         }
-        // Squares up to the depth m = `depth` count as near. Beyond it, m changes little from
-        // square to square.
+        // Squares up to the depth m = `depth` count as near. At greater depths, m changes little
+        // from square to square.
         let [p, q] = self.slope;
         let depth = NEAR_SQUARES * (p.abs() + q.abs());
         let nearness = |at: DVec2| depth.min(MAX_DEPTH) * form(&self.below, at) - 1.0;

@@ -1,10 +1,11 @@
 //! The board's integral over near squares: each square is cut out of the picture.
 //!
-//! In: a convex polygon of the picture on which L > 0. Out: the sum of the signed areas of the
-//! squares in it, in square pixels, with an error bound. The lines of one of the board's two
-//! families cut the polygon into rows, and the lines of the other family cut each row into squares
-//! (`clip`). The bound is the sum of each cut's position error times its length, plus the rounding
-//! errors of the areas.
+//! In: a convex polygon of the picture that does not reach the horizon. Out: the sum of the signed
+//! areas of the squares in it, in square pixels, with an error bound. The board has two families of
+//! lines, those between columns and those between rows of squares. The lines of one family cut the
+//! polygon into strips, and the lines of the other family cut each strip into squares (`clip`). The
+//! bound is the sum of each cut's position error times its length, plus the rounding errors of the
+//! areas.
 
 use glam::DVec2;
 
@@ -83,7 +84,8 @@ struct Cutter {
     /// Numbers of the next strip and of the last one; `None` if the polygon is empty or a
     /// coordinate is not below [`MAX_SQUARE`].
     strips: Option<(i64, i64)>,
-    /// Maximum number of corners of `rest`; above it, `rest` is not cut any further.
+    /// Maximum number of corners of the part of the polygon that is not yet cut off (`rest`). With
+    /// more corners, the part is not cut any further.
     too_many: usize,
 }
 
@@ -100,7 +102,8 @@ impl Cutter {
         }
     }
 
-    /// Starts cutting `polygon`: copies it to `rest`, and finds its first and last strip.
+    /// Starts cutting `polygon`: copies it to `rest`, the part that is not yet cut off, and finds
+    /// its first and last strip.
     fn start(&mut self, polygon: &[DVec2]) {
         self.rest.clear();
         self.rest.extend(polygon);

@@ -208,7 +208,8 @@ const EXPANSION_TERMS: usize = 16;
 type Expansion = [Complex; EXPANSION_TERMS];
 static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
 
-/// Returns F_3(y), F_4(y) and F_5(y), where F_s(y) = ∫_0^∞ e^(iyv)·(1 + v)^(−s) dv.
+/// Returns the exponential integrals F_3(y), F_4(y) and F_5(y), where F_s(y) = ∫_0^∞ e^(iyv)·(1 +
+/// v)^(−s) dv.
 pub(super) fn integrals(y: f64) -> [Complex; 3] {
     let third = third(y);
     let fourth = next(y, third, 3.0);
@@ -232,8 +233,8 @@ fn third(y: f64) -> Complex {
     }
 }
 
-/// Returns F_(s+1)(y) = (1 + iy·F_s(y))/s (DLMF 8.19.12), where `integral` is F_s(y) and `order` is
-/// s.
+/// Returns the exponential integral F_(s+1)(y) = (1 + iy·F_s(y))/s (DLMF 8.19.12), where `integral`
+/// is F_s(y) and `order` is s.
 fn next(y: f64, integral: Complex, order: f64) -> Complex {
     [(1.0 - y * integral[1]) / order, y * integral[0] / order]
 }
@@ -323,7 +324,7 @@ fn expansions() -> Vec<Expansion> {
 /// steps of the recurrence F_s+1 = (1 − z·F_s)/s, where z = −iy.
 fn power_series(y: f64) -> Complex {
     let first = first(y);
-    // F_2 = 1 − z·F_1, with −z = iy.
+    // The recurrence for s = 1 is F_2 = 1 − z·F_1, with −z = iy.
     let second = [1.0 - y * first[1], y * first[0]];
     [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
 }

@@ -37,9 +37,9 @@ use super::{
 };
 use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
-/// Maximum number of lines that cut a pixel into strips. A pixel with more lines in both of the
-/// board's families is not computed in lanes. With 6 lines, the buffer of 34 sides of 320 bytes
-/// each stays in the first-level cache.
+/// Maximum number of lines that cut a pixel into strips. A pixel in which both of the board's
+/// families of lines have more lines is computed alone. With 6 lines, the buffer of 34 sides of 320
+/// bytes each stays in the first-level cache.
 pub(super) const MAX_STRIP_LINES: usize = 6;
 
 /// Number of pixels that are computed at once. The widest vectors hold as many `f64`.
@@ -147,8 +147,9 @@ impl BoardLanes {
         self.sign[place] = if *odd { -wave } else { wave };
     }
 
-    /// Computes the integral of the board's sign over each pixel. `lines` has the numbers of lines
-    /// of the two families that cross every pixel, the smaller number first.
+    /// Computes the integral of the board's sign over each pixel. `lines` has the number of lines
+    /// between columns of the board that cross every pixel, and the number of those between rows,
+    /// the smaller number first.
     pub fn sums(&self, lines: [usize; 2], buffer: &mut StripBuffer) -> LaneSums {
         sums_simd(self, lines, buffer)
     }
@@ -198,9 +199,9 @@ impl BoardLanes {
         }
     }
 
-    /// Adds to `out` the maximum distance, in pixels, between the true line `n` of a family and the
-    /// computed line. The error consists of the forms' own errors, three roundings of their
-    /// factors, and four roundings of their values.
+    /// Adds to `out` the maximum distance, in pixels, between the true line number `n` of one
+    /// family of the board's lines and the computed line. The error consists of the forms' own
+    /// errors, three roundings of their factors, and four roundings of their values.
     #[inline(always)]
     fn add_off(&self, across: &FormRows, n: f64, out: &mut Lanes) {
         let below = &self.below;
@@ -320,8 +321,9 @@ impl BoardLanes {
         failed
     }
 
-    /// Returns twice the signed area of the strips that lies beyond the line `line` of the family
-    /// with more lines. `line` is counted from the first square of the pixel.
+    /// Returns twice the signed area of the strips that lies beyond one line of the board's family
+    /// with more lines. `line` is the number of this line, counted from the first square of the
+    /// pixel.
     #[inline(always)]
     fn beyond(&self, line: f64, sides: &[Sides]) -> Lanes {
         let mut area = [0.0; PIXELS];

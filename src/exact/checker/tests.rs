@@ -370,9 +370,9 @@ fn widest(focal: f64, degrees: f64) -> PixelView {
     }
 }
 
-/// In the widest views, a and b are nearly proportional. Squares are very many, and a pixel sees
-/// such a narrow strip of them that rounding errors displace them visibly. The polygon is below the
-/// horizon, or reaches it.
+/// In the widest views, the board's coordinates a and b are nearly proportional. Squares are very
+/// many, and a pixel sees such a narrow strip of them that rounding errors displace them visibly.
+/// The polygon is below the horizon, or reaches it.
 #[test]
 fn the_widest_views() {
     for degrees in [30.0, 71.565_051_177, 135.0, 224.9] {

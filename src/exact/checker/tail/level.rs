@@ -1,5 +1,5 @@
-//! The sum over the crossings of an edge along which the depth m less than doubles, by Fourier
-//! modes.
+//! The sum of an edge's terms of a board's integral over the lines that the edge crosses, by
+//! Fourier modes, if the depth m less than doubles along the edge.
 
 use std::f64::consts::PI;
 
@@ -21,10 +21,11 @@ const LEVEL_TRUNCATION: f64 = 1e-3;
 /// 1.2e7, no bound changes.
 const STEADY: f64 = 3e6;
 
-/// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over the crossings of
-/// an edge along which the depth m less than doubles. `trivial` is an upper bound of the sum's
-/// absolute value, and `tolerance` limits the truncation error. Returns 0 with the bound `trivial`
-/// if the Fourier modes give no better bound or exceed the budget.
+/// Computes the alternating sum Σ (−1)^j·X over the crossings j of an edge along which the depth m
+/// less than doubles. X is the edge's term of a board's integral at a crossed line
+/// ([`EdgeSeries`]). `trivial` is an upper bound of the sum's absolute value, and `tolerance`
+/// limits the truncation error. Returns 0 with the bound `trivial` if the Fourier modes give no
+/// better bound or exceed the budget.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -39,7 +40,7 @@ pub(super) fn sum(
     let (w, u) = (start / all.rise, 1.0 / start);
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) * u * u * u, |a| a * (u / PI));
     let neglected = (LEVEL_TRUNCATION * budget.tolerance).max(LATER_TERMS_SHARE * tolerance);
-    // The Fourier mode n is at most 8/π²·n^−3 times `trivial`.
+    // The Fourier mode n is at most 8/π²·n^−3 times `trivial`, the bound of the whole sum.
     let Some((last, beyond)) = last_mode(trivial, neglected, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };

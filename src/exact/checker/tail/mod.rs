@@ -74,9 +74,10 @@ const CROSSING_WORK: f64 = 1.0 / 16.0;
 /// about 50 ns. Only odd numbers have modes, so that a mode costs twice this value.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
-/// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over all crossings of
-/// an edge. `tolerance` limits the truncation error. Returns 0 with an upper bound of the sum's
-/// absolute value if the sum is negligible or the budget does not afford it.
+/// Computes the alternating sum Σ (−1)^j·X over all crossings j of an edge, where X is the edge's
+/// term of a board's integral at a crossed line ([`EdgeSeries`]). `tolerance` limits the truncation
+/// error. Returns 0 with an upper bound of the sum's absolute value if the sum is negligible or the
+/// budget does not afford it.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,

@@ -1,5 +1,6 @@
-//! The sum over the crossings of an edge along which the depth m at least doubles, by Fourier
-//! modes. It starts at a depth from which the expansion of the Lerch series is accurate.
+//! The sum of an edge's terms of a board's integral over the lines that the edge crosses, by
+//! Fourier modes, if the depth m at least doubles along the edge. The sum starts at a depth from
+//! which the expansion of the Lerch series is accurate.
 
 use std::{f64::consts::PI, ops::RangeInclusive};
 
@@ -49,12 +50,12 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     let kappa =
         (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND_LAST_SHARE * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
-    // From the depth `nothing` on, the remaining sum is negligible. The first term of X is at most
-    // ½/π of its factor.
+    // From the depth `nothing` on, the remaining sum is negligible. The first term of the series X
+    // is at most ½/π of its factor.
     let nothing = (factor * 0.25 / PI / g / (0.5 * SKIPPED_SHARE * tolerance)).sqrt() + g;
-    // `steep` and `fourth` are depths at which two errors reach their limits: the truncation error
-    // of a mode falls as w^−5, and the sum of the terms of X from A_5 on as m^−5. The factor of A_5
-    // is 0 if X has fewer terms.
+    // `steep` and `fourth` are depths at which two errors reach their limits. The truncation error
+    // of a mode falls as w^−5, and the sum of the terms of the series X from the fourth term on as
+    // m^−5. The factor of the fourth term is 0 if X has fewer terms.
     let steep = g * libm::pow(factor / (g * g * g) / (LERCH_SHARE * tolerance), 0.2);
     let fourth = series.factors[4].abs() / (10.0 * PI * PI * PI * PI * g);
     let fourth = libm::pow(fourth / (LATER_TERMS_SHARE * tolerance), 0.2);
@@ -62,10 +63,11 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     least.min(nothing).max(all.depth)
 }
 
-/// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over all crossings from
-/// `crossing` to the horizon, where j is 0 at `crossing`. `tolerance` limits the truncation error.
-/// Returns 0 with a bound on the sum's absolute value if the sum is negligible, or if the Fourier
-/// modes give no better bound or exceed the budget.
+/// Computes the alternating sum Σ (−1)^j·X over all crossings j from `crossing` to the horizon,
+/// where j is 0 at `crossing`. X is the edge's term of a board's integral at a crossed line
+/// ([`EdgeSeries`]). `tolerance` limits the truncation error. Returns 0 with a bound on the sum's
+/// absolute value if the sum is negligible, or if the Fourier modes give no better bound or exceed
+/// the budget.
 pub(super) fn sum_from(
     all: &LineCrossings,
     crossing: &Double,
@@ -84,7 +86,8 @@ pub(super) fn sum_from(
         return BoundedSum::zero_within(trivial);
     }
     let w = depth / g;
-    // The factor w^(−2−k) is not in the amplitudes, because the Lerch series has it.
+    // The amplitude of term k does not contain the factor w^(−2−k), because the Lerch series has
+    // it.
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) / (g * g * g), |a| a / (PI * g));
     let [first, second, third] = amplitudes.map(f64::abs);
     let u = 1.0 / w;
@@ -97,14 +100,14 @@ pub(super) fn sum_from(
     } else {
         1.0
     };
-    // Every mode is at most `largest`·n^−3, because |V_3| ≤ w^−3 + w^−2/2.
+    // Mode n is at most `largest`·n^−3, because the Lerch series V_3 is at most w^−3 + w^−2/2.
     let largest = first * all_terms * (0.5 * u2 + u3);
     let limit = 4.0 * BEYOND_LAST_SHARE * tolerance;
     let Some((last, beyond)) = last_mode(largest, limit, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };
-    // By Abel's inequality, |V_3| ≤ 2·w^−3/|1 − e^iθ|. Beyond `FIRST_MODES`, mode n is skipped if
-    // this bound is below an allowance that falls as n^−2.
+    // By Abel's inequality, the Lerch series V_3 is at most 2·w^−3/|1 − e^iθ|. Beyond
+    // `FIRST_MODES`, mode n is skipped if this bound is below an allowance that falls as n^−2.
     let allowance = skipped * 2.0 * (FIRST_MODES - 1.0);
     let threshold = 2.0 * first * all_terms * u3 / allowance;
     let threshold = threshold * threshold;
@@ -131,12 +134,14 @@ pub(super) fn sum_from(
         angle = times(angle, angle_rotation);
         n += 2.0;
     }
-    // For |θ| ≤ π, |R″|/2 ≤ 0.04, so that the truncation error of V_s is at most 0.04·s·(s +
-    // 1)·w^(−s−2). Mode n has a factor n^−3 at most, and the sum over the odd n is Σ n^−3 < 1.06.
+    // The expansion of the Lerch series V_s ends before the second derivative of the regular
+    // function R (`tail`). For |θ| ≤ π, |R″|/2 ≤ 0.04, so that the truncation error of V_s is at
+    // most 0.04·s·(s + 1)·w^(−s−2). Mode n has a factor n^−3 at most, and the sum over the odd n is
+    // Σ n^−3 < 1.06.
     let curvature = 1.06 * 0.04 * u2 * u3 * (12.0 * first + 20.0 * second * u + 30.0 * third * u2);
     let later = bound_of(MODE_TERMS + 1..=series.terms);
-    // The exponential integrals are accurate to 1e-14, or 90 roundings, and V_s certainly to 500
-    // roundings of w^−2. In mode n, the rotation of the phase adds n roundings.
+    // The exponential integrals are accurate to 1e-14, or 90 roundings, and the Lerch series V_s
+    // certainly to 500 roundings of w^−2. In mode n, the rotation of the phase adds n roundings.
     let rounding = 1000.0 * UNIT * first * all_terms * u2;
     BoundedSum {
         value,
