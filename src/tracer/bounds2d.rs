@@ -47,7 +47,7 @@ impl Object<f64> {
         face: Option<u8>,
     ) -> (Self, Option<Extent>) {
         let (object, corners) = if let Shape::Triangle(shape) = shape {
-            // A triangle's corners are at hand when it is prepared.
+            // Preparing a triangle also computes its corners.
             let (triangle, corners) = triangle::prepare(double, shape).unzip();
             (
                 Object::Convex(triangle.unwrap_or_else(Convex::nothing)),
@@ -101,8 +101,8 @@ impl Extent {
     }
 }
 
-/// Returns the bounds of a sphere from its tangents through the eye. `ahead` is the Z of all
-/// directions.
+/// Returns the bounds of a sphere from its tangents through the eye. `ahead` is the component Z of
+/// all rays' directions.
 ///
 /// In the plane of the X (or Y) axis and the Z axis, the ball is a disc with the centre (c, z) and
 /// the radius R. Two lines through the origin are tangent to it. Their slopes are
@@ -115,8 +115,9 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     if z + radius < 0.0 {
         return Hull::Behind;
     }
-    // z − R and z + R have one rounding each, so that their product has a small relative error. If
-    // the product is positive, its sum with c² has a small relative error, too.
+    // The differences z − R and z + R of the centre's z and the radius R have one rounding each, so
+    // that their product has a small relative error. If the product is positive, its sum with c²
+    // has a small relative error, too.
     let below = (z - radius) * (z + radius);
     if !(z > radius && below > SMALLEST) {
         return Hull::Unbounded;
@@ -136,7 +137,7 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
 }
 
 /// Returns the bounds of a convex hull from its corners: the slopes X and Y of its points lie
-/// between those of the corners. `ahead` is the Z of all directions.
+/// between those of the corners. `ahead` is the component Z of all rays' directions.
 fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     let mut across = [Interval {
         low: f64::INFINITY,
@@ -168,7 +169,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     if greatest < 0.0 {
         return Hull::Behind;
     }
-    // This condition is also true if an overflow has left NaN.
+    // The condition is also true if an overflow has left NaN.
     if !(least > SMALLEST && greatest >= least) {
         return Hull::Unbounded;
     }

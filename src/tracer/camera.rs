@@ -39,8 +39,8 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
 }
 
 /// Returns a + b, or 0 if the sum does not exceed the errors of a and b, at most four roundings
-/// each. With a roll of 45 degrees, components of u and v that should be 0 are such sums of
-/// opposite numbers.
+/// each. With a roll of 45 degrees, components of the camera's axes u and v that should be 0 are
+/// sums of opposite numbers.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);

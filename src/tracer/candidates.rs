@@ -30,8 +30,8 @@ pub struct VisibilityCandidate {
     pub is_whole: bool,
     /// Interval that contains the inverse depths of everything that may be seen of the object.
     pub(crate) inverse_depth: Interval,
-    /// Selects the crossings of a ray with the object that may be seen. It is the first crossing,
-    /// unless the near plane may cut the object.
+    /// Crossings of a ray with the object that may be seen: only the first one, unless the near
+    /// plane may cut the object.
     pub(crate) crossings: Crossings,
     /// Bounds of the object in the view plane. Outside of them, the object is not seen.
     pub(super) bounds: Rectangle,

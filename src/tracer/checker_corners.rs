@@ -24,10 +24,10 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// Minimum ratio of the form ℓ in a board coordinate N/ℓ ([`CheckerForms`]) to the error bound f of
-/// ℓ. With a smaller ratio, the coordinate's error counts as unbounded. With e the error bound of
-/// N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ for ratios from 4 on. The
-/// error bound uses the factor 4 instead of 4/3.
+/// Minimum ratio of the denominator ℓ of a board coordinate N/ℓ, a quotient of linear forms, to the
+/// error bound f of ℓ. With a smaller ratio, the coordinate's error counts as unbounded. With e the
+/// error bound of N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ for ratios
+/// from 4 on. The error bound uses the factor 4 instead of 4/3.
 const MIN_CLEARANCE: f64 = 4.0;
 
 /// Maximum error of a board coordinate, in squares, at which the squares that a pixel shows are

@@ -137,8 +137,9 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
-            // The error bound of ℓ covers at least 12 roundings. Twice the bound therefore also
-            // covers the roundings of the multiple of ℓ and of its difference from N₀ or N₁.
+            // The error bound of the denominator ℓ covers at least 12 roundings. Twice the bound
+            // therefore also covers the roundings of the multiple of ℓ and of its difference from
+            // the numerator N₀ or N₁.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];

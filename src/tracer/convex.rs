@@ -35,8 +35,8 @@ pub struct Convex<T: Real> {
     firsts: u8,
     /// Number of each face's plane: those of the first faces, then those of the second faces.
     planes: [u8; 6],
-    /// Whether the eye is inside the object. A ray then first hits the nearest of the first faces'
-    /// planes; if the eye is outside, the farthest.
+    /// Whether the eye is inside the object. Of the planes of the faces that rays hit first, a ray
+    /// then first hits the nearest; if the eye is outside, the farthest.
     is_inside: bool,
 }
 
@@ -94,14 +94,14 @@ impl<T: Real> Convex<T> {
         &self.forms[..usize::from(self.firsts)]
     }
 
-    /// Returns whether the eye is inside the object. A ray then first hits the nearest of the first
-    /// faces' planes.
+    /// Returns whether the eye is inside the object. Of the planes of the faces that rays hit first
+    /// ([`firsts`](Self::firsts)), a ray then first hits the nearest.
     pub fn is_inside(&self) -> bool {
         self.is_inside
     }
 
-    /// Returns the surface part of the face with the index `face`. The index counts the first faces
-    /// before the second ones.
+    /// Returns the surface part of the face with the index `face`. The faces that rays hit first
+    /// are counted before those that rays hit behind them.
     pub fn part(&self, face: usize) -> SurfacePart {
         SurfacePart::Plane(self.planes[face])
     }
@@ -147,7 +147,7 @@ impl<T: Real> Convex<T> {
     }
 
     /// Returns the ray's crossing with the object behind the first one. The ray must hit the
-    /// object. Returns `None` if the object has no second faces.
+    /// object. Returns `None` if rays hit the object only once.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }
@@ -215,7 +215,7 @@ impl Convex<f64> {
     }
 
     /// Returns the range of the inverse depths at which rays that start outside leave the object.
-    /// Returns `None` if the object has no second faces.
+    /// Returns `None` if rays hit the object only once.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let faces = self.seconds().iter().map(|face| face.over(patch));
         Interval::fold(faces, f64::max)

@@ -1,10 +1,9 @@
 //! The curves that separate what is seen in a pixel, or in a part of one: lines and conics.
 //!
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
-//! and the curves where their depths are equal, in the coordinates of that sub-pixel. The
-//! silhouette of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line, a
-//! plane and a sphere in the cone of a circle, two spheres in their radical plane.
-//!
+//! and the curves where their depths are equal, in the coordinates of the sub-pixel. The silhouette
+//! of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line, a plane and a
+//! sphere on the cone of rays through a circle, two spheres in their radical plane.
 //! Errors: each form is computed anew in the sub-pixel's coordinates and in high precision, with an
 //! error bound for its values there. The result is therefore right to the last bits of an `f64`,
 //! however far the sub-pixel is from the picture's centre.
@@ -77,7 +76,7 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// The sub-pixel's side, in units of X and Y.
+    /// The sub-pixel's side, in the unit of a direction's X and Y.
     pitch: Ball<T>,
 }
 
@@ -187,13 +186,15 @@ impl<T: Real> SubPixelFrame<T> {
         Some(self.circle(&c, &square, &linear, &h))
     }
 
-    /// Returns the cone of rays through the circle in which the plane n·q = h intersects a sphere.
-    /// A ray of direction r hits the plane at q = (h/(n·r)) r, so that the cone is
+    /// Returns the cone of rays through the circle in which the plane n·q = h intersects the sphere
+    /// with the centre c and the radius R. A ray of direction r hits the plane at q = (h/(n·r)) r,
+    /// so that the cone is
     ///
     /// |h r − (n·r) c|² = R² (n·r)².
     ///
-    /// `plane` is n·r as a linear form. The left side is a sum of squares that are small near the
-    /// circle. The formula therefore does not cancel if the sphere is small and far away.
+    /// `plane` is n·r as a linear form, and `square` is R². The left side is a sum of squares that
+    /// are small near the circle. The formula therefore does not cancel if the sphere is small and
+    /// far away.
     fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Boundary {
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));

@@ -82,8 +82,8 @@ impl<T: Real> Form<T> {
         let sum = sizes[0] + sizes[1] + sizes[2];
         Self {
             factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
-            // This bound of the rounding errors of the difference assumes that |X|, |Y| and Z are
-            // at most 1.
+            // The bound of the rounding errors of the difference assumes that |X|, |Y| and Z are at
+            // most 1.
             rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
             // The error bounds of a form contain the rounding errors of its factors. Twice the sum
             // of the two forms' bounds therefore also covers the rounding errors of the difference.

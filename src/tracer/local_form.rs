@@ -36,7 +36,7 @@ const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 pub struct Patch {
     /// The direction through the rectangle's centre.
     pub center: Direction<f64>,
-    /// The sides in units of X and Y.
+    /// Sides of the rectangle, in the unit of a direction's X and Y.
     pub sides: [f64; 2],
 }
 

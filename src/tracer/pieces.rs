@@ -53,7 +53,7 @@ impl Pieces {
             cuboid.faces = None;
             let fronts = fronts(&cuboid, scene.camera.eye);
             // If the eye is inside the box, no face is a front face, and rays first hit the back
-            // faces. None are left out then.
+            // faces. All faces are then kept.
             let only_fronts = only_fronts && fronts.contains(&true);
             for (face, is_front) in (0..).zip(fronts) {
                 if only_fronts && !is_front {

@@ -30,21 +30,22 @@ pub struct Sphere<T: Real> {
     center: [T; 3],
     /// Error bound of each coordinate of the centre.
     rad_c: T::Radius,
-    /// The square R².
+    /// Square of the radius R.
     square: T,
-    /// Error bound of R².
+    /// Error bound of R², the square of the radius.
     rad_square: T::Radius,
-    /// C = c·c − R², with a small relative error however close the eye is to the surface.
+    /// C = c·c − R², with the centre c relative to the eye and the radius R. Its relative error is
+    /// small however close the eye is to the surface.
     power: Ball<T>,
-    /// The exact sign of C: `Greater` if the eye is outside the sphere, `Equal` if it is on the
-    /// surface, `Less` if it is inside.
+    /// Exact sign of C = c·c − R²: `Greater` if the eye is outside the sphere, `Equal` if it is on
+    /// the surface, `Less` if it is inside.
     side: Ordering,
     /// Power of two by which an inverse depth in the sphere's own unit is multiplied to give the
     /// inverse depth in the world's unit.
     scale: f64,
-    /// Error bound of Q in the window.
+    /// Error bound of Q = R² r·r − |c × r|² ([`Sphere`]) in the camera's window.
     rad_q: T::Radius,
-    /// Error bound of c·r in the window.
+    /// Error bound of c·r, the product of the centre and a ray's direction, in the camera's window.
     rad_b: T::Radius,
 }
 
@@ -207,7 +208,7 @@ impl Sphere<f64> {
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let (q, b) = self.local(patch);
         let (q, b) = (q.range(), b.range());
-        // This condition fails only after an overflow.
+        // The condition fails only after an overflow.
         if !(q.low <= q.high && b.low <= b.high) {
             return Some(Cover {
                 is_whole: false,

@@ -42,7 +42,7 @@ impl SubPixel {
         })
     }
 
-    /// Returns the direction of the ray through the centre.
+    /// Returns the direction of the ray through the part's centre.
     pub(crate) fn middle<T: Real>(&self, camera: &Camera<T>) -> Direction<T> {
         camera.direction(&camera.sample_point(self.x, self.y, self.center))
     }

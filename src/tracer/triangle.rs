@@ -166,8 +166,8 @@ impl<T: Real> SeenPlane<T> {
         })
     }
 
-    /// Returns the triangle in this plane that `edges` bound. Reverses every edge if the eye sees
-    /// the triangle from behind.
+    /// Returns the triangle that lies in the plane and is bounded by `edges`. Reverses every edge
+    /// if the eye sees the triangle from behind.
     fn with_edges(&self, camera: &Camera<T>, edges: [Ball3<T>; 3]) -> Convex<T> {
         let facing = |n: Ball3<T>| if self.side.is_lt() { n.map(|x| -x) } else { n };
         let edges = edges.into_iter().map(|n| Form::new(camera, &facing(n)));

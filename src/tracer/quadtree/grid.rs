@@ -58,7 +58,7 @@ impl Nearness {
     /// The least value, which is less than that of any object, so that it hides nothing.
     pub const NONE: Self = Self(0);
 
-    /// Rounds a non-negative number up. Returns the greatest nearness for NaN and negative numbers.
+    /// Rounds a non-negative number up. Returns the greatest value for NaN and negative numbers.
     fn above(x: f64) -> Self {
         if x >= 0.0 {
             Self((x.to_bits() >> 32) as u32 + 1)
@@ -137,8 +137,8 @@ impl CellGrid {
     /// the first unit for NaN.
     #[inline]
     fn unit(&self, x: f64) -> u32 {
-        // The last unit but one of the grid, because `CellGrid::high` is one unit beyond the
-        // result.
+        // Second-to-last unit of the grid, the maximum of the result. `CellGrid::high` is one unit
+        // beyond the result and must still be a unit of the grid.
         const LAST: u32 = (1 << LEVELS) - 2;
         (((x - self.least) * self.per_unit) as u32).min(LAST)
     }

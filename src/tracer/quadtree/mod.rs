@@ -8,7 +8,7 @@
 //! is sorted by the objects' maximum inverse depth ([`Nearness`]), the greatest first. A ray that
 //! has hit an object stops reading a list at the first entry behind this object.
 //!
-//! Cells have coordinates in whole numbers, and the conversion to them is monotone. Its rounding
+//! Cells have coordinates in whole numbers, and the conversion to them is monotone. The conversion
 //! may move a point out of its object's bounds by at most one unit; bounds are therefore widened by
 //! one unit.
 

@@ -35,10 +35,10 @@ pub const GRID: u32 = checker_corners::SIDE as u32;
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
 /// Cost of finding where one candidate object is seen within an area of pixels, in units of the
-/// time to test one object for a sample that is traced on its own. An area is quartered only if
-/// this costs less for all candidates than tracing its samples. A sample tests the objects whose
-/// bounds contain it, and its search of the quadtree counts as one more test. Measured: with 80,
-/// 10⁴ spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on 640×360
+/// time to test one object for a sample that is traced on its own. An area is quartered only if the
+/// cost for all candidates is less than that of tracing its samples. A sample tests the objects
+/// whose bounds contain it, and its search of the quadtree counts as one more test. Measured: with
+/// 80, 10⁴ spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on 640×360
 /// pixels.
 const ASKED_A_CANDIDATE: f64 = 120.0;
 

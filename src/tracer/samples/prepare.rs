@@ -272,8 +272,8 @@ impl PreparedPixel {
                     let (q, b) = sphere.local(pixel);
                     let root = q.factors.iter().map(|factor| factor.abs()).sum::<f64>();
                     let size = root.sqrt() + b.factors[2].abs() + b.spread();
-                    // q has the error bound `q.rad`. The error of √q is at most the root of this,
-                    // because |√a − √b| ≤ √|a − b|.
+                    // q has the error bound `q.rad`. The error of √q is at most the root of this
+                    // bound, because |√a − √b| ≤ √|a − b|.
                     let own = b.rad + q.rad.sqrt() + size * (LOCAL_ROUNDING + error);
                     rad = rad.max(own * factor * UP);
                     Depth::Sphere { q, b, factor }

@@ -167,8 +167,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let square = |n: [f64; 3], own: f64| {
             let value = (n[0] * x + n[1] * y + n[2]) * inverse;
             // With N' and ℓ' the true values of the forms, |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ|·|ℓ' −
-            // ℓ|)/ℓ'. ℓ' is at least ℓ/2, because a sample with a smaller ratio is uncertain (see
-            // below).
+            // ℓ|)/ℓ'. ℓ' is at least ℓ/2, because a sample is marked uncertain unless ℓ exceeds
+            // twice its error bound.
             let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * LOCAL_ROUNDING;
             let middle = value - 0.5;
             let rounded = middle + ROUND;
@@ -179,7 +179,7 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
         // The comparisons also fail for NaN, and for numbers that are too large to be rounded by
-        // adding `ROUND`, because their errors are large.
+        // adding `ROUND`, because their errors are large. The sample is then uncertain.
         let first = if margin0 > 0.0 { code } else { DOUBT };
         let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {

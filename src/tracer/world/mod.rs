@@ -74,7 +74,8 @@ impl World {
     ///
     /// # Errors
     ///
-    /// A condition of the language is broken, such as that a radius is more than 0.
+    /// Fails if a condition of the language is broken, for example if a radius is not greater than
+    /// 0.
     pub fn try_new(scene: &Scene) -> Result<Self, Mistakes> {
         scene.check()?;
         Ok(Self::new(scene))
@@ -95,7 +96,7 @@ impl World {
     ///
     /// # Errors
     ///
-    /// The flag is set.
+    /// Fails if the flag is set.
     ///
     /// # Panics
     ///
