@@ -77,8 +77,8 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that pass through the same small part are unlikely to be separated in smaller
-/// ones. Measured on a heap of objects: with 1 instead of 4, the time is two thirds; with 16, it is
-/// four times as long.
+/// ones. The value is a choice. Measured on a heap of objects: with 1 instead of 4, the time is two
+/// thirds; with 16, it is four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
 /// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest

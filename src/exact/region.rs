@@ -131,9 +131,9 @@ impl<'a> Regions<'a> {
         self.shares.bound += bound;
     }
 
-    /// Returns the object that is seen in a region, or `None` for the background. If double-double
-    /// arithmetic does not decide this with certainty, the region's point may lie next to a
-    /// boundary, and the region's area is added to the error bound.
+    /// Returns the object that is seen in a region, or `None` for the background. One ray through a
+    /// point of the region decides. If double-double arithmetic does not decide with certainty, the
+    /// point may lie next to a boundary, and the region's area is added to the error bound.
     fn seen(&mut self, region: &Region) -> Option<usize> {
         let (object, is_certain) = self.object_at(region.inside);
         if !is_certain {

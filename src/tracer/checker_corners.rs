@@ -52,8 +52,9 @@ pub struct CheckerPixel {
     /// The squares at the pixel's four corners, by their indices in x and in z. The order of the
     /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
-    /// Whether the pixel's corners certainly lie in the squares `corners`. If not, they lie in
-    /// these squares of a board whose lines are displaced by at most the error bounds of `squares`.
+    /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
+    /// in a neighbouring square, but only within the error bounds of `squares` of the line between
+    /// both.
     pub(crate) is_certain: bool,
 }
 

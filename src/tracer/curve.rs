@@ -30,7 +30,7 @@ pub enum Boundary {
 /// The line ax + by + c = 0, scaled so that the greater of |a| and |b| is 1.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundaryLine {
-    /// The factors a, b and c.
+    /// The factors a, b and c of the line's equation ax + by + c = 0.
     pub factors: [f64; 3],
     /// Error bound of the value of ax + by + c in the pixel.
     pub rad: f64,
@@ -40,7 +40,7 @@ pub struct BoundaryLine {
 /// magnitude.
 #[derive(Clone, Copy, Debug)]
 pub struct Conic {
-    /// The factors A, B, C, D, E and F.
+    /// The factors of the conic's equation Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0, from A to F.
     pub factors: [Double; 6],
     /// Error bound of the value of the conic's quadratic form in the pixel.
     pub rad: f64,

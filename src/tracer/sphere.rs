@@ -359,8 +359,8 @@ impl<T: Real> Sphere<T> {
         self.scale
     }
 
-    /// Returns whether the eye lies on the surface. It then sees the sphere only where c·r > 0,
-    /// with c and r as in [`Sphere`].
+    /// Returns whether the eye lies on the sphere's surface. It then sees the sphere only in
+    /// directions r with c·r > 0, where c is the centre relative to the eye.
     pub fn is_at_eye(&self) -> bool {
         self.side == Ordering::Equal
     }

@@ -139,10 +139,10 @@ impl LineCrossings {
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
             // The error of the coordinate t consists of two roundings, and of three roundings of
             // the distance from the start of the chunk, which is half a chunk on average. The slope
-            // of X is at most π times the bound of X, so that an error of t causes π times as large
-            // an error of X. The factor 4 of `reach` covers these roundings with a margin. A term
-            // of X has 14 roundings of its own, derived in `green`. The running sum of a lane has
-            // one rounding for each number added.
+            // of the series X is at most π times the bound of X, so that an error of t causes π
+            // times as large an error of X. The factor 4 of `reach` covers these errors with a
+            // margin. A term of X has 14 roundings of its own, derived in `green`. The running sum
+            // of a lane has one rounding for each number added.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);

@@ -74,7 +74,7 @@ const ENDLESS_TAIL: f64 = 8.0 / 9.0;
 const ONLY_FINITE_TAIL: f64 = 1.0;
 /// Minimum fraction of the pixel's tolerance that the truncated sums over a polygon may use up. A
 /// polygon whose area, in square pixels, is larger than this fraction may use its area as the
-/// fraction instead. The minimum keeps the sums over tiny polygons short.
+/// fraction instead. The minimum keeps the sums over tiny polygons short; its value is a choice.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
 /// Factors (k + 1)!/2 of the terms of the series X ([`EdgeSeries`]), by the index k.
@@ -198,7 +198,8 @@ fn terms(
 
 /// Returns two values at a corner of a polygon. The first is Ψ, up to the order `terms`: a
 /// potential whose differences along the edges contribute to the integral. The second is the
-/// density J = K/m³, to which the rounding error of Ψ is proportional.
+/// density K/m³ of the board's plane in the picture ([`Homography`]), to which the rounding error
+/// of Ψ is proportional.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),

@@ -55,7 +55,7 @@ pub struct CellGrid {
 }
 
 impl Nearness {
-    /// The least value, which is less than that of any object, so that it hides nothing.
+    /// The least value, which hides nothing, because every object's value is greater.
     pub const NONE: Self = Self(0);
 
     /// Rounds a non-negative number up. Returns the greatest value for NaN and negative numbers.

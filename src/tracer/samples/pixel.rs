@@ -106,16 +106,16 @@ pub(super) enum Depth {
 /// Values of the samples of a chunk, with one array for each quantity.
 #[derive(Debug)]
 pub(super) struct Lanes {
-    /// Code of the colour of the nearest surface so far.
+    /// Code, for each sample, of the colour of the nearest surface found so far.
     pub(super) seen: [f64; CHUNK_SAMPLES],
-    /// Inverse depth of the nearest surface so far.
+    /// Inverse depth, at each sample, of the nearest surface found so far.
     pub(super) nearest: [f64; CHUNK_SAMPLES],
     /// Least value, at each sample, of the forms that bound the current surface, each divided by
     /// its error bound.
     pub(super) margin: [f64; CHUNK_SAMPLES],
-    /// Code of the colour that the current surface shows.
+    /// Code, for each sample, of the colour that the current surface shows.
     pub(super) shown: [f64; CHUNK_SAMPLES],
-    /// Inverse depth of the current surface.
+    /// Inverse depth, at each sample, of the current surface.
     pub(super) depth: [f64; CHUNK_SAMPLES],
     /// Product, at each sample, of the forms of the lines that separate the current surface's two
     /// colours.

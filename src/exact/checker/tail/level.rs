@@ -46,8 +46,8 @@ pub(super) fn sum(
     };
 
     let step = all.alternating_step();
-    // e^(iφ) with the phase φ of mode 1 at the first crossing, and at the place of the crossing
-    // that would follow the last one.
+    // The two numbers e^(iφ), where φ is the phase of mode 1 at the first crossing, and at the
+    // place of the crossing that would follow the last one.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;
@@ -84,10 +84,11 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // If m counts as constant, m^−s differs from its value in the middle by at most s·gN/2m of this
-    // value, where N is the number of crossings and g the step of m between them. Otherwise, each
-    // of the two Lerch series has an error of about 500 roundings of w/2 times its first term, and
-    // a truncation error of at most 0.04·s·(s + 1)/w² of its first term.
+    // If the depth m counts as constant, m^−s with the exponent s of a term differs from its value
+    // in the middle by at most s·gN/2m of this value. N is the number of crossings, and g the step
+    // of m between them. Otherwise, each of the two Lerch series has an error of about 500
+    // roundings of w/2 times its first term, and a truncation error of at most 0.04·s·(s + 1)/w² of
+    // its first term.
     let model = if is_steady {
         4.0 / STEADY
     } else {

@@ -67,11 +67,13 @@ const SKIPPED_SHARE: f64 = 0.25;
 /// ([`EdgeSeries`]), which are not summed by Fourier modes. Not critical: with 0.0125 or 0.2, the
 /// measured running time changes by less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
-/// Approximate time to add one crossing directly, in units of about 50 ns, which is charged to the
-/// pixel's budget.
+/// Approximate time to add one crossing directly, in units of about 50 ns. It is charged to the
+/// pixel's budget, and need not be precise, because the budget only stops computations that take
+/// too long.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
 /// Work charged to the pixel's budget per unit of the last Fourier mode's number n, in units of
-/// about 50 ns. Only odd numbers have modes, so that a mode costs twice this value.
+/// about 50 ns. Only odd numbers have modes, so that a mode costs twice this value. A rough value
+/// is enough, because the budget only stops computations that take too long.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
 /// Computes the alternating sum Σ (−1)^j·X over all crossings j of an edge, where X is the edge's
