@@ -284,18 +284,18 @@ impl Tangents {
     /// Intersects the tangents of the conic with the coefficients `factors` at the points `ends`,
     /// and bounds the error of the area between arc and chord.
     ///
-    /// The computed gradient has an error of a few roundings of its terms. This is κ roundings of
-    /// the gradient's length, where κ − 1 is the size of the terms divided by the length. The
-    /// direction of each tangent has the same error in radians. In the triangle of chord and
-    /// tangents, an angle error at the chord changes the area by half the square of the adjacent
-    /// leg times the error. If the control point moves along its tangent, triangle and weight
-    /// change in opposite directions, and the total change is no greater.
+    /// The chord and the two tangents are the sides of a triangle. The computed gradient of the
+    /// conic has an error of κ roundings of its length, where κ − 1 is the size of its terms
+    /// divided by its length. The direction of each tangent has the same error in radians. It
+    /// changes the triangle's area by half the square of the tangent's side times the error. If the
+    /// control point moves along a tangent, the triangle's area and the weight change in opposite
+    /// directions, so that the area between arc and chord changes no more.
     ///
     /// The square of the weight is the quotient of two values of the conic's quadratic part Q. The
-    /// area between arc and chord grows no faster than the weight. A value of Q has rounding errors
-    /// of its own terms, and the error of its argument, which is a vector: rounding errors of the
-    /// coordinates and of the direction. An error of √Δ needs no term: it corresponds to another
-    /// conic within the error of the given one, which moves points and tangents together.
+    /// area between arc and chord grows no faster than the weight. A value of Q has the rounding
+    /// errors of its own terms, and the error of the vector at which Q is taken. An error of the
+    /// root √Δ ([`ConicGraph`]) is not counted: it corresponds to another conic within the error of
+    /// the given one, which moves points and tangents together.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));

@@ -171,8 +171,9 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// In the rows at the horizon, `f64` cannot decide about 1e-10 of the samples. With objects in one
-/// plane, it must decide every sample, because a higher precision takes a hundred times as long.
+/// In the rows at the horizon, `f64` leaves about 1e-10 of the samples undecided. With objects in
+/// one plane, it must decide every sample, because a higher precision takes a hundred times as
+/// long.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [
