@@ -1,5 +1,6 @@
-//! Renders a candidate in the cells of a grid, before layout and effects on light: exactly, or by
-//! the faulty tracer, which serves the tiny grid and behaviour that no scene can express.
+//! Renders a candidate, i.e. a hypothesis about the program, in the cells of a grid, before pixels
+//! are rearranged and light is changed. Rendering is exact, or is done by the faulty tracer: on the
+//! coarsest grid, and if the candidate's tracer has faults that no scene can express.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -18,28 +19,34 @@ use crate::{
     scene::Scene,
 };
 
-/// Samples in a cell for behaviour that no scene can express.
+/// Number of samples per cell for a tracer with faults that no scene can express. It is a Fibonacci
+/// number, because the samples form a Fibonacci lattice. The value is a choice between noise and
+/// time.
 const SAMPLES: usize = 34;
 
-/// Share of a cell that the faulty tracer may miss where it takes the cell for one colour.
+/// Fraction of a cell's area that the faulty tracer may overlook when it takes the cell for one
+/// colour. An edge cuts off about this much between a cell's corner and the places that are tested
+/// near it.
 const MISSED: f64 = 1e-3;
 
-/// The rendering of a candidate.
+/// The mean and the variance of each cell that a hypothesis about the program renders.
 #[derive(Clone)]
 pub struct Rendering {
     pub candidate: Candidate,
     pub part: Area,
-    /// Moments of a correct program with the candidate's scene; on the tiny grid, of the
-    /// candidate's behaviour.
+    /// Means and variances of a correct tracer that renders the candidate's scene. On the coarsest
+    /// grid the tracer has the candidate's faults.
     pub correct: Arc<Moments>,
-    /// Moments with the candidate's behaviour, if that is faulty.
+    /// Means and variances of the candidate's faulty tracer; `None` if its tracer has no fault, or
+    /// on the coarsest grid.
     behaved: Option<Arc<Moments>>,
-    /// Moments of a correct program, estimated from as many samples as `behaved`, if needed.
+    /// Means and variances of a correct tracer, estimated from as many samples as `behaved`. The
+    /// difference between both shows where the faults matter. `None` if not needed.
     sampled: Option<Arc<Moments>>,
 }
 
 impl Rendering {
-    /// Creates the rendering of a candidate with correct behaviour in a part of the picture.
+    /// Creates the rendering of a candidate whose tracer is correct, in a part of the picture.
     pub fn new(candidate: Candidate, part: Area, moments: Arc<Moments>) -> Self {
         Self {
             candidate,
@@ -50,7 +57,8 @@ impl Rendering {
         }
     }
 
-    /// Returns the moments as they are laid out in the cells of a grid.
+    /// Returns the means and variances in the cells of a grid, after the candidate has rearranged
+    /// its pixels.
     pub fn laid_out(&self, grid: &Grid) -> Arc<Moments> {
         let moments = self.behaved.as_ref().unwrap_or(&self.correct);
         let layout = self.candidate.layout;
@@ -67,7 +75,8 @@ impl Rendering {
 }
 
 impl Candidate {
-    /// Returns the scene whose pixels are a grid's cells, without objects that are not drawn.
+    /// Returns a scene whose pixels are the cells of a grid, without the objects that the candidate
+    /// omits.
     pub fn drawn(&self, grid: &Grid) -> Scene {
         let (camera, image) = grid.view(&self.scene);
         let mut scene = Scene {
@@ -82,9 +91,9 @@ impl Candidate {
         scene
     }
 
-    /// Renders the candidate in the cells of a grid: exactly, or with a number of samples per cell.
-    /// Of `known`, the rendering that shares most of the picture is reused. Returns `None` if it is
-    /// cancelled or exceeds the budget.
+    /// Renders the candidate in the cells of a grid: exactly, or with `samples` samples per cell.
+    /// Reuses the rendering of `known` that agrees with most of the picture. Returns `None` if it
+    /// is cancelled or exceeds the budget of work.
     pub fn render(
         &self,
         grid: &Grid,
@@ -107,7 +116,8 @@ impl Candidate {
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
             work.pay_for_samples(self.scene.objects.len(), samples, area)?;
-            // Objects are indexed among those that are drawn.
+            // The scene has only the objects that are drawn, so the index of the faulty one counts
+            // only these.
             let drawn = |at: usize| self.is_drawn[..at].iter().filter(|is| **is).count();
             let hit = behaviour.hit.filter(|(at, _)| self.is_drawn[*at]);
             let behaviour = Behaviour {
@@ -156,8 +166,8 @@ impl Candidate {
         })
     }
 
-    /// Returns an area of a part of the picture, before layout, outside of which another candidate
-    /// is known to look the same.
+    /// Returns the area in which the pictures of two candidates may differ, before pixels are
+    /// rearranged. The rest of `part` is the same in both.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Area {
         let nothing = Area {
             width: 0,
@@ -168,7 +178,8 @@ impl Candidate {
             return nothing;
         }
         let (one, two) = (&self.scene, &other.scene);
-        // Objects are visible only where they are.
+        // Different objects make a difference only where they are seen, if the tracer does not
+        // displace them.
         let is_in_place = self.behaviour.is_in_place();
         let is_same_view = one.camera == two.camera && one.image == two.image;
         if !is_in_place || !is_same_view || self.decoding != other.decoding {
@@ -203,7 +214,8 @@ impl Candidate {
     }
 }
 
-/// Completes known moments of a part by those of the area in which they are not known.
+/// Completes the known means and variances of a part. `make` computes those in the area that is not
+/// known.
 fn completed(
     known: Option<(&Arc<Moments>, Area)>,
     part: Area,
@@ -220,8 +232,8 @@ fn completed(
     }
 }
 
-/// Replaces exact moments by sampled ones of faulty behaviour, except where samples of correct
-/// behaviour are equal to those.
+/// Replaces exact means and variances by those that the faulty tracer sampled (`other`), in all
+/// cells in which samples of a correct tracer (`own`) differ from them.
 fn replaced_where_they_differ(mut correct: Moments, own: &Moments, other: &Moments) -> Moments {
     for at in 0..other.mean.len() {
         let variance = other.variance[at];
