@@ -72,9 +72,8 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 /// explain the picture; otherwise they are reported as guesses.
 fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
-    // The squared differences of all hypotheses are summed on one grid, and the noise of the last
-    // hypothesis is subtracted. A shift of samples and another pixel width are visible only at full
-    // resolution.
+    // All hypotheses are compared on one grid, and the noise that the last one leaves is
+    // subtracted. A shift of samples and a wrong pixel width are visible only at full resolution.
     let level = if last.behaviour.is_shifted() || last.is_filtered() {
         judge.central_crop()
     } else {

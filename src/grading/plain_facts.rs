@@ -163,7 +163,7 @@ impl EmptyRows {
         left
     }
 
-    /// Returns the fact that these rows are empty, for the verdict.
+    /// Returns the fact that the picture has empty rows, for the verdict.
     pub fn fact(&self) -> NamedMistake {
         let [first, last] = self.rows;
         let help = "a picture is written when all of its rows are made, and each index, row · width + column, is used once";

@@ -61,7 +61,7 @@ pub fn is_even(x: i64, z: i64) -> bool {
 /// How the camera makes rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Rays {
-    /// By the definition of the camera, which is correct.
+    /// Rays follow the definition of the camera, which is correct.
     #[default]
     Correct,
     /// The scene's up vector is used as the picture's upward direction, although it need not be
@@ -83,11 +83,11 @@ pub enum Rays {
 /// How the intersections of a ray with a sphere are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Spheres {
-    /// By the correct formula.
+    /// Intersections are computed by the correct formula.
     #[default]
     Correct,
-    /// By the formula for rays of length 1, although the rays reach to the view plane. The number
-    /// is the distance of the view plane from the eye, in metres.
+    /// Intersections are computed by the formula for rays of length 1, although the rays reach to
+    /// the view plane. The number is the distance of the view plane from the eye, in metres.
     UnitRays(f64),
     /// Only the nearer of the two intersections counts.
     LesserRoot,

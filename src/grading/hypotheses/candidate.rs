@@ -17,7 +17,8 @@ pub enum Mistake {
     /// A row of the table of mistakes. If the row is about a single object, the index of the object
     /// comes with it.
     Row(&'static MistakeRow, Option<usize>),
-    /// A field of the scene with wrong numbers, which are given.
+    /// A field of the scene has wrong numbers. The values are the field, and the numbers that the
+    /// program uses.
     Numbers(Parameter, Vec<f64>),
     /// An extra patch in the picture. The fields are its colour, in linear light, and its bounding
     /// rectangle: the least and the greatest column and row.
@@ -131,8 +132,8 @@ impl Candidate {
         mistakes.try_fold(Self::correct(scene), |candidate, one| candidate.with(one))
     }
 
-    /// Returns a correct program that renders the candidate's scene without the objects that the
-    /// candidate omits.
+    /// Returns a correct program that renders the hypothesis's scene without the objects that the
+    /// hypothesis omits.
     pub fn drawn_correctly(&self) -> Self {
         Self {
             is_drawn: self.is_drawn.clone(),

@@ -109,8 +109,8 @@ pub fn set_encoding(c: &mut Candidate, curve: Curve) {
     }
 }
 
-/// Sets one curve both for decoding colours and for encoding their average, unless the latter is
-/// wrong already.
+/// Sets one wrong curve both for decoding colours and for encoding their average, unless the
+/// encoding is wrong already.
 pub fn set_averaging(c: &mut Candidate, curve: Curve) {
     if c.curve == Curve::Correct {
         (c.decoding, c.curve) = (curve, curve);
@@ -164,7 +164,7 @@ pub fn lengthen(c: &mut Candidate, by: f64) {
     }
 }
 
-/// Returns an angle. The tangent of half of it is `by` times the tangent of half of `angle`.
+/// Returns an angle whose half has a tangent `by` times that of half of `angle`.
 fn widened(angle: Angle, by: f64) -> Angle {
     let half = libm::atan(by * libm::tan(angle.in_radians() / 2.0));
     Angle::from_degrees((2.0 * half).to_degrees())

@@ -2,8 +2,8 @@
 
 use crate::area::Area;
 
-/// Arrangement of pixels. In a wrong one, a place in the picture shows a pixel that belongs
-/// elsewhere.
+/// How a program arranges its pixels in the picture. If this is wrong, a pixel is shown in the
+/// place of another one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
     /// Whether left and right are exchanged.

@@ -351,7 +351,7 @@ impl Parameter {
     }
 }
 
-/// Returns a change of a colour channel by 8 that stays between 0 and 255.
+/// Returns 8 or −8, whichever keeps a colour channel between 0 and 255 when it is added.
 fn inward(channel: f64) -> f64 {
     if channel < 128.0 { 8.0 } else { -8.0 }
 }

@@ -108,7 +108,7 @@ impl Prediction<'_> {
     /// these pixels are exact, there is no noise, so large errors in the others have another cause.
     pub fn is_noise_everywhere(&self) -> bool {
         /// Greatest squared error of a pixel that counts as exact, relative to the variance of one
-        /// sample. It is that of 10 000 samples. The value is a choice.
+        /// sample. The value corresponds to 10 000 samples per pixel; it is a choice.
         const EXACT: f64 = 1e-4;
         /// Squared error, relative to the variance of one sample, above which a pixel counts as
         /// wrong if most pixels are exact. The value is a choice.

@@ -17,7 +17,8 @@ use crate::{
 pub struct Grid {
     /// Number of pixels along a cell's side.
     pub factor: u32,
-    /// Cells that lie inside the part, as an area of the cells of the whole picture.
+    /// Cells that lie inside the compared part of the picture. Their columns and rows are counted
+    /// from the top left of the whole picture.
     pub cells: Area,
     /// Number of cells in a row and in a column of the whole picture.
     size: [u32; 2],

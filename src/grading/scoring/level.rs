@@ -22,7 +22,7 @@ use crate::{
     grading::hypotheses::{Candidate, Curve},
 };
 
-/// A part of a picture at one resolution, to which hypotheses about the program are compared.
+/// A part of a picture at one resolution. Hypotheses about the program are compared with it.
 pub struct Level<'a> {
     pub grid: Grid,
     film: &'a Film,
@@ -42,7 +42,8 @@ pub struct Level<'a> {
 }
 
 impl<'a> Level<'a> {
-    /// Creates the level of a grid over the part of a film whose upper left corner is `corner`.
+    /// Creates a picture at the resolution of a grid. `corner` is the upper left corner of the
+    /// compared part, in pixels of the film.
     pub fn new(
         grid: Grid,
         film: &'a Film,

@@ -1,10 +1,10 @@
-//! Scores how well a candidate, i.e. a hypothesis about the program, explains a picture.
+//! Scores how well a hypothesis about the program explains a picture.
 //!
-//! In: a candidate, and a picture at one resolution (`level`), which is divided into cells
+//! In: a hypothesis, and a picture at one resolution (`level`), which is divided into cells
 //! (`grid`). Out: a `prediction` of what the cells show.
 //!
-//! First, a `rendering` of the candidate gives the mean and the variance of each cell (`moments`).
-//! Rendering is exact, unless the candidate's tracer has faults that no scene can express, or the
+//! First, a `rendering` of the hypothesis gives the mean and the variance of each cell (`moments`).
+//! Rendering is exact, unless the hypothesis's tracer has faults that no scene can express, or the
 //! grid is the coarsest one: then the `faulty_tracer` takes samples. Next, pixels are rearranged,
 //! and effects on light and `jpeg` coding are applied.
 //!

@@ -1,6 +1,6 @@
-//! Renders a candidate, i.e. a hypothesis about the program, in the cells of a grid, before pixels
-//! are rearranged and light is changed. Rendering is exact, or is done by the faulty tracer: on the
-//! coarsest grid, and if the candidate's tracer has faults that no scene can express.
+//! Renders a hypothesis about the program in the cells of a grid, before pixels are rearranged and
+//! light is changed. Rendering is exact, or is done by the faulty tracer: on the coarsest grid, and
+//! if the hypothesis's tracer has faults that no scene can express.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -34,10 +34,10 @@ const MISSED: f64 = 1e-3;
 pub struct Rendering {
     pub candidate: Candidate,
     pub part: Area,
-    /// Means and variances of a correct tracer that renders the candidate's scene. On the coarsest
-    /// grid the tracer has the candidate's faults.
+    /// Means and variances of a correct tracer that renders the hypothesis's scene. On the coarsest
+    /// grid the tracer has the hypothesis's faults.
     pub correct: Arc<Moments>,
-    /// Means and variances of the candidate's faulty tracer; `None` if its tracer has no fault, or
+    /// Means and variances of the hypothesis's faulty tracer; `None` if its tracer has no fault, or
     /// on the coarsest grid.
     behaved: Option<Arc<Moments>>,
     /// Means and variances of a correct tracer, estimated from as many samples as `behaved`. The
@@ -46,7 +46,7 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    /// Creates the rendering of a candidate whose tracer is correct, in a part of the picture.
+    /// Creates the rendering of a hypothesis whose tracer is correct, in a part of the picture.
     pub fn new(candidate: Candidate, part: Area, moments: Arc<Moments>) -> Self {
         Self {
             candidate,
@@ -57,7 +57,7 @@ impl Rendering {
         }
     }
 
-    /// Returns the means and variances in the cells of a grid, after the candidate has rearranged
+    /// Returns the means and variances in the cells of a grid, after the hypothesis has rearranged
     /// its pixels.
     pub fn laid_out(&self, grid: &Grid) -> Arc<Moments> {
         let moments = self.behaved.as_ref().unwrap_or(&self.correct);
@@ -75,8 +75,8 @@ impl Rendering {
 }
 
 impl Candidate {
-    /// Returns a scene whose pixels are the cells of a grid, without the objects that the candidate
-    /// omits.
+    /// Returns a scene whose pixels are the cells of a grid, without the objects that the
+    /// hypothesis omits.
     pub fn drawn(&self, grid: &Grid) -> Scene {
         let (camera, image) = grid.view(&self.scene);
         let mut scene = Scene {
@@ -91,7 +91,7 @@ impl Candidate {
         scene
     }
 
-    /// Renders the candidate in the cells of a grid: exactly, or with `samples` samples per cell.
+    /// Renders the hypothesis in the cells of a grid: exactly, or with `samples` samples per cell.
     /// Reuses the rendering of `known` that agrees with most of the picture. Returns `None` if it
     /// is cancelled or exceeds the budget of work.
     pub fn render(
@@ -166,7 +166,7 @@ impl Candidate {
         })
     }
 
-    /// Returns the area in which the pictures of two candidates may differ, before pixels are
+    /// Returns the area in which the pictures of two hypotheses may differ, before pixels are
     /// rearranged. The rest of `part` is the same in both.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Area {
         let nothing = Area {

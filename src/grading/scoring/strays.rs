@@ -20,22 +20,22 @@ pub struct Strays {
     pub pixels: Vec<usize>,
     /// Sum of the squared differences of the pixels in `pixels`.
     square: f64,
-    /// The pixels of several colours: index, squared difference, and variance of one sample.
+    /// The pixels that mix several colours: index, squared difference, and variance of one sample.
     edges: Vec<(usize, f64, f64)>,
 }
 
 impl Strays {
     /// Returns the squared differences that sampling cannot explain. These are the differences of
-    /// pixels of one colour, plus what pixels of several colours have beyond the variance of one
-    /// sample each.
+    /// pixels that should show one colour, plus what pixels that mix several colours have beyond
+    /// the variance of one sample each.
     pub fn square(&self) -> f64 {
         let beyond = |(_, square, variance): &(usize, f64, f64)| square - variance;
         let beyond: f64 = self.edges.iter().map(beyond).sum();
         self.square + beyond.max(0.0)
     }
 
-    /// Returns whether at most `missed` pixels of one colour are wrong, and the errors of pixels of
-    /// several colours may be noise.
+    /// Returns whether at most `missed` of the pixels that should show one colour are wrong, and
+    /// the errors of pixels that mix several colours may be noise.
     pub fn are_no_more(&self, missed: usize) -> bool {
         let are_few = self.pixels.len() <= missed;
         let of_edges = Self {

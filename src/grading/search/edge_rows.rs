@@ -1,9 +1,9 @@
 //! Adds to a set of mistakes one that is visible only at edges.
 //!
-//! In: a candidate, i.e. a hypothesis about the program, that is close to the picture. Out: the
-//! candidate, perhaps with one more mistake, if it explains the picture. The mistake may be a row
-//! of the table that is visible only at edges, or a wrong pixel width. A row predicts a change of
-//! the picture; the test measures on single pixels which fraction of the change is observed.
+//! In: a hypothesis about the program that is close to the picture. Out: the hypothesis, perhaps
+//! with one more mistake, if it explains the picture. The mistake may be a row of the table that is
+//! visible only at edges, or a wrong pixel width. A row predicts a change of the picture; the test
+//! measures on single pixels which fraction of the change is observed.
 
 use std::sync::Arc;
 
@@ -21,15 +21,16 @@ use crate::grading::{
 /// a coarser grid comes before.
 pub const ROUNDS: usize = 4;
 
-/// Greatest difference from 1 of the observed fraction of the change that a mistake at edges
-/// predicts. Beyond it, the mistake is not named. The value is a choice.
+/// Maximum error of the observed fraction of a predicted change. A mistake at edges predicts how
+/// the picture changes, and it is named if the observed fraction of this change is 1, except for at
+/// most this error. The value is a choice.
 const SHARE_TOLERANCE: f64 = 0.3;
-/// Number of standard deviations from 0 that the observed fraction of a mistake's predicted change
-/// must have, so that a mistake at edges is named. The value is a choice, at which chance is
-/// negligible.
+/// Minimum significance of the observed fraction of a predicted change, in standard deviations. A
+/// mistake at edges predicts how the picture changes, and it is named if the observed fraction of
+/// this change is at least this far from 0. The value is a choice, at which chance is negligible.
 const SURE: f64 = 7.0;
-/// Greatest fraction of the squared difference that a mistake at edges may leave in a JPEG, so that
-/// it is named. The value is a choice.
+/// Maximum fraction of the squared difference from a JPEG that a mistake at edges may leave. If it
+/// leaves more, it is not named. The value is a choice.
 const LEFT_IN_CODED: f64 = 0.25;
 
 /// Identifiers of the rows of the table that move samples by a few pixels at most.
@@ -49,28 +50,30 @@ const LEAST_WIDE: f64 = 1.1;
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// Number of pixels of which more than one must be wrong, so that a picture counts as wrong in
-/// large parts. The value 50 (2 % of the pixels) is a choice.
+/// Number of pixels per wrong pixel, below which a picture counts as wrong in large parts. The
+/// value 50 stands for 2 % of the pixels; it is a choice.
 const MUCH_WRONG: usize = 50;
 
-/// Greatest difference between the estimated shift of all edges and the shift that a mistake
-/// causes, so that the mistake is tried. It is in pixels, but for a shift of more than a pixel it
-/// is relative to the shift. The value is a choice.
+/// Maximum difference between the estimated shift of all edges in the picture and the shift that a
+/// mistake causes. Beyond it, the mistake is not tried. The unit is a pixel; for a shift of more
+/// than a pixel, the difference is relative to the shift. The value is a choice.
 const MAX_SHIFT_ERROR: f64 = 0.5;
 
-/// Maximum number of mistakes that shift samples and are tried, those nearest to the estimated
-/// displacement of edges first. The value is a choice.
+/// Maximum number of mistakes that are tried to explain a shift of all edges, those with the most
+/// similar shift first. The value is a choice.
 const SHIFTS: usize = 4;
 
-/// Number of standard deviations from 0 of the observed fraction of a mistake's predicted change on
-/// the coarsest grid. Above it, the mistake is tried although a correct program explains the
-/// picture. A test on single pixels follows, so the value may be low; it is a choice.
+/// Minimum significance of the observed fraction of a predicted change on the coarsest grid, in
+/// standard deviations. If a mistake reaches it, the mistake is tested on single pixels, although a
+/// correct program explains the picture. The value is low because of this second test; it is a
+/// choice.
 const HINTED: f64 = 3.0;
-/// Least observed fraction of a mistake's predicted change on the coarsest grid, so that the
-/// mistake is tried although a correct program explains the picture. The value is a choice.
+/// Minimum observed fraction of a predicted change on the coarsest grid. If a mistake reaches it,
+/// the mistake is tested on single pixels, although a correct program explains the picture. The
+/// value is a choice.
 const HINTED_SHARE: f64 = 0.3;
 
-/// Fits all numbers of a candidate's mistakes to a picture at one resolution. Returns `None` if
+/// Fits all numbers of a hypothesis's mistakes to a picture at one resolution. Returns `None` if
 /// there are none, or if the budget of work is used up.
 pub fn refitted(
     judge: &Judge,
@@ -86,7 +89,7 @@ pub fn refitted(
     Some(fitted)
 }
 
-/// Adds to a candidate what makes it explain the picture: nothing, a mistake at edges, or a wrong
+/// Adds to a hypothesis what makes it explain the picture: nothing, a mistake at edges, or a wrong
 /// pixel width. Returns `None` if none of these does.
 pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let edges = judge.central_crop();
@@ -109,8 +112,8 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let rows = ROWS.iter().filter(|row| match row.shows {
         Shows::InAreas => false,
         Shows::AtEdges if SHIFT_IDS.contains(&row.id) => false,
-        // If the tracer's faults move edges, it is sampled, which is too inexact for a test at
-        // edges.
+        // The pictures of programs that move edges are only sampled, which is too inexact for a
+        // test at edges.
         Shows::AtEdges => {
             let may = may || candidate.keeps_light() && row.id == CODED_ID;
             may && residual.is_at_edges && candidate.behaviour.is_in_place()
@@ -184,7 +187,7 @@ fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     near.map(|(_, mistake)| mistake).collect()
 }
 
-/// Returns a candidate if it explains the picture, either with its present numbers or after these
+/// Returns a hypothesis if it explains the picture, either with its present numbers or after these
 /// are fitted again.
 fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     if judge.explains(&with) {

@@ -55,7 +55,7 @@ const JOINT_SETS: usize = 2;
 /// picture. The value is a choice.
 const PROMISING: f64 = 0.5;
 
-/// Fraction of a correct program's squared error below which a candidate counts as close to the
+/// Fraction of a correct program's squared error below which a hypothesis counts as close to the
 /// picture. Only errors that sampling cannot explain count. The value is a choice.
 const NEAR_RATIO: f64 = 0.1;
 
@@ -67,7 +67,7 @@ const MAX_SUSPECTS: usize = 12;
 /// wrong. Smaller errors are mostly noise. The value is a choice.
 const SUSPECT_RATIO: f64 = 0.03;
 
-/// Searches for the mistakes that explain a picture best. Returns the best candidate, i.e. set of
+/// Searches for the mistakes that explain a picture best. Returns the best hypothesis, i.e. set of
 /// mistakes, and whether it explains the picture.
 pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
     let mut search = Search {
@@ -92,7 +92,7 @@ pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
         None => nearest,
         Some(right) if right.mistakes.is_empty() => right,
         Some(explained) => {
-            // A candidate that explains the picture is simplified even if the budget of work is
+            // A hypothesis that explains the picture is simplified even if the budget of work is
             // used up.
             judge.work.without_limit(|| {
                 let fewest = fewest(judge, &explained);
@@ -115,12 +115,12 @@ pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
 /// State of a search for mistakes.
 struct Search<'a> {
     judge: &'a Judge<'a>,
-    /// Candidates, i.e. sets of mistakes, that were examined so far.
+    /// Hypotheses, i.e. sets of mistakes, that were examined so far.
     examined: Vec<Candidate>,
-    /// Candidate with the least cost so far, and its cost.
+    /// Hypothesis with the least cost so far, and its cost.
     nearest: Option<(f64, Candidate)>,
-    /// Candidate that explains the picture with the fewest parameters, or at the least cost among
-    /// those, and its cost.
+    /// Hypothesis that explains the picture, and its cost. Of several, the one with the fewest
+    /// parameters is kept; of these, the one with the least cost.
     explained: Option<(f64, Candidate)>,
 }
 
@@ -186,13 +186,13 @@ impl Search<'_> {
         }
         judge.compare_with(best.candidate());
         for one in slightly_wrong(judge, best.candidate(), &suspects(judge, best)) {
-            // These sets are examined even if one of the same kind was, because its numbers were
-            // fitted to few samples.
+            // The extended set is examined even if one of the same kind was, because the numbers of
+            // that one were fitted to few samples.
             examined.extend(self.examine(&one));
         }
     }
 
-    /// Returns whether a candidate was found that explains the picture with fewer parameters, or
+    /// Returns whether a hypothesis was found that explains the picture with fewer parameters, or
     /// with as many and at no greater cost.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
@@ -201,7 +201,7 @@ impl Search<'_> {
         })
     }
 
-    /// Fits a candidate's numbers, and judges it on the middle grid. Remembers it if it has the
+    /// Fits a hypothesis's numbers, and judges it on the middle grid. Remembers it if it has the
     /// least cost so far, or explains the picture. Returns `None` if a better one explains the
     /// picture.
     fn examine(&mut self, candidate: &Candidate) -> Option<Judged> {
@@ -212,7 +212,7 @@ impl Search<'_> {
         self.examined.push(candidate.clone());
         let fitted = refitted(judge, candidate, &judge.coarse, [2, 1]);
         let mut judged = judge.judged(fitted.as_ref().unwrap_or(candidate), &judge.middle)?;
-        // A candidate far from the picture is not fitted further.
+        // A hypothesis far from the picture is not fitted further.
         if is_near(judge, judged.candidate()) {
             let level = judge.fitting(judged.candidate());
             let fitted = refitted(judge, judged.candidate(), level, [0, ROUNDS]);
@@ -241,7 +241,7 @@ impl Search<'_> {
     }
 }
 
-/// Adds an extra patch to a candidate. Returns `None` if the result does not explain the picture.
+/// Adds an extra patch to a hypothesis. Returns `None` if the result does not explain the picture.
 fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     if !is_near(judge, from.candidate()) {
         return None;
@@ -250,7 +250,7 @@ fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     explained_with(judge, &patched)
 }
 
-/// Returns whether a candidate leaves little of a correct program's error. Only errors that
+/// Returns whether a hypothesis leaves little of a correct program's error. Only errors that
 /// sampling cannot explain count.
 fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
     let square = |candidate: &Candidate| {
@@ -306,7 +306,7 @@ fn shows_at_edges(mistake: &Mistake) -> bool {
     }
 }
 
-/// Candidates, each with its difference from the picture on the coarsest grid.
+/// Hypotheses, each with its difference from the picture on the coarsest grid.
 type Rated = Vec<(f64, Candidate)>;
 
 /// Extension of a set of mistakes by one more.
@@ -321,7 +321,7 @@ struct Extension<'a> {
 
 impl<'a> Extension<'a> {
     /// Functions that extend a set, each by another kind of mistakes, cheapest first. Each returns
-    /// candidates with their differences from the picture on the coarsest grid.
+    /// hypotheses with their differences from the picture on the coarsest grid.
     const KINDS: [fn(&Self) -> Rated; 3] = [Self::rows, Self::numbers, Self::joint];
 
     /// Prepares the extension of a set of mistakes. Returns `None` if the budget of work is used
@@ -396,7 +396,7 @@ fn best_of_each_id(rows: Rated) -> Rated {
     best
 }
 
-/// Multiplies a candidate's difference from the picture by the penalties for its mistakes and
+/// Multiplies a hypothesis's difference from the picture by the penalties for its mistakes and
 /// parameters.
 fn penalised(difference: f64, candidate: &Candidate) -> f64 {
     let [mistakes, numbers] =
@@ -410,8 +410,8 @@ fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     let labels = labels(judge, from.candidate(), from.candidate().layout, grid);
     let mut wrong = vec![0.0; judge.scene.objects.len()];
     for (at, off) in from.score.chi_squares.iter().enumerate() {
-        // An object that is larger than in the candidate's scene causes errors beside the cells in
-        // which the candidate shows it.
+        // An object that is larger than in the hypothesis's scene causes errors beside the cells in
+        // which the hypothesis shows it.
         let near: BTreeSet<usize> = grid.around(at, 2).filter_map(|at| labels[at]).collect();
         near.into_iter()
             .for_each(|object| wrong[object] += libm::log1p(*off));

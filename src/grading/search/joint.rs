@@ -68,7 +68,7 @@ pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, C
     let (layout, seen): (Vec<_>, Vec<_>) = others
         .into_iter()
         .partition(|(one, _)| one.layout != right.layout);
-    // Returns the candidate itself, and the candidate with each of the mistakes.
+    // Returns the hypothesis itself, and the hypothesis with each of the mistakes.
     let with = |candidate: &Candidate, rows: &[(Candidate, Mistake)]| {
         let changed = rows
             .iter()

@@ -48,13 +48,13 @@ pub struct Judge<'a> {
     pub work: Work<'a>,
 }
 
-/// A candidate, i.e. a hypothesis about the program, that was judged at one resolution.
+/// A hypothesis about the program that was judged at one resolution.
 pub struct Judged {
-    /// Rendering of the candidate at this resolution.
+    /// Rendering of the hypothesis at this resolution.
     pub rendering: Arc<Rendering>,
     pub score: Score,
-    /// Cost of the candidate: the price of its parameters minus the logarithm of the picture's
-    /// likelihood. The candidate with the least cost is the best.
+    /// Cost of the hypothesis: the price of its parameters minus the logarithm of the picture's
+    /// likelihood. The hypothesis with the least cost is the best.
     pub cost: f64,
 }
 
@@ -117,7 +117,7 @@ impl<'a> Judge<'a> {
         self.central.as_ref().unwrap_or(&self.fine)
     }
 
-    /// Makes a candidate the base of comparisons: later candidates are rendered only where they
+    /// Makes a hypothesis the base of comparisons: later hypotheses are rendered only where they
     /// differ from it.
     pub fn compare_with(&self, candidate: &Candidate) {
         for level in [&self.coarse, &self.middle, &self.fine] {
@@ -127,8 +127,8 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Returns the coarsest level for comparisons with a candidate. If the exact picture of the
-    /// candidate is known, the error of sampling it is added to the observed light, so that the
+    /// Returns the coarsest level for comparisons with a hypothesis. If the exact picture of the
+    /// hypothesis is known, the error of sampling it is added to the observed light, so that the
     /// error cancels.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
@@ -144,7 +144,7 @@ impl<'a> Judge<'a> {
         Some(level.with_error(&level.predict(&sampled), &level.predict(&exact)))
     }
 
-    /// Predicts what the picture shows at one resolution if a candidate is correct. Returns `None`
+    /// Predicts what the picture shows at one resolution if a hypothesis is correct. Returns `None`
     /// if the budget of work is used up.
     pub fn predicted<'b>(&self, candidate: &Candidate, level: &'b Level) -> Option<Prediction<'b>> {
         let rendering = level.render(candidate, &self.work)?;
@@ -153,21 +153,21 @@ impl<'a> Judge<'a> {
         Some(level.predict(&rendering))
     }
 
-    /// Returns the differences between the picture and a candidate's prediction at one resolution,
+    /// Returns the differences between the picture and a hypothesis's prediction at one resolution,
     /// channel by channel. Returns `None` if the budget of work is used up.
     pub fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
         self.work.check()?;
         Some(self.predicted(candidate, level)?.differences())
     }
 
-    /// Returns a candidate with its difference from the picture at one resolution: the sum of the
+    /// Returns a hypothesis with its difference from the picture at one resolution: the sum of the
     /// absolute differences of all cells.
     pub fn with_difference(&self, candidate: Candidate, level: &Level) -> Option<(f64, Candidate)> {
         let differences = self.differences(&candidate, level)?;
         Some((absolute(&differences), candidate))
     }
 
-    /// Computes the score and the cost of a candidate at one resolution.
+    /// Computes the score and the cost of a hypothesis at one resolution.
     pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<Judged> {
         let rendering = level.render(candidate, &self.work)?;
         let score = level.predict(&rendering).score();
@@ -179,7 +179,7 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Fits the numbers of a candidate's mistakes whose indices are `free`. To find derivatives,
+    /// Fits the numbers of a hypothesis's mistakes whose indices are `free`. To find derivatives,
     /// each number is varied so that the picture moves by about `cells` cells. `rounds` are the
     /// maximum numbers of rounds by least squares, and by a robust loss.
     pub fn fit(

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Returns the index of the object that is seen in the middle of each cell of a grid. A correct
-/// program renders the candidate's scene, and its pixels are arranged by `layout`. `None` stands
+/// program renders the hypothesis's scene, and its pixels are arranged by `layout`. `None` stands
 /// for the background. If it is cancelled, all are `None`.
 pub fn labels(
     judge: &Judge,

@@ -1,9 +1,8 @@
 //! Finds the set of mistakes that explains a picture.
 //!
 //! In: a picture and its scene, as a `judge`, which has the picture at several resolutions and a
-//! budget of work. Out: the best candidate, i.e. a hypothesis about the program, and whether it
-//! explains the picture. It does if its `residual`, which is what it leaves unexplained, is
-//! sampling noise.
+//! budget of work. Out: the best hypothesis about the program and whether it explains the picture.
+//! It does if its `residual`, which is what it leaves unexplained, is sampling noise.
 //!
 //! `forward_selection` extends the few best sets of mistakes by one mistake at a time. A mistake is
 //! a row of the table, or several rows that only explain something together (`joint`); wrong

@@ -22,7 +22,7 @@ const STARTS: usize = 2;
 /// value first. The value is a choice; the work grows with it.
 const STARTED: usize = 12;
 
-/// Fits the fields of the scene that may be wrong to the coarsest grid. Returns candidates, i.e.
+/// Fits the fields of the scene that may be wrong to the coarsest grid. Returns hypotheses, i.e.
 /// sets of mistakes, with their differences from the picture on this grid.
 pub fn numeric_mistakes(
     judge: &Judge,
@@ -75,7 +75,7 @@ pub fn numeric_mistakes(
 const NEAR_OWN: usize = 3;
 
 /// Fits each field of the camera and of checkerboards that may be wrong to the coarse grid,
-/// starting from its present numbers. Returns the few best candidates that are closer to the
+/// starting from its present numbers. Returns the few best hypotheses that are closer to the
 /// picture than `candidate`.
 ///
 /// This finds numbers that are slightly wrong if most of the picture is a checkerboard with small
@@ -113,7 +113,7 @@ fn is_board(candidate: &Candidate, object: usize) -> bool {
     candidate.scene.objects[object].shape.center().is_none()
 }
 
-/// Returns the fields of a candidate's scene that may be wrong and are not among its mistakes yet.
+/// Returns the fields of a hypothesis's scene that may be wrong and are not among its mistakes yet.
 fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
     let is_suspect = |parameter: &Parameter| match parameter.owner {
         Owner::Object(object) => suspects.iter().any(|&suspect| {
@@ -149,7 +149,8 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
         let mut median = |i: usize| {
             seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
             let middle = seen.get(seen.len() / 2)?;
-            // Rounding to 1/1024 of a byte makes bytes whole again after conversions.
+            // Rounding to 1/1024 of a byte removes the rounding errors of conversions, so that
+            // whole bytes are exact.
             Some((255.0 * linear_to_srgb(middle[i]) * 1024.0).round() / 1024.0)
         };
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))

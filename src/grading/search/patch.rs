@@ -15,8 +15,8 @@ const FILLED: f64 = 0.25;
 /// explain almost anything. The value is a choice.
 const MOST: f64 = 0.2;
 
-/// Finds the largest connected area of one colour that a candidate does not explain. Returns `None`
-/// if there is none that may be a patch, or if the candidate has a patch already.
+/// Finds the largest connected area of one colour that a hypothesis does not explain. Returns
+/// `None` if there is none that may be a patch, or if the hypothesis has a patch already.
 pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     let mut others = from.candidate().mistakes.iter();
     if others.any(|one| matches!(one, Mistake::Patch(..))) {

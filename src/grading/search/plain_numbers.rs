@@ -27,7 +27,7 @@ const DEVIATIONS: f64 = 8.0;
 /// own. The value is a choice.
 const ROUNDS: usize = 8;
 
-/// Returns a candidate with simplified numbers.
+/// Returns a hypothesis with simplified numbers.
 pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
     let found = judge.judged(candidate, judge.fitting(candidate));
     let own = found.map(|found| with_own(judge, candidate, found.cost));
@@ -118,7 +118,7 @@ fn plainer(
     }
 }
 
-/// Rounds a candidate's numbers to as few digits as possible.
+/// Rounds a hypothesis's numbers to as few digits as possible.
 pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let level = judge.fitting(candidate);
     let free: Vec<usize> = (0..candidate.numbers().len()).collect();
@@ -131,7 +131,7 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let Some(long) = judge.judged(candidate, level) else {
         return candidate.clone();
     };
-    // A short number counts as not fitted, so the candidate saves its cost. The rest of the cost
+    // A short number counts as not fitted, so the hypothesis saves its cost. The rest of the cost
     // may grow by as much.
     let most = long.cost + price(level, free.len());
     let steps = candidate.steps(1.0);

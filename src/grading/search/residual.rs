@@ -1,5 +1,4 @@
-//! What a candidate, i.e. a hypothesis about the program, leaves unexplained in the pixels of a
-//! picture.
+//! What a hypothesis about the program leaves unexplained in the pixels of a picture.
 
 use super::{judge::Judge, labels::labels};
 use crate::grading::{
@@ -7,7 +6,7 @@ use crate::grading::{
     scoring::{Displacement, Prediction, Strays, work},
 };
 
-/// Number of pixels of which one may be wrong if the prediction is not exact, because it was
+/// Number n such that one in n pixels may be wrong if the prediction is not exact, i.e. if it was
 /// sampled or the picture is a JPEG. Chosen by trial on pictures with known mistakes.
 const PIXELS_PER_MISS: usize = 4000;
 
@@ -17,7 +16,7 @@ const EDGE_REACH: usize = 3;
 /// Distance from an edge, in pixels, within which a wrong pixel of a JPEG is attributed to the
 /// edge. It is the side of a JPEG's blocks.
 const CODED_EDGE_REACH: usize = 8;
-/// Number of wrong pixels of which one may lie far from all edges, while the others are still
+/// Number n such that one in n wrong pixels may lie far from all edges, while the others are still
 /// attributed to edges. A wide pixel filter leaves weak traces far from an edge. Chosen by trial.
 const PIXELS_PER_INSIDE: usize = 10;
 
@@ -44,8 +43,8 @@ const MOVED: f64 = 0.2;
 const SURELY_MOVED: f64 = 150.0;
 
 impl Judge<'_> {
-    /// Returns whether a candidate explains the picture: no pixel that should have one colour shows
-    /// another one, and edges lie in their places and are as sharp as they should be.
+    /// Returns whether a hypothesis explains the picture: no pixel that should have one colour
+    /// shows another one, and edges lie in their places and are as sharp as they should be.
     ///
     /// The middle grid is tested first because this costs less: if the prediction is exact, a cell
     /// that is certainly wrong contains a wrong pixel. Pixels of one colour follow, and edges come
@@ -74,20 +73,20 @@ impl Judge<'_> {
         }
     }
 
-    /// Returns whether the prediction of a candidate is exact: it is not sampled, and the picture
+    /// Returns whether the prediction of a hypothesis is exact: it is not sampled, and the picture
     /// is no JPEG.
     fn is_exact(&self, candidate: &Candidate) -> bool {
         candidate.is_exact() && self.fine.jpeg.is_none()
     }
 }
 
-/// What a candidate leaves unexplained in the pixels of a picture.
+/// What a hypothesis leaves unexplained in the pixels of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual {
     /// Number of pixels that should show one colour and show another one.
     pub strays: usize,
     /// Whether areas of one colour are right, except for a few pixels that samples may miss, and
-    /// pixels of several colours look like noise.
+    /// errors in pixels that mix several colours look like noise.
     pub are_areas_right: bool,
     /// Whether almost all wrong pixels lie near edges.
     pub is_at_edges: bool,
@@ -102,7 +101,7 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// Computes what a candidate leaves unexplained. Returns `None` if the budget of work is used
+    /// Computes what a hypothesis leaves unexplained. Returns `None` if the budget of work is used
     /// up.
     pub fn of_candidate(judge: &Judge, candidate: &Candidate) -> Option<Self> {
         let prediction = judge.predicted(candidate, &judge.fine)?;
