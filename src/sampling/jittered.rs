@@ -1,5 +1,5 @@
 //! `jittered`: one random point in each of n cells of equal area (Cook, Porter and Carpenter 1984,
-//! "Distributed ray tracing"). The cells are [`Bricks`], so that every n is possible.
+//! "Distributed ray tracing"). The cells are [`Bricks`], which exist for every n.
 
 use std::ops::Range;
 
@@ -9,14 +9,15 @@ use super::{
     rng::{Key, scale},
 };
 
-/// Cells of equal area in a pixel, and the strata along their sides.
+/// Cells of equal area in a pixel, and the equal intervals into which its sides are divided.
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,
-    /// Divisions of the pixel's width into columns: those of a short row of cells, and those of a
-    /// longer row.
+    /// Divisions of the pixel's width into equal columns, for a short row of cells and for a longer
+    /// row.
     columns: [Strata; 2],
-    /// Division of the pixel's height into n parts; a row of k cells is k parts tall.
+    /// Division of the pixel's height into n equal parts. A row of k cells is k of these parts
+    /// tall.
     rows: Strata,
 }
 

@@ -1,5 +1,5 @@
-//! `random`: independent, uniform points. `scatter` also places the points within a pixel in this
-//! way.
+//! `random`: independent points, uniform in the pixel. The method `scatter` also places points
+//! within a pixel in this way.
 
 use std::ops::Range;
 

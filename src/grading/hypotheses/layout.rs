@@ -2,8 +2,8 @@
 
 use crate::area::Area;
 
-/// How a program arranges its pixels in the picture. If this is wrong, a pixel is shown in the
-/// place of another one.
+/// An arrangement of pixels in a picture. If it is wrong, a pixel is shown in the place of another
+/// one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
     /// Whether left and right are exchanged.
