@@ -53,7 +53,7 @@ pub struct CameraFacts {
     pub w: DVec3,
     /// Distance from the eye to the view plane, in metres.
     pub d: f64,
-    /// Height of the window, in metres.
+    /// Height of the window, i.e. of the part of the view plane that the picture shows, in metres.
     pub view_height: f64,
     /// Vertical field of view, in degrees.
     pub fov_deg: f64,
@@ -207,7 +207,7 @@ fn rounded(x: &Big) -> f64 {
 struct Rest {
     objects: u64,
     seen: u64,
-    /// Area of the picture that shows these objects, in pixels.
+    /// Area of the picture that shows objects that are not listed one by one, in pixels.
     pixels: f64,
     outside: u64,
 }

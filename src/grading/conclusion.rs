@@ -1,5 +1,5 @@
-//! Turns the result of a search into a verdict. Mistakes that explain the picture are named; others
-//! become guesses.
+//! Turns the result of a search into a verdict on the picture. Mistakes that explain the picture
+//! are named; others become guesses.
 
 use super::{
     hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},

@@ -207,8 +207,8 @@ impl Reference {
         let Some(empty) = EmptyRows::of(film, exact) else {
             return self.judge_full(film, jpeg, cancel);
         };
-        // Rows of one colour may be missing, or the camera may look elsewhere. They count as
-        // missing if the rest of the picture is right.
+        // Rows of one colour may never have been written, or the camera may look elsewhere. They
+        // count as never written if the rest of the picture is right.
         let rest = self.judge_full(&empty.removed_from(film), jpeg, cancel)?;
         match rest.kind {
             Kind::Right | Kind::Noise => Ok(rest.with_fact(empty.fact())),
@@ -232,7 +232,7 @@ impl Reference {
         let work = Work::new(self.part.pixels(), self.work, self.effort, cancel);
         let judge = Judge::new(&self.scene, &self.correct, &film, jpeg, work);
         let found = forward_selection::run(&judge)?;
-        // The budget of work does not limit the conclusion, which must be complete.
+        // The verdict must be computed completely, so the budget of work does not limit this.
         let conclude = || conclusion::conclude(&judge, &film, found);
         let verdict = judge.work.without_limit(conclude);
         Ok(cancel::unless_set(cancel, verdict)?)

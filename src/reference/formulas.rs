@@ -128,9 +128,9 @@ fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     Some([(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)])
 }
 
-/// Intersects the line `eye` + t·`d` with a box, which is what three slabs have in common. Returns
-/// the t at which the line enters the last slab, and the t at which it leaves the first one.
-/// Returns `None` if it leaves before it enters.
+/// Intersects the line `eye` + t·`d` with a box. A box is the intersection of three slabs, each
+/// between two parallel planes. Returns the t at which the line enters the last slab, and the t at
+/// which it leaves the first one. Returns `None` if it leaves before it enters.
 fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let inverse = 1.0 / d;
     let a = (cuboid.min - eye) * inverse;

@@ -24,16 +24,16 @@ pub struct Textbook {
     shapes: Vec<Shape>,
 }
 
-/// The visible intersection of a ray, by the textbook formulas.
+/// The point at which a ray hits the object that is seen, by the textbook formulas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextbookHit {
     /// Index of the object in the scene.
     pub object: usize,
     /// Whether a checkerboard shows its second colour.
     pub odd: bool,
-    /// Distance of the intersection from the eye.
+    /// Distance of the point from the eye, in metres.
     pub t: f64,
-    /// Point of the intersection.
+    /// The point itself, in the scene's coordinates.
     pub point: DVec3,
 }
 

@@ -52,13 +52,13 @@ const CROWD_SIDE: u32 = 4;
 /// takes less time. The value is a choice.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
-/// Data that all tiles of a picture share.
+/// Renders the tiles (rectangles of pixels) of a picture. All threads share this data.
 pub(super) struct Renderer<'a, P> {
     pub(super) world: &'a World,
     pub(super) sampling: &'a Sampling,
-    /// The colours of the palette in linear light.
+    /// The scene's colours (its palette), in linear light.
     pub(super) colors: &'a [[f64; 3]],
-    /// The colours of the palette, converted to the film's kind of pixel.
+    /// The scene's colours (its palette), converted to the film's type of pixel.
     pub(super) shown: &'a [P],
     pub(super) encoder: &'a Encoder,
     pub(super) control: &'a Control<'a>,
@@ -66,7 +66,8 @@ pub(super) struct Renderer<'a, P> {
 }
 
 impl<P: film::Pixel> Renderer<'_, P> {
-    /// Renders a tile. Returns its pixels row by row, or `None` if the render was cancelled.
+    /// Renders a tile, i.e. a rectangle of pixels. Returns the pixels row by row, or `None` if the
+    /// render was cancelled.
     pub(super) fn tile(
         &self,
         tile: Area,

@@ -27,7 +27,7 @@ pub struct Slices<P> {
     sampling: Sampling,
     /// The film. It takes no memory where no pixels are written yet.
     film: Film<P>,
-    /// Side of a slice, in pixels.
+    /// Side of a slice, i.e. of the square that is rendered at a time, in pixels.
     side: u32,
     /// Number of slices that are rendered. Slices are rendered row by row.
     done: u32,

@@ -8,7 +8,7 @@
 
 use std::ops::Range;
 
-/// The division of a pixel into n cells.
+/// A division of a pixel into n cells of equal area, which are arranged in rows like bricks.
 #[derive(Clone, Copy, Debug)]
 pub struct Bricks {
     n: u64,
@@ -20,7 +20,7 @@ pub struct Bricks {
     longer: u64,
 }
 
-/// One row of cells.
+/// A row of the cells into which a pixel is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BrickRow {
     /// Number of cells in all rows above. In a pixel of n cells, the row begins at the height
@@ -90,7 +90,7 @@ impl Bricks {
     /// Returns the index of the row that contains the cell with the index `i`. Cells are counted
     /// row by row.
     fn row_of_cell(&self, i: u64) -> u64 {
-        // The estimate of the row may be off by about one row, and is corrected.
+        // The estimate may be wrong by about one row, and is corrected.
         let mut k = (u128::from(i) * u128::from(self.rows) / u128::from(self.n)) as u64;
         while self.cells_above(k) > i {
             k -= 1;

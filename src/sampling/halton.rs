@@ -22,7 +22,7 @@ pub struct Halton {
 }
 
 impl Halton {
-    /// Prepares the first `n` points of the sequence.
+    /// Prepares the first `n` points of the Halton sequence.
     pub fn new(n: u64) -> Self {
         Self {
             inverses: [u64::reverse_bits, radical_inverse_3]
@@ -30,8 +30,8 @@ impl Halton {
         }
     }
 
-    /// Writes to `out` the offsets from the pixel's centre of the points whose indices are in
-    /// `range`, after a random shift that `key` determines.
+    /// Places the points whose indices are in `range`, after a random shift that `key` determines.
+    /// Writes their offsets from the pixel's centre to the two lists of coordinates in `out`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let inverses: [fn(u64) -> u64; 2] = [u64::reverse_bits, radical_inverse_3];

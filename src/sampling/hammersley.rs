@@ -27,7 +27,7 @@ pub struct Hammersley {
 }
 
 impl Hammersley {
-    /// Prepares a set of `n` points.
+    /// Prepares a Hammersley set of `n` points.
     pub fn new(n: u64) -> Self {
         let columns = Strata::new(n);
         let stored = (0..n).take_while(|_| columns.stored().is_some());
@@ -39,8 +39,8 @@ impl Hammersley {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
-    /// and `y`, after a random shift that `key` determines.
+    /// Places the points whose indices are in `range`, after a random shift that `key` determines.
+    /// Writes their offsets from the pixel's centre to the lists `x` and `y`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [columns, within, shift] = [0, 1, 2].map(|index| key.bits(index));

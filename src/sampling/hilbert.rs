@@ -22,7 +22,8 @@ pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
         side /= 2;
         let mut step = 0;
         loop {
-            // An upright curve visits the four quadrants in this order: down, right, up.
+            // In its basic orientation, the curve visits the four quadrants in this order: it
+            // begins at the top left, and goes down, right and up.
             let (right, lower) = (step >= 2, step == 1 || step == 2);
             let (right, lower) = if mirrored {
                 (lower, right)

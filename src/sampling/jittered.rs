@@ -22,7 +22,7 @@ pub struct Jittered {
 }
 
 impl Jittered {
-    /// Prepares the cells for `n` points.
+    /// Divides a pixel into cells for `n` points.
     pub fn new(n: u64) -> Self {
         let bricks = Bricks::new(n);
         Self {
@@ -32,8 +32,8 @@ impl Jittered {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
-    /// and `y`. Points are counted row by row.
+    /// Places the points whose indices are in `range`; points are counted row by row. Writes their
+    /// offsets from the pixel's centre to the lists `x` and `y`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [short, _] = self.bricks.lengths();

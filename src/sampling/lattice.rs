@@ -57,7 +57,8 @@ pub struct Strata {
 pub struct Stratum(u64);
 
 impl Stratum {
-    /// Returns the first place of the stratum.
+    /// Returns the first place in the stratum. A place is the index of a possible offset from the
+    /// pixel's centre.
     #[inline(always)]
     pub fn start(self) -> u64 {
         self.0 >> 1
@@ -88,7 +89,7 @@ impl Strata {
         }
     }
 
-    /// Returns the stratum with index `i`.
+    /// Returns the stratum with the index `i`. Strata are the n equal intervals of a pixel's side.
     #[inline(always)]
     pub fn get(&self, i: u64) -> Stratum {
         match self.stored.get(i as usize) {
@@ -108,7 +109,8 @@ impl Strata {
         self.least
     }
 
-    /// Chooses an offset in the stratum with index `i` by 64 random bits.
+    /// Chooses an offset in the stratum with the index `i` by 64 random bits. Strata are the n
+    /// equal intervals of a pixel's side.
     #[inline(always)]
     pub fn choose(&self, i: u64, bits: u64) -> f64 {
         let stratum = self.get(i);

@@ -66,7 +66,7 @@ pub struct Sampling {
     picture: Area,
     /// Minimum number of samples in a pixel. Not used by the method `scatter`, whose number varies.
     count: u64,
-    /// Number of pixels that have one sample more than the minimum.
+    /// Number of pixels that have one sample more than the minimum number.
     extra: u64,
     /// Two arrangements of points in a pixel: one of `count` points, and one of `count` + 1. The
     /// method `scatter` can use either for any number of points.
@@ -88,8 +88,8 @@ enum PointPattern {
 }
 
 impl Sampling {
-    /// Prepares the samples of a picture whose sides are 1 to 2^20 pixels. There are none if the
-    /// scene's method is `exact`.
+    /// Prepares the samples of a picture whose sides are 1 to 2^20 pixels. There are no samples if
+    /// the scene's method is `exact`.
     ///
     /// # Panics
     ///
@@ -226,7 +226,8 @@ impl PointPattern {
         }
     }
 
-    /// Writes the offsets from the pixel's centre of the points with the indices `range` to `out`.
+    /// Places the points whose indices are in `range`. Writes their offsets from the pixel's centre
+    /// to the two lists of coordinates in `out`.
     #[inline(always)]
     fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         match self {

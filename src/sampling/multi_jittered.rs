@@ -56,8 +56,8 @@ impl MultiJittered {
         [self.columns, self.rows]
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to
-    /// `out`. Points are counted row by row.
+    /// Places the points whose indices are in `range`; points are counted row by row. Writes their
+    /// offsets from the pixel's centre to the two lists of coordinates in `out`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let mut buffers = [EMPTY_BUFFER; 2];

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x` and
-/// `y`.
+/// Places the points whose indices are in `range`. Writes their offsets from the pixel's centre to
+/// the lists `x` and `y`.
 #[inline(always)]
 pub fn place(key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     for (i, (x, y)) in (range.start..).zip(x.iter_mut().zip(y)) {

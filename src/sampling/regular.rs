@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::bricks::Bricks;
 
-/// Writes the offsets of some points from the pixel's centre to `x` and `y`. The points are the
-/// centres of the cells of [`Bricks`], row by row, and are the same in all pixels. `range` has
-/// their indices.
+/// Places the points whose indices are in `range`. Writes their offsets from the pixel's centre to
+/// the lists `x` and `y`. The points are the centres of the cells of [`Bricks`], row by row, and
+/// are the same in all pixels.
 ///
 /// Point i in a row of n points has x = (2i + 1 − n)/(2n), rounded once. Its mirror image in the
 /// row has exactly −x.

@@ -63,7 +63,8 @@ impl Key {
     }
 }
 
-/// A random number generator whose state is a key and the index of the next number.
+/// A random number generator. Its state is a key, which selects a sequence of numbers, and the
+/// index of the next number.
 #[derive(Clone, Debug)]
 pub struct CounterRng {
     key: Key,

@@ -41,7 +41,7 @@ pub struct Sobol {
 }
 
 impl Sobol {
-    /// Prepares the first `n` points of the sequence.
+    /// Prepares the first `n` points of the Sobol' sequence.
     pub fn new(n: u64) -> Self {
         let depth = u64::BITS - (n - 1).leading_zeros();
         let top = |fraction: u64| high_bits(fraction, depth) as u16;
@@ -54,8 +54,8 @@ impl Sobol {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
-    /// and `y`, after the scrambling that `key` determines.
+    /// Places the points whose indices are in `range`, after the scrambling that `key` determines.
+    /// Writes their offsets from the pixel's centre to the lists `x` and `y`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let axes = [

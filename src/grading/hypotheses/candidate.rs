@@ -36,8 +36,8 @@ pub struct MistakeRow {
     pub id: &'static str,
     /// Where in the picture the mistake is visible.
     pub shows: Shows,
-    /// Message that says what is wrong. In a row about an object, it continues after the object's
-    /// name.
+    /// Message that says what is wrong. In a row about a single object, it lacks the object's name,
+    /// which is put before it.
     pub message: &'static str,
     /// Advice on how to correct the mistake.
     pub help: &'static str,

@@ -72,8 +72,8 @@ pub fn sides(c: &Candidate) -> [f64; 2] {
     [c.scene.image.width, c.scene.image.height].map(f64::from)
 }
 
-/// Gives the window this ratio of width to height, unless the ratio is wrong already or nearly
-/// this.
+/// Sets the ratio of the window's width to its height, unless it is wrong already, or `aspect` is
+/// the correct ratio.
 pub fn set_aspect(c: &mut Candidate, aspect: f64) {
     let [width, height] = sides(c);
     let by = aspect * height / width;

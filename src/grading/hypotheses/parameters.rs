@@ -18,9 +18,9 @@ use crate::{
 /// What a field of a scene belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
-    /// The block `image`.
+    /// The block `image` of the scene.
     Image,
-    /// The block `camera`.
+    /// The block `camera` of the scene.
     Camera,
     /// An object, given by its index. It stands for all objects that the same block of the file
     /// describes.
@@ -141,7 +141,7 @@ impl Owner {
         index + 1..index + 1 + others.count()
     }
 
-    /// Returns a description of the owner, for messages.
+    /// Returns a description of the image, camera or object, for messages.
     pub fn name(self, scene: &Scene) -> String {
         match self {
             Self::Image => "the image".to_owned(),
@@ -155,14 +155,14 @@ impl Owner {
 }
 
 impl Parameter {
-    /// Creates a parameter from some fields of one owner.
+    /// Creates a parameter from some fields of the image, the camera or an object.
     pub fn new(owner: Owner, fields: &[&'static str]) -> Self {
         let fields = fields.to_vec();
         Self { owner, fields }
     }
 
-    /// Returns a description of the owner for messages, which mentions the other objects of its
-    /// block.
+    /// Returns a description of what the fields belong to, for messages. It mentions the other
+    /// objects of the same block.
     pub fn owner_name(&self, scene: &Scene) -> String {
         let name = self.owner.name(scene);
         if self.owner.others(scene).is_empty() {

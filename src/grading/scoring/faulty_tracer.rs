@@ -42,7 +42,7 @@ struct Traced {
     hit: Option<HitFault>,
     /// Bounding rectangle in the picture, in pixels. No ray outside of it hits the object.
     bounds: [DVec2; 2],
-    /// Decoded colours of the object. A shape with fewer than three repeats them.
+    /// Decoded colours of the object. A shape with fewer than three colours repeats them.
     colors: [DVec3; 3],
 }
 

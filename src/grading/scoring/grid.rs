@@ -1,8 +1,8 @@
-//! A grid of cells over the part of a picture that is compared. Its cells span several pixels for
-//! the search, which is fast, or single pixels for the final judgement.
+//! Divides the compared part of a picture into cells. For the search, which must be fast, a cell
+//! spans several pixels; for the final judgement, it is a single pixel.
 //!
-//! The cells are the pixels of a smaller picture of the scene with the same middle, so they are
-//! rendered like any picture.
+//! The cells are the pixels of a smaller picture of the same scene with the same middle, so they
+//! are rendered like any picture.
 
 use glam::{DVec2, DVec3};
 
@@ -25,7 +25,7 @@ pub struct Grid {
     /// Width of the border that no cell covers, in pixels of the whole picture. There is an equal
     /// border at the left and right, and at the top and bottom.
     margin: DVec2,
-    /// Upper left corner of the part, in pixels of the whole picture.
+    /// Upper left corner of the compared part, in pixels of the whole picture.
     corner: DVec2,
 }
 
@@ -63,12 +63,12 @@ impl Grid {
             .unwrap_or_else(|| of(1))
     }
 
-    /// Returns the number of cells in the part.
+    /// Returns the number of cells in the compared part of the picture.
     pub fn count(&self) -> usize {
         self.cells.pixels() as usize
     }
 
-    /// Returns the number of cells in a row of the part.
+    /// Returns the number of cells in a row of the compared part of the picture.
     pub fn width(&self) -> usize {
         self.cells.width as usize
     }

@@ -26,7 +26,7 @@ use crate::{
 pub struct Level<'a> {
     pub grid: Grid,
     film: &'a Film,
-    /// Upper left corner of the part, in pixels of the film.
+    /// Upper left corner of the compared part, in pixels of the film.
     corner: [u32; 2],
     /// Observed light of the cells for each curve that may have encoded it. Computed on demand.
     observed: [OnceCell<Vec<DVec3>>; Curve::COUNT],

@@ -34,8 +34,8 @@ impl Moments {
         }
     }
 
-    /// Replaces the cells of an area by `own`, whose cells are those of the area. The cells of
-    /// `self` are those of `part`.
+    /// Replaces the means and variances in an area. `self` has those of the cells of `part`, row by
+    /// row, and `own` has the new ones of the cells of `area`.
     pub fn put(&mut self, part: Area, area: Area, own: &Self) {
         for (from, (x, y)) in area.iter().enumerate() {
             let at = part.index(x, y);

@@ -24,9 +24,9 @@ use crate::{
 /// time.
 const SAMPLES: usize = 34;
 
-/// Fraction of a cell's area that the faulty tracer may overlook when it takes the cell for one
-/// colour. An edge cuts off about this much between a cell's corner and the places that are tested
-/// near it.
+/// Fraction of a cell's area in which the faulty tracer may overlook another colour. It tests
+/// places near the corners of a cell; an edge that passes between such a place and the corner cuts
+/// off about this much.
 const MISSED: f64 = 1e-3;
 
 /// The mean and the variance of each cell that a hypothesis about the program renders.

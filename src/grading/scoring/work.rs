@@ -18,20 +18,22 @@ const PICTURE: f64 = 8e7;
 /// take longer to compare.
 const PIXEL: f64 = 41.0;
 
-/// Cost of preparing an object for an exact picture, in units of about 30 ns.
+/// Approximate cost of preparing an object for an exact picture, in units of about 30 ns.
 const WORLD_OBJECT: f64 = 20.0;
-/// Cost of preparing an object for a sampled picture, in units of about 30 ns.
+/// Approximate cost of preparing an object for a sampled picture, in units of about 30 ns.
 const OBJECT: f64 = 6.0;
-/// Cost of making a ray, in units of about 30 ns.
+/// Approximate cost of making a ray, in units of about 30 ns.
 const RAY: f64 = 0.6;
-/// Cost of intersecting a ray with a shape, in units of about 30 ns.
+/// Approximate cost of intersecting a ray with a shape, in units of about 30 ns.
 const TEST: f64 = 0.2;
-/// Cost of storing and comparing a cell of a picture, in units of about 30 ns.
+/// Approximate cost of storing and comparing a cell of a picture, in units of about 30 ns.
 const CELL: f64 = 2.0;
 
-/// Cost of comparing a predicted with an observed cell of a picture, in units of about 30 ns.
+/// Approximate cost of comparing a predicted with an observed cell of a picture, in units of about
+/// 30 ns.
 pub const COMPARISON: f64 = 1.0;
-/// Cost per pixel of testing where edges lie and how sharp they are, in units of about 30 ns.
+/// Approximate cost per pixel of testing where edges lie and how sharp they are, in units of about
+/// 30 ns.
 pub const RESIDUAL: f64 = 8.0;
 
 /// Tolerance of the exact pictures that 8-bit pictures are compared to, in light from 0 to 1. It is

@@ -98,7 +98,8 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
         let residual = Residual::of_candidate(judge, candidate);
         residual.zip(judge.judged(candidate, edges))
     })?;
-    // Truncated bytes and wrong encodings are visible in whole areas, too.
+    // Truncated bytes and wrong encodings are visible in whole areas, so they are tried even if the
+    // wrong pixels do not lie at edges.
     let is_much_wrong = residual.strays * MUCH_WRONG > judge.fine.grid.count();
     if !residual.is_at_edges && !is_much_wrong {
         return None;

@@ -1,4 +1,4 @@
-//! Which object each cell of a picture shows.
+//! Finds which object each cell of a picture shows.
 
 use super::judge::Judge;
 use crate::{

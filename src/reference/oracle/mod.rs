@@ -50,7 +50,7 @@ pub struct Oracle {
     pixel: N,
 }
 
-/// Values that the formulas for a shape need for every ray.
+/// Values of a shape that are the same for every ray, computed once.
 #[derive(Debug)]
 enum PreparedShape {
     /// A sphere: `f` is eye − centre, `square` is f·f, and `c` is f·f − radius².
@@ -70,7 +70,7 @@ enum PreparedShape {
     Checkerboard { height: N, square: N },
 }
 
-/// The visible intersection of a ray, in the oracle's arithmetic.
+/// The point at which a ray hits the object that is seen, in the oracle's arithmetic.
 #[derive(Clone, Debug)]
 pub struct OracleHit {
     /// Index of the object in the scene.
@@ -252,10 +252,10 @@ impl Oracle {
         })
     }
 
-    /// Intersects the ray with the direction `r` from the eye with a box, which is what three slabs
-    /// have in common. The ray is inside of the box from the last t at which it enters a slab to
-    /// the first t at which it leaves one. Returns those of these two t that are positive, or an
-    /// empty list if the ray misses the box.
+    /// Intersects the ray with the direction `r` from the eye with a box. A box is the intersection
+    /// of three slabs, each between two parallel planes. The ray is inside of the box from the last
+    /// t at which it enters a slab to the first t at which it leaves one. Returns those of these
+    /// two t that are positive, or an empty list if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);
