@@ -107,8 +107,8 @@ fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     moved.fold(0.0, f64::max)
 }
 
-/// Returns points that are fixed to a shape. `squares` are points of a checkerboard, in units of a
-/// square's side.
+/// Returns some points of a shape, which move with it. For a checkerboard, these are `squares`,
+/// which are given in units of a square's side.
 fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     match shape {
         Shape::Sphere(sphere) => {

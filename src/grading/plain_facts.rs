@@ -121,13 +121,13 @@ fn causes(scene: &Scene) -> String {
 /// at least two of them, and they never fill the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct EmptyRows {
-    /// Indices of the first and the last row.
+    /// Indices of the first and the last of the empty rows.
     rows: [usize; 2],
 }
 
 impl EmptyRows {
-    /// Finds the empty rows of a picture by comparing it with the exact one. Returns `None` if it
-    /// has none.
+    /// Finds the rows at the top or bottom of a picture that have one colour but should not, by
+    /// comparing it with the exact picture. Returns `None` if there are none.
     pub fn of(film: &Film, exact: &Film) -> Option<Self> {
         let width = film.width() as usize;
         let height = film.pixels().len() / width;

@@ -34,7 +34,7 @@ impl Key {
         Self(mix(self.0 ^ mix(part.wrapping_add(GOLDEN))))
     }
 
-    /// Returns the random number with the index `index`, of 64 bits.
+    /// Returns the 64-bit random number with the index `index`.
     #[inline(always)]
     pub fn bits(self, index: u64) -> u64 {
         mix(self

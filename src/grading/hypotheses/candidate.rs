@@ -100,7 +100,7 @@ pub struct Candidate {
     pub behaviour: Behaviour,
     /// Curve by which the program decodes the colours that it averages.
     pub decoding: Curve,
-    /// Curve by which the program encodes the averages.
+    /// Curve by which the program encodes the averaged colours.
     pub curve: Curve,
     /// How the program arranges pixels in the picture.
     pub layout: Layout,

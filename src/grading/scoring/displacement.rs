@@ -35,15 +35,16 @@ const SURE: f64 = 8.0;
 /// Greatest squared width of a pixel, in squared pixels, that counts as correct in a picture
 /// without noise. The correct value is 1; the margin is a choice.
 const WIDE: f64 = 1.4;
-/// Addition to [`WIDE`] for one sample per pixel, in squared pixels; for n samples it is an nth. It
-/// is needed because few samples at the same places in all pixels make a picture less sharp. The
-/// value is a choice.
+/// Addition to the greatest squared pixel width that counts as correct ([`WIDE`]), for one sample
+/// per pixel, in squared pixels. For n samples per pixel, an nth of it is added. Few samples at the
+/// same places in all pixels make a correct picture less sharp. The value is a choice.
 const WIDER: f64 = 3.0;
 /// Difference from 1 by which a squared pixel width may be too small and still count as correct in
 /// a picture without noise, in squared pixels. The value is a choice.
 const NARROW: f64 = 0.25;
-/// Addition to [`NARROW`] for one sample per pixel, in squared pixels; for n samples it is an nth.
-/// It is needed because few samples make a picture sharper. The value is a choice.
+/// Addition to the amount by which a squared pixel width may be too small ([`NARROW`]), for one
+/// sample per pixel, in squared pixels. For n samples per pixel, an nth of it is added. Few samples
+/// make a correct picture sharper. The value is a choice.
 const NARROWER: f64 = 5.0;
 
 /// Greatest squared width of a pixel, in squared pixels, that counts as correct in a JPEG, whose
@@ -104,8 +105,9 @@ impl NormalEquations {
 }
 
 impl Prediction<'_> {
-    /// Returns whether the errors in pixels of several colours look like sampling noise. If most of
-    /// these pixels are exact, there is no noise, so large errors in the others have another cause.
+    /// Returns whether the errors in pixels that mix several colours look like sampling noise. If
+    /// most of these pixels are exact, there is no noise, so large errors in the others have
+    /// another cause.
     pub fn is_noise_everywhere(&self) -> bool {
         /// Greatest squared error of a pixel that counts as exact, relative to the variance of one
         /// sample. The value corresponds to 10 000 samples per pixel; it is a choice.
@@ -113,8 +115,8 @@ impl Prediction<'_> {
         /// Squared error, relative to the variance of one sample, above which a pixel counts as
         /// wrong if most pixels are exact. The value is a choice.
         const OTHER: f64 = 0.5;
-        /// Number of wrong pixels among exact ones from which on they are not chance. The value is
-        /// a choice.
+        /// Number of wrong pixels among exact ones that is too large to be chance. The value is a
+        /// choice.
         const CHANCE: usize = 4;
         /// Variance of one sample in a pixel, in squared linear light, below which the pixel is not
         /// tested. Rounding to bytes would dominate its error.
@@ -137,8 +139,8 @@ impl Prediction<'_> {
         !is_exact || others.count() < CHANCE
     }
 
-    /// Returns the squared differences in pixels of several colours, relative to the variance of
-    /// one sample in each. For n independent samples per pixel this is about 1/n.
+    /// Returns the squared differences in pixels that mix several colours, relative to the variance
+    /// of one sample in each. For n independent samples per pixel this is about 1/n.
     pub fn share(&self) -> f64 {
         let (mut squares, mut variances) = (0.0, 0.0);
         for at in (0..self.observed.len()).filter(|&at| !self.is_flat(at)) {

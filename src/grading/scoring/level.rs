@@ -34,10 +34,11 @@ pub struct Level<'a> {
     /// exactly.
     samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
-    /// Rendering to which hypotheses are compared. They are rendered only where they differ from
-    /// it.
+    /// Rendering of an earlier hypothesis. A new hypothesis is rendered only where its picture
+    /// differs from this one.
     base: RefCell<Option<Arc<Rendering>>>,
-    /// Rendering of the last hypothesis. The next one is rendered only where it differs from it.
+    /// Rendering of the last hypothesis. The next hypothesis is rendered only where its picture
+    /// differs from this one or from `base`.
     last: RefCell<Option<Arc<Rendering>>>,
 }
 
@@ -95,7 +96,7 @@ impl<'a> Level<'a> {
         Some(rendering)
     }
 
-    /// Sets the rendering to which later hypotheses are compared. They are rendered only where they
+    /// Sets the rendering that later hypotheses reuse. They are rendered only where their pictures
     /// differ from it.
     pub fn compare_with(&self, rendering: Arc<Rendering>) {
         self.base.replace(Some(rendering));

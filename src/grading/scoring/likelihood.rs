@@ -122,8 +122,8 @@ impl Prediction<'_> {
             _ => -stretches.sum::<f64>(),
         };
         let (mut squares, mut expected) = (0.0, 0.0);
-        // Sums over the pixels of several colours: the variances of one sample, and the squared
-        // differences less the variance of rounding.
+        // Sums over the pixels that mix several colours: the variances of one sample, and the
+        // squared differences less the variance of rounding.
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
             likelihood += one.density(share);

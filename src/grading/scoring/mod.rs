@@ -4,8 +4,8 @@
 //! (`grid`). Out: a `prediction` of what the cells show.
 //!
 //! First, a `rendering` of the hypothesis gives the mean and the variance of each cell (`moments`).
-//! Rendering is exact, unless the hypothesis's tracer has faults that no scene can express, or the
-//! grid is the coarsest one: then the `faulty_tracer` takes samples. Next, pixels are rearranged,
+//! It is exact, unless the grid is the coarsest one or the program traces rays in a wrong way that
+//! no other scene can express; then the `faulty_tracer` takes samples. Next, pixels are rearranged,
 //! and effects on light and `jpeg` coding are applied.
 //!
 //! A prediction says how likely the picture is (`likelihood`), which pixels are wrong however they

@@ -297,8 +297,9 @@ impl<'a> Prediction<'a> {
         }
     }
 
-    /// Returns the difference of a cell if the program truncates bytes. In a cell of one colour,
-    /// truncation loses the fraction of the byte; in other cells, it loses half a step on average.
+    /// Returns the difference between the observed and the predicted light of a cell, if the
+    /// program truncates bytes. In a cell of one colour, truncation drops the fractional part of
+    /// the byte; in other cells, it loses half a step on average.
     fn difference_of_cut_off(&self, at: usize) -> DVec3 {
         let (seen, mean) = (self.observed[at], self.moments.mean[at]);
         if seen.x.is_nan() {

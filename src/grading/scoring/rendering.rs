@@ -1,6 +1,7 @@
 //! Renders a hypothesis about the program in the cells of a grid, before pixels are rearranged and
-//! light is changed. Rendering is exact, or is done by the faulty tracer: on the coarsest grid, and
-//! if the hypothesis's tracer has faults that no scene can express.
+//! light is changed. The result is exact, unless the grid is the coarsest one or the program traces
+//! rays in a wrong way that no other scene can express. In these cases, the faulty tracer takes
+//! samples.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -19,9 +20,9 @@ use crate::{
     scene::Scene,
 };
 
-/// Number of samples per cell for a tracer with faults that no scene can express. It is a Fibonacci
-/// number, because the samples form a Fibonacci lattice. The value is a choice between noise and
-/// time.
+/// Number of samples per cell if the program traces rays in a wrong way that no other scene can
+/// express. It is a Fibonacci number, because the samples form a Fibonacci lattice. The value is a
+/// choice between noise and time.
 const SAMPLES: usize = 34;
 
 /// Fraction of a cell's area in which the faulty tracer may overlook another colour. It tests
@@ -34,19 +35,19 @@ const MISSED: f64 = 1e-3;
 pub struct Rendering {
     pub candidate: Candidate,
     pub part: Area,
-    /// Means and variances of a correct tracer that renders the hypothesis's scene. On the coarsest
-    /// grid the tracer has the hypothesis's faults.
+    /// Means and variances if the scene of the hypothesis is traced correctly. On the coarsest
+    /// grid, it is traced with the faults of the hypothesis.
     pub correct: Arc<Moments>,
-    /// Means and variances of the hypothesis's faulty tracer; `None` if its tracer has no fault, or
-    /// on the coarsest grid.
+    /// Means and variances if the scene is traced with the faults of the hypothesis; `None` if
+    /// there are no faults, or on the coarsest grid.
     behaved: Option<Arc<Moments>>,
-    /// Means and variances of a correct tracer, estimated from as many samples as `behaved`. The
-    /// difference between both shows where the faults matter. `None` if not needed.
+    /// Means and variances if the scene is traced correctly, estimated from as many samples as
+    /// `behaved`. Where both agree, the faults make no difference. `None` if not needed.
     sampled: Option<Arc<Moments>>,
 }
 
 impl Rendering {
-    /// Creates the rendering of a hypothesis whose tracer is correct, in a part of the picture.
+    /// Creates the rendering of a hypothesis that traces rays correctly, in a part of the picture.
     pub fn new(candidate: Candidate, part: Area, moments: Arc<Moments>) -> Self {
         Self {
             candidate,
@@ -178,8 +179,8 @@ impl Candidate {
             return nothing;
         }
         let (one, two) = (&self.scene, &other.scene);
-        // Different objects make a difference only where they are seen, if the tracer does not
-        // displace them.
+        // Changed objects make a difference only where they are seen, if rays are traced without
+        // displacing objects.
         let is_in_place = self.behaviour.is_in_place();
         let is_same_view = one.camera == two.camera && one.image == two.image;
         if !is_in_place || !is_same_view || self.decoding != other.decoding {

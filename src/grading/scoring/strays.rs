@@ -8,8 +8,8 @@ use super::{moments::range, prediction::Prediction};
 /// normally distributed errors is greater.
 pub const DEVIATIONS: f64 = 5.0;
 
-/// Greatest difference of a pixel of one colour that is ignored, in 8-bit steps: half a step for
-/// rounding, and a quarter for another way to decode colours.
+/// Greatest difference that is ignored in a pixel that should show one colour, in 8-bit steps: half
+/// a step for rounding, and a quarter for another way to decode colours.
 pub const WRONG: f64 = 0.75;
 
 /// Errors of a picture that no sampling can explain, if a hypothesis about the program is correct.

@@ -33,7 +33,7 @@ const SURE: f64 = 7.0;
 /// leaves more, it is not named. The value is a choice.
 const LEFT_IN_CODED: f64 = 0.25;
 
-/// Identifiers of the rows of the table that move samples by a few pixels at most.
+/// Identifiers of the mistakes that move samples by a few pixels at most.
 const SHIFT_IDS: [&str; 2] = ["half_pixel", "window_one_less"];
 
 /// Identifier of the only mistake at edges that can be recognised in a JPEG: samples are averaged
@@ -223,8 +223,9 @@ fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
     hinted().unwrap_or_default()
 }
 
-/// Iterates over the rows of the table that are visible in areas of one colour, and over exchanges
-/// of two objects' colours. A row about a single object is repeated for each of `objects`.
+/// Iterates over the rows of the table of mistakes that are visible in areas of one colour, and
+/// over exchanges of two objects' colours. A row about a single object is repeated for each of
+/// `objects`.
 pub fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
     let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);
     let of_objects = objects.iter().flat_map(|&object| {

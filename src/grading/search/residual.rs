@@ -24,14 +24,15 @@ const PIXELS_PER_INSIDE: usize = 10;
 /// scene cause as much.
 const IGNORED: f64 = 0.06;
 
-/// Addition to [`IGNORED`] if each pixel has one sample in its middle, in pixels; with n samples it
-/// is an nth. Chosen by trial.
+/// Addition to the greatest displacement of all edges that is ignored ([`IGNORED`]), in pixels, if
+/// each pixel has one sample in its middle. For n samples per pixel, an nth of it is added. Chosen
+/// by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
 /// Greatest displacement of the edges of a single object that is ignored, in pixels. The first
-/// number holds without noise. The second is added with one sample per pixel, and the third instead
-/// of it in a JPEG, whose coding makes most of its noise. Samples on a regular grid move an edge
-/// parallel to the grid by up to half of their distance.
+/// number holds without noise. The second is added with one sample per pixel; with n samples, it is
+/// divided by √n. The third takes its place in a JPEG, most of whose noise is from coding. Samples
+/// on a regular grid move an edge parallel to the grid by up to half of their distance.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
 /// Displacement of all edges of a JPEG, in pixels to the right or down, above which it is reported,
@@ -90,7 +91,7 @@ pub struct Residual {
     pub are_areas_right: bool,
     /// Whether almost all wrong pixels lie near edges.
     pub is_at_edges: bool,
-    /// Whether errors in pixels of several colours look like sampling noise.
+    /// Whether errors in pixels that mix several colours look like sampling noise.
     pub is_noise_everywhere: bool,
     /// Displacement of edges; `None` if it may be chance. Tested only if the wrong pixels lie near
     /// edges.
@@ -164,7 +165,7 @@ fn displacement_and_width(
     let background = judge.scene.objects.len();
     let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
     let share = match level.jpeg {
-        // Otherwise, the effect of JPEG coding on edges would be attributed to few samples.
+        // In a JPEG, the effect of coding on edges would otherwise be attributed to few samples.
         Some(_) => prediction.share(),
         None => {
             let score = prediction.score();
