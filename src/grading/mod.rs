@@ -52,7 +52,7 @@ use crate::{
 /// The exact picture of a part of a scene, and what else is needed to judge pictures of that part.
 /// It is computed once for a whole class.
 pub struct Reference {
-    /// The exact picture of the part.
+    /// The exact picture.
     pub exact: Exact,
     /// Part of the scene's picture that can be judged.
     pub part: Area,

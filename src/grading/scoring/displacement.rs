@@ -15,10 +15,10 @@ use super::{linear_system::solve, prediction::Prediction};
 /// deviations. A χ² variable with six degrees of freedom exceeds 50 with a probability below 10⁻⁸.
 const CHANCE: f64 = 50.0;
 
-/// Displacement that one sample per pixel may seem to cause, in pixels; with n samples it is an
-/// nth. The mean of the n points (i/n, φ₂(i)), where φ₂ mirrors the binary digits of i, lies 1/(2n)
-/// pixels off the pixel's middle. The value is above 1/2 because n is estimated from the noise, and
-/// these points make less noise than n random ones.
+/// Displacement that one sample per pixel may seem to cause, in pixels. With n samples it is an nth
+/// of this. Samples at the same places in all pixels may lie off the pixels' middles together;
+/// those of a Hammersley set do by 1/(2n). The value is greater than 1/2 because n is estimated
+/// from the noise, and the estimate is too large for such samples.
 const OFF_MIDDLE: f64 = 0.75;
 /// Maximum displacement that is attributed to few samples per pixel, in pixels. A larger one counts
 /// as a mistake, however few the samples are. The value is a choice.

@@ -53,10 +53,11 @@ pub struct Prediction<'a> {
     of_cut_off: OnceCell<Vec<DVec3>>,
 }
 
-/// Blurs cells by a variance, in squared cells. There are `width` cells in a row.
+/// Blurs cells by a Gaussian of the given variance, in squared cells. There are `width` cells in a
+/// row.
 ///
-/// The weights a, 1 − 2a, a of three neighbouring cells have the variance 2a. Applying them
-/// repeatedly, with a ≤ 1/16, approximates a Gaussian.
+/// The weights a, 1 − 2a and a, of a cell's neighbour, the cell itself and the other neighbour,
+/// have the variance 2a. Applying them repeatedly, with a ≤ 1/16, approximates a Gaussian.
 fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
     let height = cells.len() / width;
     let rounds = (8.0 * variance).ceil();

@@ -202,8 +202,8 @@ fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     judge.explains(&short).then_some(short)
 }
 
-/// Returns the mistakes of which the coarsest grid shows a trace, although a correct program
-/// explains the picture. If most pixels are mixtures of colours, a mistake may look like noise.
+/// Returns the mistakes that the coarsest grid hints at, although a correct program explains the
+/// picture. If most pixels are mixtures of colours, a mistake may look like noise.
 fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
     let hinted = || {
         let tiny = judge.tiny(candidate)?;

@@ -131,7 +131,7 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let Some(long) = judge.judged(candidate, level) else {
         return candidate.clone();
     };
-    // A short number counts as not fitted, so the hypothesis saves its cost. The rest of the cost
+    // A short number counts as not fitted, which saves its cost. In return, the rest of the cost
     // may grow by as much.
     let most = long.cost + price(level, free.len());
     let steps = candidate.steps(1.0);
