@@ -47,8 +47,9 @@ impl FieldOwner {
         Some(self)
     }
 
-    /// Returns a field that is used, by its name. The width and the height of an image, which are
-    /// no `f64`s, and the derived fields of a box are not reached so.
+    /// Returns a mutable reference to the field `name`. Returns `None` if the owner does not use
+    /// the field, for the width and the height of an image, which are no `f64`s, and for the fields
+    /// of a box that are computed from its corners.
     fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
         match self {
             Self::Image(Image {

@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// A `--set` argument.
+/// A `--set TARGET=VALUE` argument of the command line.
 #[derive(Clone, Debug)]
 pub struct Override<'s> {
     /// The block of a target `BLOCK.FIELD`; `None` if the target is a `let`.
@@ -49,8 +49,8 @@ pub fn read<'s>(
     overrides
 }
 
-/// Splits the argument `text` into the block, if it has one, the name of the field or `let`, and
-/// the offset of the value.
+/// Splits the argument `text`, such as `camera.roll=30deg`, into the block, if it has one, the name
+/// of the field or `let`, and the offset of the value.
 ///
 /// # Errors
 ///
@@ -189,9 +189,9 @@ impl<'s> Override<'s> {
         false
     }
 
-    /// Returns whether the argument's value can be evaluated at `place` and suits it: `Ok` with the
-    /// field that it is for, or `Err` with the name of a `let`, whose value may use only the names
-    /// defined before it. Returns `false` if the budget of comparisons is spent.
+    /// Returns whether the argument's value has no errors if it sets `place`: either a field
+    /// (`Ok`), whose conditions it must meet, or the `let` of a name (`Err`), whose value may use
+    /// only names defined before it. Returns `false` if the budget of comparisons is spent.
     fn suits(
         &self,
         place: Result<&schema::FieldRow, &str>,
@@ -274,10 +274,11 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
     names.collect()
 }
 
-/// Help for a target that the scene does not have: which targets are possible.
+/// Help text for a `--set` target that the scene does not have. It says which targets are possible.
 const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
 
 /// Maximum number of names that a help text lists. If there are more, the help lists none of them.
+/// The number is a choice that keeps the help short.
 const FEW: usize = 8;
 
 /// Returns the error that a target's block is neither in the file nor can be added.
@@ -319,8 +320,8 @@ fn no_such_block<'s>(
         )
 }
 
-/// Returns the error that a target is not a `let` of the file. The target may have been meant as a
-/// block.
+/// Returns the error that the scene has no `let` with the name of a target. The help also covers a
+/// target that was meant as a block or a field.
 fn no_such_let<'s>(
     it: &Override<'s>,
     items: &[Item<'s>],

@@ -17,7 +17,7 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// Lowers the next items of the file.
+    /// Lowers the next definitions and blocks of the file.
     pub(super) fn items(&mut self, items: &[Item<'s>]) {
         for item in items {
             if !self.is_wanted() {
@@ -198,7 +198,7 @@ impl<'s> Lowering<'s> {
         // A block of an unknown kind may be meant as an object, so missing objects are not
         // reported.
         self.has_objects |= near.is_none();
-        // If the block has only its start, the parser has reported it already.
+        // If the block has no fields and no `}`, the parser has reported it already.
         if near.is_none() && block.close.is_none() && block.fields.is_empty() {
             return None;
         }

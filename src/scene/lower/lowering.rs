@@ -41,7 +41,8 @@ pub(super) struct Lowering<'s> {
     /// lowering.
     pub(super) found: Vec<Diagnostic>,
     pub(super) problems: Problems,
-    /// The spans of the values of unknown fields, in the order of the text.
+    /// The spans of the values of unknown fields, in the order of the text. Syntax problems within
+    /// them are dropped.
     pub(super) unknown: Vec<Span>,
 }
 

@@ -17,8 +17,9 @@ use crate::{
     syntax::{self, tree::Item},
 };
 
-/// Number of bytes at the start of a file that are searched for zero bytes. If there are more than
-/// one or two, the file is binary rather than text.
+/// Number of bytes at the start of a file that are searched for zero bytes, which show that the
+/// file is binary rather than text. The number is a choice: a larger one finds zero bytes further
+/// down, but takes longer.
 const BINARY_BYTES: usize = 1 << 14;
 
 /// Reads a scene: parses the file and the overrides, and lowers them.
@@ -36,9 +37,9 @@ pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Ca
     cancel::unless_set(cancel, reading)
 }
 
-/// Minimum size, in bytes, of the parts in which a file is read. A part is long enough to be worth
-/// a thread with a stack of its own. It is short enough that its tree takes little memory and that
-/// cancelling takes effect soon.
+/// Minimum size, in bytes, of the parts in which a file is read. A smaller part would not be worth
+/// a thread with a stack of its own. The tree of a larger part would take more memory, and
+/// cancelling would take effect later.
 const PART_BYTES: usize = 1 << 16;
 
 /// Reads a scene as [`read`] does, in parts of at least `bytes` bytes. The parts are lowered one

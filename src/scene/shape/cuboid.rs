@@ -61,9 +61,9 @@ impl Cuboid {
         })
     }
 
-    /// Returns the value of the field `name` if that is `center` or `size`; otherwise `None`. The
-    /// value is rounded to fifteen digits, which removes the rounding errors of computing it from
-    /// the corners.
+    /// Returns the value of the field `name` if this is `center` or `size`, and otherwise `None`.
+    /// The value is rounded to fifteen digits, which removes the rounding errors of computing it
+    /// from the corners.
     pub(in crate::scene) fn center_or_size(&self, name: &str) -> Option<DVec3> {
         if name == BOX.center.name {
             Some(tidy(self.min.midpoint(self.max)))

@@ -161,16 +161,16 @@ impl Shape {
         for_each_kind!(self, own => own.greatest_length(from))
     }
 
-    /// Returns the fields that the shape is written with, and their values. A box is written by its
-    /// corners.
+    /// Returns the fields with which the shape is written as a text, and their values. A box is
+    /// written with its corners rather than its centre and size.
     pub(super) fn fields(mut self) -> impl Iterator<Item = (&'static str, Value)> {
         let row = schema::of_kind(self.block_kind());
         let value = move |name| Some((name, self.field_mut(name)?.value()));
         row.field_names().filter_map(value)
     }
 
-    /// Returns a field that the shape is written with, by its name. Those of a box are its corners,
-    /// and not the centre and the size that are derived from the corners.
+    /// Returns a mutable reference to the field `name`. For a box, `center` and `size` are not
+    /// available, because they are computed from the corners.
     pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
         for_each_kind!(self, own => own.field_mut(name))
     }
@@ -235,8 +235,9 @@ mod tests {
         source::{Source, Sources},
     };
 
-    /// Returns sets of fields that a block can be given together. Each way of each
-    /// [`Choice`](crate::schema::Choice) of the block occurs in at least one set.
+    /// Returns sets of fields that a block can have together. Each way of each
+    /// [`Choice`](crate::schema::Choice) of the block, i.e. each of the alternatives that exclude
+    /// each other, occurs in at least one set.
     fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {
         let most = row.choices.iter().map(|choice| choice.ways.len()).max();
         (0..most.unwrap_or(1)).map(move |way| {
