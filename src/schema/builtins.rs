@@ -73,7 +73,8 @@ impl Function {
         }
     }
 
-    /// Returns the type of the argument at `index`; `None` if the function does not take so many.
+    /// Returns the type of the argument at `index`. Returns `None` if the function takes fewer
+    /// arguments.
     pub fn parameter(&self, index: usize) -> Option<Type> {
         let last = self.takes.last().filter(|_| self.more);
         self.takes.get(index).or(last).copied()
