@@ -17,9 +17,10 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Minimum distance, in bytes, between two [`Scan::split_points`]; a nearer point is left out,
-/// which saves memory. The distance is small compared with
-/// [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), the number of bytes that pest reads at a time.
+/// Minimum distance, in bytes, between two recorded places where a text can be split for parsing. A
+/// nearer place is left out, which saves memory. The distance is small compared with
+/// [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), the number of bytes that are parsed at a time, so
+/// few bytes more than those are parsed.
 const SPLIT_SPACING_BYTES: usize = 256;
 
 /// Result of scanning a text.
@@ -48,7 +49,8 @@ impl Scan {
         // open parentheses, and for each open parenthesis the number of minuses before it.
         let (mut minuses, mut outside, mut open) = (0, 0, Vec::new());
         let mut is_told = false;
-        // Number of tokens between two checks for cancellation.
+        // Number of tokens between two checks for cancellation. The number is a choice: a larger
+        // one would delay cancellation, and a much smaller one would slow the scan.
         const STRIDE: usize = 1 << 14;
         for count in 0_usize.. {
             let token = lexer.token();

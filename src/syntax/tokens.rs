@@ -235,7 +235,7 @@ pub fn numeric_part(written: &str) -> &str {
 
 /// Returns whether a name occurs in a text outside its comments.
 pub fn has_name(text: &str, name: &str) -> bool {
-    // Most texts do not contain the name at all, so that the lexer does not run.
+    // Most texts do not contain the name at all. For these, the lexer does not run.
     let mut lexer = Lexer::new(text, 0);
     text.contains(name)
         && loop {

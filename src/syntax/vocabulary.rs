@@ -50,7 +50,7 @@ impl<'s> Vocabulary<'s> {
         row.is_some_and(|row| row.must.contains(&Condition::Whole))
     }
 
-    /// Returns whether all parts of a field's value must be greater than 0.
+    /// Returns whether all coordinates of a field's value must be greater than 0.
     pub fn is_positive(&self, kind: &str, field: &str) -> bool {
         let row = schema::block(kind).and_then(|row| row.field(field));
         row.is_some_and(|row| row.must.contains(&Condition::EachMoreThanZero))

@@ -59,8 +59,8 @@ impl<'s> Recovery<'_, 's> {
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
                     // Fields that the outer block lacks may stand in the inner one. A block with
-                    // bad text gets no report of missing fields, so its keyword is recorded as
-                    // such.
+                    // bad text gets no report of missing fields, so the block's keyword is recorded
+                    // as bad text.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();
@@ -312,8 +312,8 @@ impl<'s> Recovery<'_, 's> {
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // A name after a comma is taken as a value. If a value follows the name, it is the next
-            // field.
+            // A name after a comma is taken as a value, unless a value follows the name. In that
+            // case the name is the next field.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {

@@ -37,8 +37,8 @@ const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the v
 const LACKS_COUNT: &str =
     "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
 const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
-/// Correction of a pattern ([`HeadPattern`]) that is no text to write: the object's name is moved
-/// before the `for`.
+/// Mark in place of a correction in a [`HeadPattern`]: the object's name is to be moved before the
+/// `for`.
 const NAME_FIRST: &str = "^";
 
 /// Patterns of one index with its count, such as `i < 8`, without and with mistakes.
@@ -149,8 +149,8 @@ pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     }
 }
 
-/// Texts that the items `I`, `N`, `M` and `W` of a pattern matched when it was matched last. They
-/// are empty if the pattern has no such item.
+/// Texts that a pattern matched: the names `I` and `W`, and the values `N` and `M`. A text is empty
+/// if the pattern does not contain its letter.
 #[derive(Default)]
 struct Captures<'t> {
     i: &'t str,

@@ -90,15 +90,16 @@ struct Context<'s> {
     field: &'s str,
     /// Type that the value should have, if that is known.
     takes: Option<Type>,
-    /// Needless separators and the characters that start comments in other languages. Each is
-    /// mapped to its places.
+    /// Needless separators, such as `;`, and the characters that start comments in other languages,
+    /// such as `#`. Each is mapped to its places.
     signs: BTreeMap<&'s str, Vec<Span>>,
-    /// Whether one of `signs` may be needed after all. The reports of `signs` then get no fix.
+    /// Whether a separator in `signs` may be needed after all, for example to continue a list. The
+    /// reports of needless separators then get no fix.
     is_doubtful: bool,
 }
 
 impl<'w, 's> Recovery<'w, 's> {
-    /// Makes a recovery at the beginning of a text.
+    /// Makes an error recovery that starts at the beginning of a text.
     pub fn new(source: &'s Source, id: SourceId, words: &'w Vocabulary<'s>) -> Self {
         let text = source.text();
         Self {
@@ -446,8 +447,8 @@ fn unquoted(written: &str) -> &str {
     written.trim_matches(marks).trim()
 }
 
-/// Returns a help with an example of a value of the type `takes`. If the type is unknown, the
-/// examples are of several types.
+/// Returns a help text with an example value of the type `takes`. If the type is unknown, the text
+/// has examples of several types.
 fn example(takes: Option<Type>) -> &'static str {
     let any = "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`";
     takes.map_or(any, Type::such_as)
