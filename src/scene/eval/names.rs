@@ -35,8 +35,8 @@ pub struct Names<'s> {
     definitions: HashMap<&'s str, Span>,
     /// Names of the file's objects. They have no value, but a message can explain that.
     pub(super) objects: HashSet<&'s str>,
-    /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in `for
-    /// i < 8`.
+    /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
+    /// `for i < 8`.
     pub(super) indices: HashSet<&'s str>,
     /// Number of comparisons of names that are left for all searches for the nearest name.
     budget: ComparisonBudget,
