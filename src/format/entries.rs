@@ -1,4 +1,4 @@
-//! Entries: the definitions, blocks, fields and comments that start lines of their own.
+//! Makes entries: the definitions, blocks, fields and comments that start lines of their own.
 //!
 //! This module decides to which line a comment belongs, and which blocks stay on one line.
 
@@ -34,9 +34,9 @@ pub struct Entry<'s> {
 pub enum EntryKind<'s> {
     /// A line of comments.
     Comments,
-    /// A definition: the words of `let NAME`, and those of `= VALUE`.
+    /// A definition: the tokens and comments of `let NAME`, and those of `= VALUE`.
     Definition(Vec<Word<'s>>, Vec<Word<'s>>),
-    /// A field: its name, and the words of its value.
+    /// A field: its name, and the tokens and comments of its value.
     Field(&'s str, Vec<Word<'s>>),
     /// A block.
     Block(BlockEntry<'s>),
@@ -45,7 +45,7 @@ pub enum EntryKind<'s> {
 /// A block of a scene, with its layout.
 #[derive(Debug)]
 pub struct BlockEntry<'s> {
-    /// Words before the `{`.
+    /// Tokens and comments before the `{`.
     pub head: Vec<Word<'s>>,
     /// Kind of the block, such as `sphere`.
     pub kind: &'s str,
@@ -61,7 +61,7 @@ pub struct BlockEntry<'s> {
     pub entries: Vec<Entry<'s>>,
     /// Whether the block is laid out on one line.
     pub on_one_line: bool,
-    /// Whether the block was written on one line and is only slightly too wide to be laid out so.
+    /// Whether the block was written on one line and is at most a fifth wider than allowed.
     pub is_nearly_one_line: bool,
 }
 

@@ -23,10 +23,9 @@ pub enum Before {
     Nothing,
     /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long. Of the words of a line at which it can
-    /// be broken, it is broken at one with the lowest number. The number is 2 for each pair of
-    /// parentheses around the word, and 1 more at the operators of products, so that sums are
-    /// broken first.
+    /// A blank, or a line end if the line would be too long. A line is broken at a word with the
+    /// lowest number. The number is 2 for each pair of parentheses around the word, and 1 more for
+    /// the operator of a product, so that sums are broken first.
     Fold(usize),
     /// A line end.
     Line,
@@ -217,9 +216,9 @@ impl<'a, 's> TokenReader<'a, 's> {
     }
 }
 
-/// Maximum width of a line, in characters. Longer lines are broken if there are words before which
-/// they can be broken. The width is measured before alignment and without the comments at the
-/// line's end.
+/// Maximum width of a line, in characters, as the language's reference states it. Longer lines are
+/// broken if there are words before which they can be broken. The width is measured before
+/// alignment and without the comments at the line's end.
 pub const WIDTH: usize = 100;
 
 /// Returns the width of words on one line, in characters. If a comment has several lines, only its
