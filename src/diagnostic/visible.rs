@@ -48,7 +48,7 @@ pub fn escaped(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-/// Appends a character as [`visible`] shows it.
+/// Appends a character. An invisible one is escaped, as in `\u{1b}`.
 pub fn push_visible(text: &mut String, character: char) {
     if is_invisible(character) {
         // Writing to a string does not fail.
