@@ -36,7 +36,8 @@ pub struct Inspection {
     pub vanishing_points: [Option<[f64; 2]>; 3],
     /// The objects in file order.
     pub objects: Vec<ObjectFacts>,
-    /// Whether the areas of [`ObjectFacts::seen`] are exact.
+    /// Whether the seen areas of all objects are exact. If not, some pixels were counted as showing
+    /// only what is seen at their centres.
     pub is_exact: bool,
 }
 
@@ -94,12 +95,12 @@ impl ObjectFacts {
     }
 }
 
-/// Describes a scene. `source` is the text that it was read from, in which lines are counted.
+/// Describes a scene. `source` is the text from which it was read, in which lines are counted.
 ///
 /// # Panics
 ///
-/// The scene was not read, but made in code, and breaks a condition of the language;
-/// [`Scene::check`] tells.
+/// Panics if the scene was made in code rather than read from a text, and breaks a condition of the
+/// language. [`Scene::check`] finds this out.
 pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     let per_pixel = match scene.sampler.count {
         Count::PerPixel(count) => Some(count),
@@ -178,11 +179,12 @@ fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
 /// Returns the vanishing point of the lines parallel to an axis, in pixels from the picture's top
 /// left corner. Returns `None` if the axis is parallel to the view plane.
 ///
-/// The ray along the axis a has the direction (a·u, a·v, −a·w) in the camera's axes. Scaled to
-/// depth 1, it ends in the view plane.
+/// Let u, v and w be the unit vectors to the picture's right, to its top, and against the view
+/// direction. The ray along the axis a has the coordinates (a·u, a·v, −a·w) in the directions u, v
+/// and −w. Divided by its depth −a·w, it ends at the vanishing point.
 fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
-    // With the view direction f, w = −f/|f|. Therefore, this component of w is zero exactly if the
-    // axis is parallel to the view plane.
+    // If f is the view direction, w = −f/|f|. So this coordinate of w is zero exactly if the axis
+    // is parallel to the view plane.
     if basis.w[axis].is_zero() {
         return None;
     }

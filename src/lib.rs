@@ -1,5 +1,5 @@
-//! Pinhole reads a small declarative scene language and renders what it describes through a virtual
-//! pinhole camera, with every sample decided exactly.
+//! Pinhole reads a small declarative scene language and renders scenes through a virtual pinhole
+//! camera. Which object a sample shows is decided exactly, without rounding errors.
 //!
 //! A text becomes a [`Scene`], and a scene a [`Picture`] in memory:
 //!
@@ -119,7 +119,7 @@ pub mod format;
 pub mod grading;
 pub mod inspect;
 pub mod probe;
-// Its trials run on threads, which a browser does not have.
+// The trials of `report` run on threads, which a browser does not have.
 #[cfg(not(target_family = "wasm"))]
 pub mod report;
 pub mod seen;
