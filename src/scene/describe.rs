@@ -1,5 +1,5 @@
-//! Describes the language's words in Markdown, from the tables of the schema. Hovers, completion
-//! and `pinhole explain` show these texts.
+//! Describes the words of the scene language in Markdown, from the tables of the language. Hovers,
+//! completion and `pinhole explain` show these texts.
 
 use std::{fmt::Write, ops::Range};
 

@@ -1,4 +1,4 @@
-//! Builders of diagnostics about the meaning of a scene.
+//! Makes diagnostics about the meaning of a scene, as opposed to its syntax.
 
 use crate::{
     diagnostic::{Applicability, Diagnostic, Fix, Label, Problems, Severity},

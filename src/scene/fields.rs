@@ -62,8 +62,8 @@ impl FieldOwner {
         }
     }
 
-    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
-    /// rounding error of a limit may be misjudged.
+    /// Returns whether the language's conditions on the fields hold, such as a radius above 0. They
+    /// are checked in `f64`, so a value within rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         match self {
             Self::Image(_) => true,

@@ -48,9 +48,9 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     /// next round. The limit only makes sure that the function ends; texts are expected to need far
     /// fewer rounds. Errors that have a fix after the last round are counted as `waiting`.
     const ROUNDS: usize = 1000;
-    /// Maximum number of bytes that all rounds read together, 32 MiB. It bounds the time. With a
-    /// smaller number, more mistakes would remain in long texts: such a text has few rounds, and a
-    /// mistake that another one hides is not found by then.
+    /// Maximum number of bytes that all rounds of fixes read together, 32 MiB. It bounds the time.
+    /// The number is a choice: a long text gets few rounds, so mistakes that show only after other
+    /// fixes may remain in it.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;

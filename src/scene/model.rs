@@ -55,7 +55,7 @@ pub struct Image {
     pub background: Color,
 }
 
-/// The pinhole camera, as the file gives it. Lengths are in metres.
+/// The pinhole camera, described by the fields that a scene file gives. Lengths are in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The eye, through which all rays pass.
@@ -197,7 +197,7 @@ impl View {
 /// Returns the side of a pixel at depth 1, in metres. If the camera has a distance d from the eye
 /// to the view plane, the side is
 ///
-///     view_height / (height · d),
+///   view_height / (height · d),
 ///
 /// where view_height is the height of the window in metres, and height that of the picture in
 /// pixels. If it has a field of view, the side is 2·tan(angle/2) divided by the picture's height or

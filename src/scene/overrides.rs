@@ -1,7 +1,7 @@
 //! Replaces values of a scene by those of `--set TARGET=VALUE` arguments.
 //!
 //! In: the arguments as they were typed, and all or some items of the file. Out: the items with the
-//! new values, which lowering evaluates.
+//! new values, which are evaluated later.
 
 use super::{
     error::error,
@@ -129,8 +129,8 @@ pub fn apply<'s>(overrides: &mut Vec<Override<'s>>, items: &mut [Item<'s>]) {
     overrides.retain(|it| !it.put_into(items));
 }
 
-/// Handles the arguments whose targets the file does not have. Adds a block to `items` for a
-/// setting such as the camera, and reports all other arguments.
+/// Handles the arguments whose targets the file does not have. If a target is a field of the image,
+/// the camera or the sampler, adds this block to `items`. Reports all other arguments.
 pub fn add<'s>(
     overrides: Vec<Override<'s>>,
     items: &mut Vec<Item<'s>>,
@@ -219,8 +219,8 @@ impl<'s> Override<'s> {
     }
 }
 
-/// Returns the row of the field `name` of a block, which is given by its kind or by an object's
-/// name.
+/// Returns the row of the field `name` in the language's table. `block` is the kind of the block or
+/// an object's name.
 fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema::FieldRow> {
     let object = || {
         items.iter().find_map(|item| match item {
@@ -231,12 +231,14 @@ fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema:
     setting(block).or_else(object)?.field(name)
 }
 
-/// Returns the row of the kind `name` if a scene has at most one such block, as for the camera.
+/// Returns the row of the kind `name` in the language's table, if it is image, camera or sampler. A
+/// scene has at most one such block.
 fn setting(name: &str) -> Option<&'static schema::BlockRow> {
     schema::block(name).filter(|row| !row.is_object)
 }
 
-/// Returns the row of a block's kind. A mistyped kind stands for the nearest one.
+/// Returns the row of a block's kind in the language's table. A mistyped kind stands for the
+/// nearest one.
 fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }

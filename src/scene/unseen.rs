@@ -97,9 +97,10 @@ impl Outside {
 /// Returns whether samples cannot tell the squares of a visible board apart, so that all squares
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    // For a camera that looks straight down, up may be parallel to the view direction, and then its
-    // axes are unknown. Any axes will do: however the window is turned, its extents along x and z
-    // are at least its shorter side. With the axes chosen here, one of the extents is equal to it.
+    // For a camera that looks straight down, up may be parallel to the view direction, and then the
+    // camera's axes are unknown. Any axes will do: however the window is rotated, its extents along
+    // x and z are at least its shorter side. With the axes chosen here, one of the extents is equal
+    // to it.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;

@@ -190,8 +190,8 @@ impl<'s> Evaluator<'_, 's> {
         // A function of vectors needs parentheses around the coordinates, and a function of numbers
         // must not have them.
         let meant = match (row.takes, arguments) {
-            // The language has no transparency, so a fourth channel is left out. A colour alone
-            // needs no `rgb`.
+            // The language has no transparency, so a fourth channel is left out. A colour such as
+            // `red` needs no `rgb` around it.
             (_, [r, g, b, _]) if is_rgb => Some(format!("rgb({})", [r, g, b].map(text).join(", "))),
             (_, [only])
                 if is_rgb

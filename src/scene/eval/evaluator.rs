@@ -17,9 +17,9 @@ use crate::{
 /// Evaluator of expressions, which collects their problems.
 #[derive(Debug)]
 pub struct Evaluator<'a, 's> {
-    /// The file and the `--set` arguments.
+    /// The scene file and the `--set` arguments of the command line.
     pub sources: &'s Sources,
-    /// The names that are defined.
+    /// The names of the scene that are defined so far.
     pub names: &'a Names<'s>,
     /// The problems found so far.
     pub problems: &'a mut Problems,

@@ -24,7 +24,7 @@ use crate::{
 /// Names that are defined at the current place of the text, and what was reported about names.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
-    /// Definitions and indices so far, with their values.
+    /// Values of the `let`s and of the indices (counters of a `for`) that are defined so far.
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
@@ -45,7 +45,7 @@ pub struct Names<'s> {
     pub(in crate::scene) problems: RefCell<Problems>,
     /// Names that were reported as undefined. Further uses become labels of the same problem.
     pub(super) reported: RefCell<HashMap<&'s str, Reported>>,
-    /// Suggestions in place of undefined names.
+    /// Names that reports suggest in place of undefined ones.
     pub(in crate::scene) suggestions: Suggestions<'s>,
 }
 
@@ -148,7 +148,7 @@ impl<'s> Names<'s> {
         self.defined.extend(hidden);
     }
 
-    /// Removes an index at the end of its block.
+    /// Removes an index, the counter of a `for`, at the end of its block.
     pub fn forget_index(&mut self, name: Name<'s>) {
         if self.place(name.text) == Some(name.span) {
             self.defined.remove(name.text);
@@ -174,8 +174,8 @@ impl<'s> Names<'s> {
         self.defined.get(name)?.value
     }
 
-    /// Returns the span of a name in the first `let` of the file that defines it, even further
-    /// down.
+    /// Returns the span of a name in the first `let` of the file that defines it, even if this
+    /// `let` stands further down.
     pub fn definition(&self, name: &str) -> Option<Span> {
         self.definitions.get(name).copied()
     }

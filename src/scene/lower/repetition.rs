@@ -1,5 +1,5 @@
-//! Lowers repeated blocks: a block with indices, such as `sphere for i < 8 { … }`, stands for many
-//! objects.
+//! Converts repeated blocks: a block with indices, such as `sphere for i < 8 { … }`, stands for
+//! many objects.
 
 use std::collections::BTreeSet;
 
@@ -51,7 +51,7 @@ impl<'s> Lowering<'s> {
         } else if are_right {
             match self.combinations(block, repetition) {
                 Some(combinations) => self.objects_of(row, block, repetition, combinations),
-                // The head is wrong, but problems of the fields are reported, too.
+                // The `for` is wrong, but problems of the fields are reported, too.
                 None => self.unbuilt_without_indices(row, block, repetition),
             }
         }

@@ -69,7 +69,7 @@ impl<'s> Lowering<'s> {
     ) -> Vec<Span> {
         let (row, mut taken) = (block.row, Vec::new());
         let is_unknown = |it: &tree::Field<'_>| row.field(it.name.text).is_none();
-        // Most blocks have no unknown field, so this case is fast.
+        // Most blocks have no unknown field. For these, the function returns early.
         if !fields.iter().any(is_unknown) {
             return taken;
         }
@@ -200,8 +200,8 @@ impl<'s> Lowering<'s> {
             return None;
         }
         let mut perhaps: Vec<&FieldRow> = row.fields_perhaps(word).collect();
-        // A vector of length 1 is more likely a direction than a point, so the fields are suggested
-        // in reverse order.
+        // A vector of length 1 is more likely a direction than a point. The fields are then
+        // suggested in reverse order, `direction` before `lookat`.
         let is_unit = |text: &str| match literal(text, Type::Vector) {
             Some(Value::Vector(vector)) => (vector.length() - 1.0).abs() < 1e-3,
             _ => false,
@@ -348,7 +348,7 @@ impl<'s> Lowering<'s> {
             BlockKind::Camera => {
                 self.camera(block);
             }
-            // The size of the picture may be unknown yet, so the largest one is assumed.
+            // The size of the picture may not be known yet, so the largest one is assumed.
             BlockKind::Sampler => {
                 self.sampler(block, Some(LARGEST));
             }

@@ -1,6 +1,6 @@
 //! Shapes of objects, with their colours.
 //!
-//! Each kind of shape has a file. It defines how the kind is lowered from its block, its position
+//! Each kind of shape has a file. It defines how the shape is built from its block, its position
 //! and extent, its fields, and its description. This file only dispatches to the kinds.
 //!
 //! A new kind begins with [`BlockKind`] and its row in the schema. From there, compiler errors and
@@ -104,9 +104,9 @@ impl Shape {
         schema::of_kind(self.block_kind()).name
     }
 
-    /// Returns three colours of the shape: for a box, those of the faces across x, y and z; for a
-    /// checkerboard, that of the even squares, and twice that of the odd squares; for any other
-    /// shape, three times its only colour.
+    /// Returns three colours of the shape: for a box, those of the faces perpendicular to x, y and
+    /// z; for a checkerboard, that of the even squares, and twice that of the odd squares; for any
+    /// other shape, three times its only colour.
     pub fn colors(&self) -> [Color; 3] {
         for_each_kind!(self, own => own.colors())
     }
