@@ -90,7 +90,8 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
 /// Patterns that recognize files of other programs. A file matches a row if it starts as the row
-/// says, contains enough of the row's strings, and none of its characters. The columns of a row:
+/// says, contains enough of the row's strings, and contains none of the row's forbidden characters.
+/// The columns of a row:
 ///
 /// - the name of the format;
 /// - the possible beginnings of the file, of at most five characters, white space left out,

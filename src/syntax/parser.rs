@@ -1,10 +1,10 @@
 //! Parses a text into the tree.
 //!
-//! In: a source. Out: its tree, comments and problems. pest parses every item that follows the
-//! grammar, a few kilobytes at a time. The functions here convert pest's pairs to nodes and are
-//! named after the grammar's rules. `recovery` reads an item that pest rejects. It also reads an
-//! item that pest accepts but that was probably meant otherwise, such as a block with a field that
-//! it does not have.
+//! In: a source. Out: its tree, comments and problems. pest, a parser generated from the grammar,
+//! reads every item that follows the grammar, a few kilobytes at a time. The functions here convert
+//! pest's pairs (matches of grammar rules) to nodes and are named after the rules. `recovery` reads
+//! an item that pest rejects. It also reads an item that pest accepts but that was probably meant
+//! otherwise, such as a block with a field that it does not have.
 //!
 //! A text without mistakes can be split after each `}` and before each `let`: in such a text, every
 //! `}` ends a block and every `let` starts a definition.
@@ -38,7 +38,7 @@ use crate::{
     source::{Source, SourceId, Span},
 };
 
-/// pest's parser of the grammar's rules.
+/// Parser of the grammar's rules, which pest generates.
 #[derive(pest_derive::Parser)]
 #[grammar = "grammar/scn.pest"]
 struct Grammar;
@@ -51,8 +51,8 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::sign))
 });
 
-/// Stack size, in bytes, of the threads that parse. Without optimization, pest and recovery use
-/// tens of kilobytes of stack for each level of nesting, and there are at most 256 levels
+/// Stack size, in bytes, of the threads that parse. Without optimization, pest and error recovery
+/// use tens of kilobytes of stack for each level of nesting, and there are at most 256 levels
 /// ([`NESTING_LIMIT`](super::NESTING_LIMIT)). All levels together fit into half of this size.
 pub const STACK_BYTES: usize = 64 << 20;
 
@@ -169,10 +169,10 @@ pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
     words: &'w Vocabulary<'s>,
-    /// Start of the slice that pest reads; pest's offsets count from it.
+    /// Byte offset of the text that pest reads. The positions that pest returns count from it.
     base: usize,
     /// Whether the last item follows the grammar but has an unknown field or function, so that
-    /// recovery should read it again.
+    /// error recovery should read it again.
     doubtful: bool,
 }
 

@@ -69,8 +69,9 @@ pub fn parse_in_parts<'s>(
     };
     let count = threads::available().min(parts.len()).min(MOST_THREADS);
     thread::scope(|scope| {
-        // Thread i parses the parts i, i + count, i + 2·count and so on. Its channel holds one
-        // result, so the thread runs at most two of its parts ahead of the consumer.
+        // Thread i parses the parts i, i + count, i + 2·count and so on, where count is the number
+        // of threads. Its channel holds one result, so the thread runs at most two of its parts
+        // ahead of the consumer.
         let parsed: Vec<mpsc::Receiver<_>> = (0..count)
             .map(|first| {
                 let (found, results) = mpsc::sync_channel(1);

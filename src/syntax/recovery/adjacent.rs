@@ -23,7 +23,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports `values` if there are several, since one is expected. Returns the value that they
-    /// probably mean, or a bad value if that is uncertain.
+    /// probably mean, or a value marked as bad if this is uncertain.
     pub(super) fn adjacent_values(
         &mut self,
         mut values: Vec<Value<'s>>,

@@ -34,7 +34,7 @@ pub(super) enum CommentPosition {
 }
 
 /// Characters of mathematical notation and of other languages. A row holds several characters, the
-/// help for one in place of a value, and the help for one after a value.
+/// help if one of them stands in place of a value, and the help if one follows a value.
 #[rustfmt::skip]
 const NOTATION: &[(&str, [&str; 2])] = &[
     ("π", ["write `pi`", "write `* pi`"]),
@@ -68,8 +68,8 @@ impl<'s> Recovery<'_, 's> {
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
-        // The statement may define names. Lowering does not report uses of names that occur in a
-        // `Bad` item.
+        // The statement may define names. Names in an item that is marked as `Bad` are not reported
+        // as undefined later.
         self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
