@@ -9,7 +9,7 @@ use super::{
 use crate::suggest::{self, is_among};
 
 impl BlockRow {
-    /// Returns the row of a field by its name.
+    /// Returns the row of the field `name`. Returns `None` if the block has no such field.
     pub fn field(&self, name: &str) -> Option<&'static FieldRow> {
         self.fields.iter().find(|field| field.name == name)
     }

@@ -57,7 +57,7 @@ pub struct BlockRow {
 
 /// Typed handle of a field, whose values have the Rust type `T`.
 ///
-/// Code refers to a field by such a constant, so that a misspelt name does not compile.
+/// Code refers to a field by a constant of this type, so that a misspelt name does not compile.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldHandle<T> {
     /// The field's name.
@@ -89,9 +89,9 @@ impl<T: FieldValue> FieldHandle<T> {
 
 /// Makes the kinds of blocks, their rows, and a handle for each field.
 ///
-/// The head of a block gives its kind, and the type and the name of its handles. A line in the
-/// first braces gives a field's name, type, preset and help; then any other columns of its row. The
-/// second braces hold columns of the block's row.
+/// The words before the first braces give the kind of block, and the type and the name of its
+/// handles. A line in the first braces gives a field's name, type, preset and help; then any other
+/// columns of its row. The second braces hold columns of the block's row.
 macro_rules! blocks {
     ($($kind:ident $handles:ident $constant:ident {
         $($field:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*
@@ -142,8 +142,7 @@ macro_rules! blocks {
     };
 }
 
-/// Row without fields or additional words. Each row of the table is made by changing some columns
-/// of it.
+/// Template of the table's rows, without fields or additional words. A row replaces some columns.
 const BLOCK: BlockRow = BlockRow {
     kind: BlockKind::Image,
     name: "",
