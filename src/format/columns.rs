@@ -135,7 +135,7 @@ fn is_plain(entry: &Entry<'_>, block: &BlockEntry<'_>) -> bool {
 /// entry.
 fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
-    // Class of the last run as long as entries can be added to it; then `End`.
+    // Class of the last run while entries can be added to it, and otherwise `End`.
     let mut open = Alignment::End;
     for (index, entry) in entries.iter().enumerate() {
         if entry.blank {

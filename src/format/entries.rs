@@ -10,7 +10,7 @@ use crate::{
     syntax::tree::{self, Item},
 };
 
-/// An entry of a file or of a block, which takes one or more lines.
+/// An entry of a file or a block: a definition, a block, a field or a line of comments.
 #[derive(Debug)]
 pub struct Entry<'s> {
     /// Whether a blank line precedes the entry.
@@ -98,7 +98,7 @@ pub fn of_file<'s, 't>(
     entries
 }
 
-/// Container of entries.
+/// Container of entries: a file or a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Container {
     File,
@@ -197,8 +197,8 @@ impl<'s> TokenReader<'_, 's> {
             Self::field,
         );
         self.skip(close);
-        // The width of a field includes two blanks, for the space to the next field. The other 3
-        // characters are ` { `; those of ` }` are the two blanks of the last field.
+        // Two blanks follow each field; after the last field, they stand for ` }`, which is as
+        // wide. The other 3 characters are ` { `.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
         let is_empty = entries.is_empty() && after_open.is_empty();
         let width = width(&head) + 3 + fields;

@@ -10,7 +10,7 @@ use super::{
 /// choice.
 const INDENT: usize = 2;
 
-/// Returns the text of a file's entries.
+/// Returns the formatted text of a file. `entries` are its definitions, blocks and comments.
 pub fn written(entries: &[Entry<'_>]) -> String {
     let mut writer = LayoutWriter::default();
     for entry in entries {
@@ -141,7 +141,7 @@ impl LayoutWriter {
         }
     }
 
-    /// Writes the head of a block, and the blanks or the line end before its `{`.
+    /// Writes the part of a block before its `{`, and the blanks or the line end after this part.
     fn head(&mut self, line: &mut String, block: &BlockEntry<'_>, column: usize) {
         match (block.name, block.name_column) {
             (Some(name), 1..) => {
