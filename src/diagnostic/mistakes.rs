@@ -66,7 +66,7 @@ impl fmt::Display for Mistakes {
     }
 }
 
-/// Writes a line for each mistake; without the feature `cli`, nothing is drawn.
+/// Writes one line for each mistake. Reports are drawn only with the feature `cli`.
 #[cfg(not(feature = "cli"))]
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
