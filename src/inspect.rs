@@ -206,7 +206,7 @@ fn rounded(x: &Big) -> f64 {
 struct Rest {
     objects: u64,
     seen: u64,
-    /// Area that shows these objects, in pixels.
+    /// Sum of the areas in the picture that show the objects, in pixels.
     pixels: f64,
     outside: u64,
 }
@@ -256,7 +256,7 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// Formatting of what is seen of the objects.
+/// Formatting of which parts of the objects are seen.
 impl Inspection {
     /// Returns the totals of the objects beyond the first [`LISTED`], or `None` if there are none.
     fn rest(&self) -> Option<Rest> {

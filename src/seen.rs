@@ -38,7 +38,7 @@ pub enum Visibility {
     /// At the object's centre, another object is seen, given by its index in the file.
     HiddenBy(usize),
     /// Nothing of the object is seen for another reason. It may be hidden by several others, too
-    /// thin, or outside of the picture although its bounds are not.
+    /// thin, or outside of the picture although its bounding sphere is not.
     Nothing,
 }
 
@@ -98,8 +98,8 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
 /// readable.
 pub const LISTED: usize = 100;
 
-/// For each object, by its index: the bounding rectangle of its pixels, and the area that shows it,
-/// in pixels.
+/// Map from an object's index to the bounding rectangle of its pixels and to the area that shows
+/// it, in pixels.
 type SeenAreas = BTreeMap<usize, (Area, f64)>;
 
 fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {
