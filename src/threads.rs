@@ -1,5 +1,4 @@
-//! The number of threads, and pools of threads. Work that is started within other work runs on the
-//! other work's threads.
+//! The number of threads, and pools of threads. Nested work runs on the threads of the outer work.
 
 use std::{
     num::NonZero,

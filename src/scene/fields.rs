@@ -11,7 +11,7 @@ use crate::{
     schema::{CAMERA, FieldValue, IMAGE, Value},
 };
 
-/// An image, a camera or a shape: the owner of fields.
+/// Part of a scene that has fields: an image, a camera or a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FieldOwner {
     /// The picture.

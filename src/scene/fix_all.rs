@@ -81,7 +81,8 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
         let idle = round.lengthened.values().filter(is_idle).flatten();
         let idle: Vec<Problem> = idle.cloned().collect();
         if !idle.is_empty() {
-            // Repeat the round without the fixes of these problems.
+            // These problems remain although their fixes were applied. Repeat the round without
+            // these fixes.
             staying.extend(idle);
             continue;
         }

@@ -243,9 +243,9 @@ fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }
 
-/// Returns whether an argument with the block `target` sets fields of `block`. `target` is an
-/// object's name or the keyword of a block that is no object, such as `camera`; in the second case,
-/// `setting` is the row of that kind.
+/// Returns whether a `--set` argument with the block `target` sets fields of `block`. `target` is
+/// an object's name, or the keyword of a block that is no object, such as `camera`. In the second
+/// case, `setting` is the row of this kind of block.
 fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>) -> bool {
     match (row(block), setting) {
         (Some(row), Some(setting)) => row.kind == setting.kind,
@@ -283,7 +283,7 @@ const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`
 /// The number is a choice that keeps the help short.
 const FEW: usize = 8;
 
-/// Returns the error that a target's block is neither in the file nor can be added.
+/// Returns the error for a `--set` target whose block is not in the file and cannot be added.
 fn no_such_block<'s>(
     it: &Override<'s>,
     block: &Name<'s>,

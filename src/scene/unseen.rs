@@ -25,7 +25,8 @@ use crate::{
 const MARGIN: f64 = 1e-8;
 
 /// Minimum sine of the angle between up and the view direction for which visibility is judged. If
-/// it is less, the rounding error of the camera's axes may exceed [`MARGIN`].
+/// it is less, the rounding error of the camera's axes may exceed [`MARGIN`]. With a larger
+/// minimum, fewer cameras would be checked.
 pub const LEAST_SINE: f64 = 1e-6;
 
 /// Reason why no object is in the picture.

@@ -15,7 +15,7 @@ pub struct Choice {
     /// The alternative ways, each a list of fields. A block that uses a way must have those of its
     /// fields whose preset is [`Preset::Alternative`].
     pub ways: &'static [&'static [&'static str]],
-    /// The reason why a block can use only one of the ways, for messages.
+    /// Reason, for messages, why a block can use only one of the alternative ways.
     pub why: &'static str,
 }
 

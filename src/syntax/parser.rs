@@ -312,8 +312,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         {
             return self.operand(operand);
         }
-        // The closures for operands, signs and operators share `self`. Each borrows it only while
-        // it makes a node.
+        // The closures for operands, signs and operators share `self`. Each closure borrows it only
+        // while it makes a node.
         let this = std::cell::RefCell::new(self);
         PRECEDENCE
             .map_primary(|pair| this.borrow_mut().operand(pair))

@@ -190,7 +190,7 @@ impl<'s> Value<'s> {
     }
 
     /// Returns the arguments, elements or operands of a value, in order. Returns an empty list for
-    /// a value that consists of nothing else, such as a number.
+    /// any other value, such as a number.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             ValueKind::Call(call) => call.arguments.iter().map(|e| &e.value).collect(),

@@ -23,9 +23,9 @@ use crate::{
 const MOST_OBJECTS: usize = 1 << 24;
 
 impl<'s> Lowering<'s> {
-    /// Builds an object for each combination of the indices' values; the last index changes
-    /// fastest. Stops at the first combination with a mistake, so that the mistake is reported
-    /// once.
+    /// Builds the objects of a block with indices, as in `for i < 8, j < 4`: one for each
+    /// combination of the indices' values. The last index changes fastest. Stops at the first
+    /// combination with a mistake, so that the mistake is reported once.
     pub(super) fn repeated(
         &mut self,
         row: &'static BlockRow,

@@ -4,8 +4,7 @@
 //! and extent, its fields, and its description. This file only dispatches to the kinds.
 //!
 //! A new kind begins with [`BlockKind`] and its row in the schema. From there, compiler errors and
-//! failing tests lead to everything else; CONTRIBUTING.md lists the places, including those to
-//! which nothing leads.
+//! failing tests lead to most other places that must be changed; CONTRIBUTING.md lists all of them.
 
 mod checkerboard;
 mod cuboid;

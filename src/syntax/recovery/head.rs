@@ -40,7 +40,8 @@ const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the va
 /// moved before the `for`.
 const NAME_FIRST: &str = "^";
 
-/// Patterns of one index with its count, such as `i < 8`, without and with mistakes.
+/// Patterns of one index with its count, such as `i < 8`. The first one is correct, and the others
+/// have mistakes.
 #[rustfmt::skip]
 const INDICES: [HeadPattern; 27] = [
     ["I < N", "", "{I} < {N}", ""],
@@ -74,7 +75,8 @@ const INDICES: [HeadPattern; 27] = [
 
 const COMMA: &str = "a comma separates two indices";
 
-/// Patterns of the text after an index and its count, without and with mistakes.
+/// Patterns, with and without mistakes, of the text after an index and its count, such as the comma
+/// after `i < 8` in `for i < 8, j < i`.
 #[rustfmt::skip]
 const BEHIND: [HeadPattern; 9] = [
     ["« , » $", "no comma stands behind the last index", "", ""],

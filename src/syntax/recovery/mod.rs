@@ -99,7 +99,7 @@ struct Context<'s> {
 }
 
 impl<'w, 's> Recovery<'w, 's> {
-    /// Makes an error recovery that starts at the beginning of a text.
+    /// Makes an error-recovering parser that starts at the beginning of a text.
     pub fn new(source: &'s Source, id: SourceId, words: &'w Vocabulary<'s>) -> Self {
         let text = source.text();
         Self {
