@@ -1,4 +1,4 @@
-//! Colours: sRGB, as in the scene language, and linear light, as the film averages it.
+//! Colours: sRGB, as in the scene language, and linear light, in which samples are averaged.
 
 use std::fmt;
 
@@ -64,8 +64,8 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
 /// Returns the least linear light that is rounded to the byte `k` + 1 of sRGB, for `k` < 255. It is
 /// the least `f64` that is not below the light whose sRGB value is `k` + 1/2, in 8-bit steps.
 ///
-/// The exponents of the sRGB curve are rational, so integers can decide: L − x^2.4 has the same
-/// sign as L^5 − x^12.
+/// The curve of sRGB is a power x^2.4 with a rational exponent, so integers can decide: for
+/// positive numbers, a light L is less than x^2.4 exactly if L^5 is less than x^12.
 pub fn half_byte(k: u8) -> f64 {
     let mut light = srgb_to_linear((f64::from(k) + 0.5) / 255.0);
     while !is_below_half(light.next_down(), k) {
@@ -80,10 +80,11 @@ pub fn half_byte(k: u8) -> f64 {
 /// Returns whether `light`, in linear light, is darker than the light whose sRGB value is `k` +
 /// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // Bound on the relative rounding error of `difference` below. Double-doubles decide most cases;
-    // integers alone would take half the time of rendering a small picture. In units of the
-    // double-double rounding, the relative errors are at most 4 for light^5, 11 for scale^12, 1 for
-    // the product of these, 11 for x^12, and 1 for the difference, in sum less than 32.
+    // Bound on the relative rounding error of `difference` below, which is computed in
+    // double-doubles (sums of two `f64`). These decide most cases; integers alone would take half
+    // the time of rendering a small picture. In units of the double-double rounding, the relative
+    // errors are at most 4 for light^5, 11 for scale^12, 1 for the product of these, 11 for x^12,
+    // and 1 for the difference, in sum less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -101,21 +102,22 @@ fn is_below_half(light: f64, k: u8) -> bool {
     }
 }
 
-/// As [`is_below_half`], computed with integers.
+/// Returns the result of [`is_below_half`], computed with integers and so without rounding errors.
 fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let exponent = (light.to_bits() >> 52) as usize;
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
     // Here, light = significand / 2^shift.
     let shift = 1075 - exponent;
-    // The value 2k + 1 counts half steps of 8-bit sRGB, of which white has 510.
+    // `halves` is an sRGB value in half steps of 8 bits, of which white has 510.
     let halves = 2 * u32::from(k) + 1;
     // The straight piece of the curve ends at 0.04045, slightly more than 20 half steps.
     if halves <= 20 {
-        // On the straight piece, the test is L < c/12.92 with c = halves/510.
+        // On the straight piece, the test is L < c/12.92. Here L is the light and c = halves/510
+        // the sRGB value.
         significand * 65_892u32 < UBig::from(10 * halves) << shift
     } else {
-        // On the curved piece, the test is L < x^2.4, with x = (c + 0.055)/1.055 = (1000·halves +
-        // 28050)/538050 and c = halves/510.
+        // On the curved piece, the test is L < x^2.4 for the light L. Here x = (c + 0.055)/1.055 =
+        // (1000·halves + 28050)/538050, and c = halves/510 is the sRGB value.
         let x = UBig::from(1000 * halves + 28_050);
         significand.pow(5) * UBig::from(538_050u32).pow(12) < x.pow(12) << (5 * shift)
     }

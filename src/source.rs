@@ -253,8 +253,9 @@ impl Source {
         }
     }
 
-    /// Returns line and column of an offset, both counted from 0; the column is in bytes. Offsets
-    /// past the end or inside a character are treated as by [`Self::place`].
+    /// Returns line and column of an offset, both counted from 0; the column is in bytes. An offset
+    /// past the end is treated as the end, and an offset within a character as the character's
+    /// start.
     pub fn line_col(&self, offset: usize) -> LineCol {
         let offset = self.floor_char_boundary(offset);
         let offset = u32::try_from(offset).ok().map(TextSize::from);

@@ -8,7 +8,8 @@ use std::cell::Cell;
 use strsim::osa_distance;
 
 /// Number of comparisons of names that are left. When it is 0, no further names are suggested.
-/// Without a limit, each mistake in a text would be compared with each name in it.
+/// Without a limit, each mistake in a text would be compared with each name in it, and the time
+/// would grow with the square of the text's length.
 #[derive(Debug)]
 pub struct ComparisonBudget(Cell<usize>);
 
@@ -28,9 +29,9 @@ impl ComparisonBudget {
     }
 }
 
-/// Returns the candidate that is most similar to `written`. It must be equal except for case, or
-/// have at most about one typing error (OSA distance) per three letters; otherwise, returns `None`.
-/// Of equally similar candidates, returns the first.
+/// Returns the candidate that is most similar to `written`, or `None` if none is similar enough. It
+/// must be equal except for case, or differ by at most about one typing error (by optimal string
+/// alignment distance) per three letters. Of equally similar candidates, returns the first.
 pub fn nearest<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,

@@ -1,5 +1,4 @@
-//! The number of threads, and pools of threads. Work that is started within other work runs on the
-//! other work's threads.
+//! The number of threads, and pools of threads. Nested work runs on the threads of the outer work.
 
 use std::{
     num::NonZero,
@@ -16,7 +15,7 @@ pub(crate) use rayon::prelude;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// Maximum number of threads that a user can request; a greater request is reduced to it. Few
-/// machines have more processors.
+/// machines have more processors, and threads beyond the number of processors gain nothing.
 const MAX_THREADS: usize = 1024;
 
 /// Maximum number of threads of the process; 0 if there is no limit. This limit and the number of
@@ -58,7 +57,7 @@ impl Threads {
     ///
     /// # Errors
     ///
-    /// Not even the calling thread can be used.
+    /// Returns an error if not even the calling thread can be used.
     pub(crate) fn new(threads: Option<NonZero<usize>>) -> Result<Self, NoThreads> {
         let wanted = threads.map_or_else(available, |threads| threads.get().min(MAX_THREADS));
         match rayon::current_thread_index() {
@@ -96,7 +95,7 @@ impl Threads {
 ///
 /// # Errors
 ///
-/// Not even the calling thread can be used.
+/// Returns an error if not even the calling thread can be used.
 pub(crate) fn install<R: Send>(
     threads: Option<NonZero<usize>>,
     work: impl FnOnce() -> R + Send,

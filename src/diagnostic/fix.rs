@@ -165,8 +165,8 @@ fn ends_line(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
-/// Returns the text after the blanks and comments at its start. A line end that is not within a
-/// comment is not skipped.
+/// Returns the text after the blanks and comments at its start. Skips line ends only within
+/// comments.
 fn past_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches([' ', '\t']);
     loop {
@@ -291,7 +291,8 @@ impl Edit {
     }
 }
 
-/// Returns `text` after those edits of the fix that belong to `source`.
+/// Applies the edits of `fix` that belong to `source` to `text`, the text of this source, and
+/// returns the result.
 pub fn apply(fix: &Fix, source: SourceId, text: &str) -> String {
     let mut applied = String::with_capacity(text.len());
     let mut at = 0;

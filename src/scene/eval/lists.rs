@@ -68,7 +68,7 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports `part` of a list, which has the wrong type `found`.
+    /// Reports that the element `part` of a list has the wrong type `found`.
     fn wrong_part(&mut self, list: Type, part: &tree::Value<'s>, found: Type) {
         let parts = list
             .parts()
@@ -88,7 +88,7 @@ impl<'s> Evaluator<'_, 's> {
             .report(self.problems);
     }
 
-    /// Reports a list with a wrong number of parts.
+    /// Reports a list with a wrong number of elements.
     fn part_count(
         &mut self,
         list: Type,
@@ -132,9 +132,9 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Returns an example for a missing third coordinate: the greater one of the other two, because
-/// sides of such lengths form a triangle; but 1 if both are 0, because a zero vector has no
-/// direction.
+/// Returns a third coordinate for an example of a vector, of which `x` and `y` are given. The
+/// greater of the two is chosen, because a triangle with sides of these three lengths exists. If
+/// both are 0, the result is 1, because a zero vector has no direction.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {

@@ -62,7 +62,8 @@ impl<'s> Evaluator<'_, 's> {
         left
     }
 
-    /// Returns the result of one operator, or `None` after a report.
+    /// Returns the result of one operator. If it has no result, reports an error and returns
+    /// `None`.
     fn step(
         &mut self,
         step: &Step<'s>,

@@ -19,7 +19,7 @@ pub struct Suggestion<'s> {
     pub name: &'s str,
     /// The meaning of the suggested name.
     pub means: Meaning,
-    /// Span of the first label of the report, which identifies it.
+    /// Span of the first label of the report about the undefined name. It identifies the report.
     pub report: Span,
     /// The help of the report if the suggestion is withdrawn.
     pub otherwise: String,

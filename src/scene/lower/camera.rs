@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Maximum number of objects that one warning names. For the remaining objects, it gives only their
-/// number.
+/// number. Three keep the message short; any small number would do.
 const MOST_NAMED: usize = 3;
 
 impl<'s> Lowering<'s> {
@@ -115,8 +115,9 @@ impl<'s> Lowering<'s> {
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // The formula is explained at `level_direction`. Only the direction of `up` matters; it is
-        // scaled so that its square does not overflow.
+        // For a camera that looks along up, `level_direction` returns a direction whose component
+        // perpendicular to up is the top of the picture, or the opposite of the top. Only the
+        // direction of `up` matters; it is scaled so that its square does not overflow.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
@@ -290,8 +291,8 @@ impl Lowering<'_> {
         self.problems.push(problem);
     }
 
-    /// Warns of checkerboards whose squares are too small, compared with their distance, for
-    /// samples to tell apart.
+    /// Warns of checkerboards whose squares look so small from the camera that samples cannot tell
+    /// them apart.
     pub(super) fn lost_squares(&mut self, camera: &Camera, image: &Image) {
         let boards = std::mem::take(&mut self.boards);
         // Only the first board of a repeated block is reported.

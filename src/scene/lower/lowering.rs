@@ -37,11 +37,12 @@ pub(super) struct Lowering<'s> {
     pub(super) first_names: HashMap<&'s str, Span>,
     /// The texts of items that could not be parsed.
     pub(super) bad: Vec<&'s str>,
-    /// Problems of the syntax and of the targets of `--set` arguments, which were found before
-    /// lowering.
+    /// Problems that were found before the tree is converted: those of the syntax, and of the
+    /// targets of `--set` arguments.
     pub(super) found: Vec<Diagnostic>,
     pub(super) problems: Problems,
-    /// The spans of the values of unknown fields, in the order of the text.
+    /// The spans of the values of unknown fields, in the order of the text. Syntax problems within
+    /// them are dropped.
     pub(super) unknown: Vec<Span>,
 }
 

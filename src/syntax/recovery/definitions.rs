@@ -18,7 +18,7 @@ const OTHER_LETS: &str =
 
 /// Maximum number of preceding items that are searched for a definition of the same name; earlier
 /// definitions are not found. Without this limit, the time would grow with the square of the number
-/// of lines.
+/// of lines. The number is a choice.
 const ITEMS_BEFORE: usize = 64;
 
 impl<'s> Recovery<'_, 's> {
