@@ -22,8 +22,8 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
 }
 
 /// Returns sum/count in two steps of long division. `first` is the quotient of the leading parts,
-/// and `rest` the remainder, which is exact but for the rounding when `sum.lo` is added. Only the
-/// last addition rounds the quotient.
+/// and `rest` the remainder, which is exact except for the rounding when `sum.lo` is added. Only
+/// the last addition rounds the quotient.
 fn quotient(sum: &Double, count: f64) -> f64 {
     let first = sum.hi / count;
     let product = two_product(first, count);
