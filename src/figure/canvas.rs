@@ -41,12 +41,12 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
 /// Height of the empty space that a cropped figure keeps above and below its marks, in SVG units.
-/// Chosen by appearance.
+/// The value is a choice.
 const MARGIN: f64 = 12.0;
 
 /// Cost of a label that covers a line segment of a mark. A label is placed where the sum of its
-/// costs is least. Moving it one step away from its point costs 6, so a label moves several steps
-/// to leave a mark free. Chosen by trial.
+/// costs is least. Moving it one step away from its point costs only 6, so a label moves several
+/// steps to leave a mark free. The value is a choice.
 const MARK: f64 = 40.0;
 
 /// Cost of a label that covers a diagonal of a filled polygon. About four diagonals stand for the
