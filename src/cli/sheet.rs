@@ -32,13 +32,13 @@ use crate::{
 /// size on the sheet.
 type SheetCell = (Scene, String);
 
-/// Gap between two cells of the sheet, and around all cells, in pixels. Chosen by appearance.
+/// Gap between two cells of the sheet, and around all cells, in pixels. The value is a choice.
 const GAP: u32 = 12;
 /// Colour of the frame around each picture, in sRGB bytes. The light gray is visible on the white
-/// sheet, but does not distract. Chosen by appearance.
+/// sheet, but does not distract. The value is a choice.
 const FRAME: [u8; 3] = [192; 3];
-/// Height of the letters of captions, in pixels. Chosen by appearance among the heights that the
-/// font has.
+/// Height of the letters of captions, in pixels. The value is a choice among the heights of the
+/// font.
 const LETTERS: RasterHeight = RasterHeight::Size16;
 /// Height of a caption's line, in pixels. It is 6 more than that of the letters, so that there is
 /// space around them.
