@@ -355,7 +355,8 @@ mod tests {
         for (name, meant) in explain::other_names() {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),
-                // For such a name, only the lines about it are printed, not the whole page.
+                // If a name of another program stands for a part of a page, only the lines about it
+                // are printed.
                 Some((_, words)) => {
                     let page = page(name).unwrap();
                     let lines: Vec<&str> = page.lines().collect();

@@ -32,7 +32,8 @@ const SCENE_LIMIT: u64 = 256 << 20;
 const PICTURE_LIMIT: u64 = 8 << 20;
 
 /// Number of bytes at the start of a file that are searched for a picture. A program may have
-/// printed lines of text before its picture, but not more than 64 KiB.
+/// printed lines of text before its picture, but at most this much. The value is a choice, far
+/// above usual messages.
 const START: u64 = 1 << 16;
 
 /// A scene that was read, but not yet parsed.

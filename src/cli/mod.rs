@@ -91,9 +91,9 @@ pub fn run() -> ExitCode {
     status_of(done).into()
 }
 
-/// Parses the arguments again with their control characters made visible, and returns clap's error
-/// or help text. Such a text repeats arguments, which must not control the terminal. Returns `None`
-/// if clap accepts the changed arguments.
+/// Returns clap's error or help text with control characters made visible, since it repeats
+/// arguments, which must not control the terminal. To this end, the arguments are parsed again
+/// after their control characters are replaced. Returns `None` if clap then accepts them.
 fn visible_answer() -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(env::args_os().map(shown)).err()

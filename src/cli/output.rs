@@ -184,9 +184,9 @@ pub fn style() -> Style {
     }
 }
 
-/// Number of columns that are reserved for line numbers and the frame at the left of a scene's
-/// lines in a report. The remaining columns of the terminal are for the lines themselves. If it
-/// were too small, the terminal would wrap long lines.
+/// Number of columns that are reserved at the left of a scene's lines in a report, for line numbers
+/// and the frame. The lines get the remaining columns of the terminal. With a smaller number, the
+/// terminal would wrap long lines.
 const FRAME: usize = 8;
 
 /// Returns the style for texts on standard output, or `None` if it is not a terminal.

@@ -172,7 +172,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
     text
 }
 
-/// Where a picture is written, and in which format.
+/// Destination and format of a picture.
 pub enum PictureOutput {
     /// A file, with its format, and how its path was chosen.
     File(PathBuf, FileFormat, PathChoice),

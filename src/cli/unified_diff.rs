@@ -10,9 +10,9 @@ use std::ops::Range;
 const AROUND: usize = 3;
 
 /// Maximum number of lines, in both texts together, that are skipped after a difference in search
-/// of the place where the texts agree again. If there is no such place, all remaining lines count
-/// as changed. The search tries all pairs of places, so its time grows with the square of this
-/// number.
+/// of the place where the texts agree again. If there is none, all remaining lines count as
+/// changed. The value is a choice: all pairs of places are tried, so the time grows with its
+/// square.
 const MOST_STEPS: usize = 1000;
 
 /// A change: lines of the old text, by their indices, and the lines of the new text that replace

@@ -130,8 +130,8 @@ impl Archive {
             0 => format!("it is no zip file, or lists more than {MOST_ENTRIES} entries, and at most that many are read"),
             _ => in_words(&error),
         })?;
-        // All entries are listed now, so the limit for the list ends. Unpacking is limited by
-        // [`UnpackBudget`].
+        // The list of entries has been read, so its limit is lifted. From now on, [`UnpackBudget`]
+        // limits how much is unpacked.
         left.store(u64::MAX, Ordering::Relaxed);
         if zip.len() > MOST_ENTRIES {
             let count = zip.len();

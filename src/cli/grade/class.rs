@@ -93,8 +93,8 @@ impl Class {
         let slug = folder.and_then(|name| name.strip_suffix(names::CLONES).map(str::to_owned));
         tree.found.sort_by(|(a, _), (b, _)| a.cmp(b));
         let mut works: BTreeMap<(String, String), Student> = BTreeMap::new();
-        // A student's folder may be empty. The folders are added to the files, so that such a
-        // student is listed, too.
+        // A student with an empty folder must be listed, too, so the folders are added to the
+        // files.
         let folders = tree.folders.iter().filter(|names| names.len() == 1);
         let folders = folders.map(|names| (vec![names[0].clone(), String::new()], None));
         let found = tree
@@ -256,8 +256,8 @@ fn student_of_picture(path: &Path) -> Student {
     }
 }
 
-/// Merges pairs such as `anna.png` and `anna.cpp` into one student, since they differ only in the
-/// extension. A file without such a picture remains a student of its own.
+/// Merges students such as `anna.png` and `anna.cpp` into one: a file that is not a picture goes to
+/// the picture whose name differs only in the extension. Without one, it remains a student.
 fn with_companions(students: Vec<Student>) -> Vec<Student> {
     let stem = |student: &Student| {
         let [file] = &student.files[..] else {
@@ -290,17 +290,18 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Returns each class's
-/// folder with the names of its students' folders and zip files on the command line. A folder
-/// counts as a class's if one of these is a Git clone, is named by Moodle or is Gradescope's
-/// metadata, or if two of these contain pictures of the same name.
+/// Finds the arguments that a shell expanded from a pattern such as `class/*`, so that each of them
+/// is a student, not a class. Returns the folder of each such class, with the names in it that are
+/// arguments. A folder is a class's if an argument in it is a Git clone, has a name in Moodle's
+/// form or is Gradescope's metadata, or if two of them contain pictures of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // Arguments that are links are read by themselves, since links inside a class's folder are
-        // not followed. A path such as `..` has no name.
+        // A link is not grouped with other arguments: links named on the command line are followed,
+        // but links inside a class's folder are not. A path such as `..` has no name, so it is not
+        // grouped either.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }
