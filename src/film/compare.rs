@@ -14,10 +14,9 @@ use crate::color::linear_to_srgb;
 const STEPS: f64 = 255.0;
 
 /// Bound on the rounding errors of converting a channel to sRGB and back, in steps of 8-bit sRGB. A
-/// difference counts as larger than a tolerance only if it is so by more than this bound, so that
-/// rounding alone never decides. It covers a few roundings of numbers up to 255, which are below
-/// 1e-12, and the jump of at most 3e-8 of the range where the linear part of the sRGB curve meets
-/// its power.
+/// difference exceeds a tolerance only if it does so by more than this bound, so that rounding
+/// alone never decides. The bound covers roundings of numbers up to 255, below 1e-12, and the gap
+/// in the sRGB curve where its linear part meets its power, at most 3e-8 of the range.
 const SLACK: f64 = 1e-5;
 
 /// Slope of the sRGB curve at black, where it is steepest, in steps of 8-bit sRGB per unit of

@@ -4,8 +4,8 @@ use super::pixels::Film;
 use crate::area::Area;
 
 /// Approximate maximum number of pixel comparisons in the search for a part's position. It bounds
-/// the time of the search. At each position, between 16 and 400 pixels are compared, at equal
-/// distances in the part.
+/// the time of the search; the value is a choice. At each position, between 16 and 400 pixels are
+/// compared, at equal distances in the part.
 const MAX_COMPARED: u64 = 100_000_000;
 
 /// Maximum ratio of the part's squared difference from the whole picture at the best position to

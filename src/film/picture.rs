@@ -81,7 +81,7 @@ impl Rounding {
 /// Change of colours by a file's format, besides rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coding {
-    /// None: the colours are those that the program computed.
+    /// No change: the colours are those that the program computed.
     Exact,
     /// Lossy compression, as in a JPEG or in some WebP files: colours are changed where this is
     /// hardly visible.

@@ -30,7 +30,8 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // An EXR file stores 32-bit floats, so only their value must be certain.
+        // In an EXR file, these means become 32-bit floats, so it suffices that the floats are
+        // certain.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
