@@ -30,9 +30,9 @@ pub fn is_reason(error: &io::Error) -> bool {
 }
 
 /// Overwrites the file at `path`, unless it has changed since it was read. Until this is complete,
-/// there is a copy of the new content beside the file or in the user's state folder, so that
-/// nothing is lost if this process is killed. If no copy can be created, returns `reason`, the
-/// error because of which the file cannot be replaced.
+/// a copy of the new content exists beside the file or in the user's state folder, so that nothing
+/// is lost if this process is killed. If no copy can be created, returns `reason`, the error that
+/// occurred when replacing the file was tried.
 pub fn write_in_place(
     path: &Path,
     original: &Original,

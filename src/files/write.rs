@@ -18,7 +18,7 @@ use super::{
     temporary::{self, locked},
 };
 
-/// A destination of bytes that can be written at any position.
+/// Destination to which bytes can be written at any position, such as a file.
 pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
