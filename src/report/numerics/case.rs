@@ -15,7 +15,7 @@ use crate::{
 pub struct Case {
     /// Short name of the case in tables, such as `C3a`.
     pub id: &'static str,
-    /// What is difficult in the case, for tables.
+    /// Description of what is difficult in the case, for tables.
     pub title: &'static str,
     /// Maximum error of a number that Pinhole guarantees, in the unit that [`unit`](Self::unit)
     /// returns. Errors in decisions, such as which object is seen, are never allowed.

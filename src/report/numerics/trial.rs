@@ -84,15 +84,15 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of inputs of which one is measured, besides counting wrong answers. A measurement
-/// computes errors of the distance and of the point that are seen, and takes longer than an answer.
-/// With 16, enough inputs are measured, at little cost; the value is a choice.
+/// Number of inputs per measurement. For every input, it is tested whether the right object is
+/// seen. For one in 16, the errors of the distance and of the point are also measured, which takes
+/// longer. The value is a choice: it gives many measurements at little cost.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Number of searches for a boundary between colours of which one, on average, uses the oracle's
-/// answers, and the others Pinhole's. The oracle also finds boundaries that Pinhole does not see.
-/// However, a search with it takes about six times as long as testing the inputs beside the
-/// boundary, so only one search of eight uses it.
+/// Average number of searches for a boundary between colours per search with the oracle. The other
+/// searches use Pinhole's answers. The oracle also finds boundaries that Pinhole does not see, but
+/// a search with it takes about six times as long as testing the inputs beside the boundary. With
+/// 8, such searches take less than half of the time.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {

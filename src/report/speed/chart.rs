@@ -74,8 +74,8 @@ pub fn against_samples(measured: &Measurement) -> String {
     svg(measured, &samples)
 }
 
-/// Returns those requested errors that a chart marks. Others differ from all measured errors by
-/// more than a factor of 30, so that marking them would make the chart's range too large.
+/// Returns the requested errors that a chart marks: those within a factor of 30 of a measured
+/// error. Marking others would make the chart's range too large.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
     let found: Vec<_> = points.map(|point| point.typical().error).collect();
@@ -216,9 +216,8 @@ fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     }
 }
 
-/// Returns a logarithmic axis. It has labels at 1, 2 and 5 times the powers of ten. If there were
-/// more than five labels, only the powers themselves have one. Grid lines are at 1 to 9 times the
-/// powers.
+/// Returns a logarithmic axis. It has labels at 1, 2 and 5 times the powers of ten or, if these
+/// would be more than five labels, only at the powers. Grid lines are at 1 to 9 times the powers.
 fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let marks = |digits: &[i32]| -> Vec<f64> {
         let powers = libm::log10(ends.start).floor() as i32..=libm::log10(ends.end) as i32;

@@ -24,8 +24,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns whether this method may be as fast as the `fastest` one, as far as the runs tell:
-    /// the time of one of them is within the range of the other's runs.
+    /// Returns whether this method may be as fast as the `fastest` one. This is so if the time of
+    /// one of them is within the range of the other's single runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
@@ -33,7 +33,7 @@ impl Estimate {
 
 /// The methods that reach an error, ranked by CPU time.
 pub struct Ranking {
-    /// The method with the least CPU time, and others that may be as fast, as far as the runs tell.
+    /// The method with the least CPU time, and others whose times do not clearly differ from it.
     pub fastest: Vec<(Method, Estimate)>,
     /// The other methods, sorted by CPU time.
     pub others: Vec<(Method, Estimate)>,

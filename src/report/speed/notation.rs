@@ -3,7 +3,7 @@
 use super::{estimate::Estimate, results::EndSlope};
 use crate::numbers;
 
-/// Mark in a table for a number that is not known.
+/// Mark in a table for a number that is not known: an en dash.
 pub const UNKNOWN: &str = "–";
 
 /// Formats an error that the user asked for, with all its digits. If a fraction such as 1/256 is

@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// Maximum width and height of the whole picture on the page, in pixels. A larger picture is
-/// reduced, so that the file stays small. It would not fit on many screens anyway.
+/// reduced, so that the file stays small. The value is a choice.
 const WHOLE: [u32; 2] = [640, 480];
 
 /// Returns the HTML page. It has a section for each scene.
