@@ -1,4 +1,5 @@
-//! Draws the figure `camera`: the camera's eye, its window and one ray, seen from outside.
+//! Draws the figure `camera`: from outside, it shows the camera's eye, one ray, and the window,
+//! i.e. the rectangle in space that the picture shows.
 
 use glam::{DVec2, DVec3};
 
@@ -17,7 +18,7 @@ use crate::{
     tracer::Hit,
 };
 
-/// Height of the figure, in SVG units. Its width is 680.
+/// Height of the figure, in SVG units. Its width is 680. The value is a choice.
 const HEIGHT: f64 = 460.0;
 
 /// Maximum length of a ray that is drawn to its end, as a multiple of the distance from the eye to

@@ -45,8 +45,7 @@ pub const KINDS: [(&str, Kind); 5] = [
     ("methods", Kind::Methods),
 ];
 
-/// What of the scene a figure shows. Where a field is `None`, a pixel or a triangle is chosen
-/// automatically.
+/// The pixel and the triangle that a figure shows. A field that is `None` is chosen automatically.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
     /// Column and row of the pixel. It is for the figures of the camera, of a pixel, and of all

@@ -17,10 +17,12 @@ use crate::{
     tracer::World,
 };
 
-/// Top left corner of the square that shows the pixel, in SVG units.
+/// Top left corner of the square that shows the pixel, in SVG units. The value is a choice; it
+/// leaves a margin.
 const CORNER: DVec2 = DVec2::new(16.0, 16.0);
 
-/// Side of the square that shows the pixel, in SVG units.
+/// Side of the square that shows the pixel, in SVG units. It takes about half of the figure's
+/// width, 680; the rest is for the list of colours.
 const SIDE: f64 = 360.0;
 
 /// Number of rows, and of columns, of points at which the pixel's colours are determined. Each

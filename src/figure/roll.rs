@@ -13,7 +13,7 @@ use crate::{
     scene::{Camera, Scene},
 };
 
-/// Height of the figure, in SVG units. Its width is 680.
+/// Height of the figure, in SVG units. Its width is 680. The value is a choice.
 const HEIGHT: f64 = 400.0;
 
 /// Number of straight segments by which the arc of the roll's angle is drawn. With 24, it looks

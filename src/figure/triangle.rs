@@ -14,7 +14,7 @@ use crate::{
     tracer::vertices,
 };
 
-/// Height of the figure, in SVG units. Its width is 680.
+/// Height of the figure, in SVG units. Its width is 680. The value is a choice.
 const HEIGHT: f64 = 430.0;
 
 /// Number of straight segments by which the arc of the spin is drawn. With 24, it looks round.
