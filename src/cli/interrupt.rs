@@ -51,8 +51,8 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// Returns the flag that Ctrl-C sets. After this call, Ctrl-C only sets the flag, and the
-    /// caller must end the command when it is set.
+    /// Returns the flag that Ctrl-C sets. After this call, the first Ctrl-C only sets the flag, and
+    /// the caller must then end the command.
     pub fn watch(&self) -> &AtomicBool {
         self.0.watched.store(true, Ordering::SeqCst);
         &self.0.pressed

@@ -42,8 +42,9 @@ impl RenderedPicture {
         }
     }
 
-    /// Returns a note for the user about the accuracy of an exact picture (one computed without
-    /// samples). The note is empty for a sampled picture. `part` is the area that was rendered.
+    /// Returns a note for the user about the accuracy of an exact picture, i.e. one computed
+    /// without samples. The note is empty for a sampled picture. `part` is the area that was
+    /// rendered.
     pub fn notes(&self, part: Area, output: &PictureOutput) -> String {
         match self {
             Self::Light(Rendered::Sampled(_))

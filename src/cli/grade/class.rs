@@ -292,8 +292,8 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
 
 /// Finds the arguments that a shell expanded from a pattern such as `class/*`, so that each of them
 /// is a student, not a class. Returns the folder of each such class, with the names in it that are
-/// arguments. A folder is a class's if an argument in it is a Git clone, has a name in Moodle's
-/// form or is Gradescope's metadata, or if two of them contain pictures of the same name.
+/// arguments. A folder counts as a class if an argument in it is a Git clone, has a name in
+/// Moodle's form or is Gradescope's metadata, or if two of them contain pictures of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {

@@ -11,8 +11,8 @@ impl Glob {
         Self(text.to_lowercase().chars().collect())
     }
 
-    /// Returns whether the pattern matches a path. If the pattern has no `/`, only the last name of
-    /// the path is compared.
+    /// Returns whether the pattern matches a path. If the pattern has no `/`, only the file name at
+    /// the end of the path is compared.
     pub fn matches(&self, path: &str) -> bool {
         let path = path.to_lowercase();
         let name = path.rsplit('/').next().unwrap_or_default();

@@ -42,7 +42,7 @@ pub struct ComparedPicture {
 /// The result of judging a picture.
 pub struct JudgedPicture {
     pub verdict: Verdict,
-    /// Root mean square of the differences, in linear light.
+    /// Root mean square of the differences from the exact picture, in linear light.
     pub rmse: f64,
     /// Whether the file contains the text that Pinhole writes into its own pictures.
     pub is_ours: bool,

@@ -1,5 +1,5 @@
-//! Writes the results of a class as an HTML page. Thumbnails are embedded in the page, and the full
-//! pictures are files beside it.
+//! Writes the results of a class as an HTML page. Small pictures are embedded in the page, and the
+//! full ones are files beside it.
 
 use std::collections::BTreeMap;
 

@@ -265,9 +265,9 @@ impl FileTree {
     }
 
     /// Removes the folders that contain whole classes from the tree, and returns them with their
-    /// names. A folder is a class's if it contains Gradescope's metadata file, if all names in it
-    /// are in Moodle's form, or if its name ends in `-submissions` and it contains Git
-    /// repositories, as GitHub Classroom makes it.
+    /// names. A folder contains a class if Gradescope's metadata file is in it, if all names in it
+    /// are in Moodle's form, or if it contains Git repositories and its name ends in
+    /// `-submissions`, as GitHub Classroom makes it.
     pub fn take_classes(&mut self) -> Vec<(String, Self)> {
         let files = self.found.iter().map(|(names, _)| names);
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
