@@ -36,12 +36,12 @@ use super::{
 };
 use crate::{area::Area, files::Sink};
 
-/// A film of linear light, in 64-bit or in 32-bit floats.
+/// A picture in memory, in linear light, with 64-bit or 32-bit floats.
 #[derive(Clone, Copy, Debug)]
 pub enum LinearFilm<'a> {
-    /// Means of the pixels as `f64`.
+    /// Pixels with 64-bit floats.
     Means(&'a Film),
-    /// Means of the pixels, rounded to 32-bit floats.
+    /// Pixels with 32-bit floats.
     Floats(&'a Film<[f32; 3]>),
 }
 

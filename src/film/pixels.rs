@@ -18,7 +18,7 @@ pub trait Pixel: Copy + Default + Send + Sync {
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
-/// A pixel that can be converted to bytes of sRGB.
+/// Type of pixel that can be converted to bytes of sRGB.
 pub trait AsBytes: Pixel {
     /// Returns a row of pixels as bytes of sRGB. Uses `buffer` if the bytes have to be computed.
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, buffer: &'a mut Vec<u8>) -> &'a [u8];

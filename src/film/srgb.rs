@@ -20,7 +20,8 @@ pub struct Encoder {
     /// Threshold between each byte k and k + 1: the linear light whose sRGB value is k + 1/2, in
     /// 8-bit steps. From this light on, the byte is k + 1.
     thresholds: [f64; 255],
-    /// For each of the equal intervals of linear light, the byte of its lower end.
+    /// Table of bytes at which the conversion starts: for each of the equal intervals of linear
+    /// light, the byte of its lower end.
     start: [u8; PARTS + 1],
 }
 
