@@ -45,8 +45,8 @@ struct HorizontalAxis {
     name: &'static str,
     of: fn(&SeriesPoint) -> f64,
     written: fn(f64) -> String,
-    /// Value of the exact method, for example its CPU time; `None` if it has none. A vertical line
-    /// marks it, since the method's error is too small for the chart.
+    /// Value of the exact method on this axis, for example its CPU time. A vertical line marks it,
+    /// since the method's error is too small for the chart. `None` if there is no such value.
     exact: Option<f64>,
 }
 

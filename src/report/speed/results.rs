@@ -50,7 +50,7 @@ pub struct Measurement {
     pub rungs: Vec<u64>,
     /// Requested errors, in linear light.
     pub errors: Vec<f64>,
-    /// The exact picture, with which all renders are compared.
+    /// The exact picture, which is computed without samples. All renders are compared with it.
     pub reference: Exact,
     /// Shares of the pixels that show several colours. Only in these pixels can a sampling method
     /// err.

@@ -146,8 +146,9 @@ pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     SummaryTable { heads, rows }
 }
 
-/// Returns the three cells about a slope: the slope itself, the factor by which the error falls
-/// with four times as many samples, and the factor of samples that a tenth of the error costs.
+/// Returns the three cells about a slope: the slope itself; the factor by which the error falls
+/// with four times as many samples; and the factor by which the number of samples must grow for a
+/// tenth of the error.
 fn slopes(found: Option<EndSlope>) -> [String; 3] {
     let divisor = factor(found.and_then(|it| it.divisor()));
     let cost = found.and_then(|it| it.cost_of_a_tenth());
