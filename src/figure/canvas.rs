@@ -113,7 +113,7 @@ impl Canvas {
         }
     }
 
-    /// Draws an arrow.
+    /// Draws an arrow whose tip is `to`. Labels will avoid it.
     pub fn arrow(&mut self, class: &str, from: DVec2, to: DVec2) {
         let along = (to - from).normalize_or_zero() * 11.0;
         let side = along.perp() * 0.4;
@@ -122,12 +122,13 @@ impl Canvas {
         self.line(&head, &[to - along + side, to, to - along - side]);
     }
 
-    /// Draws a dot.
+    /// Draws a dot. Labels will avoid it.
     pub fn dot(&mut self, class: &str, at: DVec2, radius: f64) {
         self.circle(class, at, radius, "");
     }
 
-    /// Draws a dot that is filled with a colour of the scene, and a ring around it.
+    /// Draws a dot that is filled with a colour of the scene, and a ring around it. Labels will
+    /// avoid it.
     pub fn seen(&mut self, color: Color, at: DVec2, radius: f64) {
         self.circle("seen ink", at, radius, &format!(" style=\"fill:{color}\""));
     }

@@ -20,7 +20,7 @@ const HEIGHT: f64 = 400.0;
 /// round.
 const ARC: u32 = 24;
 
-/// Draws the figure.
+/// Draws the figure for the roll of the scene's camera, and returns it as SVG.
 pub fn draw(scene: &Scene) -> String {
     let mut canvas = Canvas::new(HEIGHT);
     let roll = scene.camera.roll;

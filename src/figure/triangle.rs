@@ -20,7 +20,7 @@ const HEIGHT: f64 = 430.0;
 /// Number of straight segments by which the arc of the spin is drawn. With 24, it looks round.
 const ARC: u32 = 24;
 
-/// Draws the figure.
+/// Draws the figure of a triangle, and returns it as SVG.
 pub fn draw(triangle: &Triangle) -> String {
     let corners = vertices(triangle);
     let [left, right, apex] = corners;
