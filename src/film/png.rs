@@ -66,7 +66,7 @@ pub enum NotOurs {
     /// A text in the file is not UTF-8.
     #[error("the picture carries a scene or an override that is not UTF-8 text")]
     NotUtf8,
-    /// The crop in the file is not an area. The text is what the file contains.
+    /// The crop in the file is not a valid area. The field has the crop's text from the file.
     #[error("the picture carries a crop that makes no sense, `{0}`")]
     Crop(String),
 }
