@@ -54,8 +54,8 @@ impl Original {
     /// file.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
-            // There was no file. Creating one fails if another program has created one meanwhile,
-            // so there is nothing to check.
+            // There was no file, so there is nothing to compare. If another program has created one
+            // meanwhile, creating the new file fails.
             return Ok(());
         };
         let is_same = || {
