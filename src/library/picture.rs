@@ -11,7 +11,7 @@ use crate::{
     source::Sources,
 };
 
-/// A picture in memory: one that was rendered, or one of any program that was read from a file.
+/// A picture in memory. It was rendered, or read from a file that any program may have written.
 ///
 /// ```
 /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }")?;
@@ -24,29 +24,29 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Picture {
     pub(super) content: Content,
-    /// The scene's text and its settings, if they are known.
+    /// The text of the scene that the picture shows, with its settings. `None` if they are unknown.
     pub(super) sources: Option<Arc<Sources>>,
 }
 
-/// The pixels of a picture.
+/// The pixels of a picture, by their origin.
 #[derive(Clone, Debug)]
 pub(super) enum Content {
-    /// Those of a film that was rendered.
+    /// Pixels that were rendered.
     Rendered(Film),
-    /// Those of a file.
+    /// Pixels that were read from a file.
     Read(Box<FromFile>),
 }
 
-/// A picture that was read from a file.
+/// A picture that was read from a file, with the file's compression.
 #[derive(Clone, Debug)]
 pub(super) struct FromFile {
     pub(super) picture: film::Picture,
-    /// The coding of a JPEG file.
+    /// Compression of the file; `None` unless it is a JPEG or a lossy WebP.
     pub(super) jpeg: Option<Jpeg>,
 }
 
 impl Picture {
-    /// Makes a picture of a film that was rendered of a scene.
+    /// Makes a picture from pixels that were rendered, and the sources of their scene.
     pub(super) fn rendered(film: Film, sources: &Arc<Sources>) -> Self {
         Self {
             content: Content::Rendered(film),
@@ -54,23 +54,23 @@ impl Picture {
         }
     }
 
-    /// Returns the number of columns.
+    /// Returns the number of columns of pixels.
     pub fn width(&self) -> u32 {
         self.film().width()
     }
 
-    /// Returns the number of rows.
+    /// Returns the number of rows of pixels.
     pub fn height(&self) -> u32 {
         self.film().height()
     }
 
-    /// Returns the means of red, green and blue of each pixel, row by row from the top, in linear
-    /// light from 0 to 1.
+    /// Returns the pixels, row by row from the top. Each has the means of red, green and blue, in
+    /// linear light from 0 to 1.
     pub fn pixels(&self) -> &[[f64; 3]] {
         self.film().pixels()
     }
 
-    /// Returns the same means without copying them.
+    /// Returns the pixels as [`pixels`](Self::pixels) does, without copying them.
     pub fn into_pixels(self) -> Vec<[f64; 3]> {
         match self.content {
             Content::Rendered(film) => film.into_pixels(),
@@ -78,15 +78,15 @@ impl Picture {
         }
     }
 
-    /// Returns the bytes of red, green and blue of each pixel, row by row from the top, as sRGB:
-    /// those that a PNG file has.
+    /// Returns the bytes of red, green and blue of each pixel, row by row from the top, in sRGB. A
+    /// PNG file contains the same bytes.
     pub fn to_rgb8(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         AsBytes::bytes(self.pixels(), &Encoder::default(), &mut bytes);
         bytes
     }
 
-    /// Returns the film, which the stages work with.
+    /// Returns the pixels as a [`Film`], the type that other modules work with.
     pub fn film(&self) -> &Film {
         match &self.content {
             Content::Rendered(film) => film,
@@ -94,8 +94,8 @@ impl Picture {
         }
     }
 
-    /// Returns the root mean square of the differences to another picture over all pixels and
-    /// channels, in linear light from 0 to 1.
+    /// Returns the root mean square of the differences between two pictures, over all pixels and
+    /// channels. It is in linear light and from 0 to 1.
     ///
     /// ```
     /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
@@ -109,14 +109,14 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// The sizes differ.
+    /// The sizes of the pictures differ.
     pub fn rmse(&self, other: &Self) -> Result<f64, Error> {
         Ok(film::rmse(self.film(), other.film())?)
     }
 
-    /// Writes the picture to a file, completely or not at all, in the format of its ending:
-    /// `.png`, in 8 bits of sRGB and with the scene's text, or `.exr`, in linear floats. The bytes
-    /// are those that the program writes.
+    /// Writes the picture to a file, completely or not at all. The path's extension selects the
+    /// format: `.png` for 8-bit sRGB, with the scene's text in the file, or `.exr` for linear
+    /// light in floats. The program `pinhole` writes the same bytes.
     ///
     /// ```
     /// # let folder = tempfile::tempdir().unwrap();
@@ -129,7 +129,7 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// The ending is another one, or the file cannot be written.
+    /// The path has another extension, or the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         let ending = path.extension().unwrap_or_default();
@@ -152,7 +152,8 @@ impl Picture {
         })
     }
 
-    /// Returns the text and the settings for the file to carry.
+    /// Returns the scene's text and settings in the form in which a PNG stores them. Returns `None`
+    /// if they are unknown.
     fn recipe(&self) -> Option<Recipe> {
         let sources = self.sources.as_ref()?;
         let crop = match &self.content {
@@ -184,15 +185,15 @@ impl Picture {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Exact {
-    /// The means.
+    /// Mean colour of each pixel, without sampling noise.
     pub picture: Picture,
-    /// For each pixel, row by row, how far a channel's mean in linear light may be from the true
-    /// one.
+    /// Error bound of each pixel, row by row: how far the mean of a channel may be from its true
+    /// value, in linear light.
     pub bounds: Vec<f32>,
 }
 
 impl Exact {
-    /// Returns the greatest bound.
+    /// Returns the greatest of the error bounds of all pixels.
     pub fn bound(&self) -> f64 {
         f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
     }
