@@ -33,8 +33,8 @@ pub use overlays::{
 };
 pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
-/// Returns for each object the span that an editor selects when the object is chosen: its name, or
-/// the keyword of its block.
+/// Returns for each object the span that an editor selects when the object is clicked in the
+/// picture: its name, or else the keyword of its block.
 pub fn selections(analysis: &Analysis<'_>, scene: &Scene) -> Vec<Span> {
     let mut blocks = analysis.blocks().peekable();
     let selection = |object: &Object| {
