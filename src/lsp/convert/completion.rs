@@ -26,7 +26,8 @@ impl Converter<'_> {
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
-            // Editors show a swatch if the documentation is only a colour code.
+            // If the documentation is only a colour code, editors show the colour beside the
+            // completion.
             CompletionKind::Color(color) => json!(color.to_string()),
             _ => markup(completion.help),
         };
@@ -39,13 +40,13 @@ impl Converter<'_> {
         };
         without_nulls(json!({
             "label": completion.label,
-            // If an item has an edit but lacks `filterText`, Neovim assumes that the items are
-            // filtered already, and replaces the typed text by the first item.
+            // If a completion has an edit but no `filterText`, Neovim assumes that the completions
+            // are filtered already, and replaces the typed text by the first of them.
             "filterText": completion.label,
             "kind": kind,
             "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
             "documentation": documentation,
-            // Editors sort by this text, so it keeps the order of the list.
+            // Editors sort by this text. The number in it preserves the order of the list.
             "sortText": format!("{index:04}"),
             // The protocol calls 1 `PlainText` and 2 `Snippet`.
             "insertTextFormat": 1 + u8::from(is_snippet),
@@ -54,8 +55,8 @@ impl Converter<'_> {
     }
 }
 
-/// Returns the text that a completion inserts, for a client without snippets: its example values
-/// are plain text.
+/// Returns the text that a completion inserts in a client without snippets. Example values become
+/// plain text.
 fn plain(pieces: &[SnippetPart]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
         SnippetPart::Text(text) | SnippetPart::Placeholder(text) => text.as_str(),
@@ -63,8 +64,8 @@ fn plain(pieces: &[SnippetPart]) -> String {
     texts.collect()
 }
 
-/// Returns the text that a completion inserts as a snippet: each example value is a numbered
-/// placeholder, which typing replaces.
+/// Returns the snippet that a completion inserts. Each example value becomes a numbered
+/// placeholder, which the author replaces by typing.
 fn snippet(pieces: &[SnippetPart]) -> String {
     let mut text = String::new();
     let mut holes = 0;
