@@ -25,8 +25,8 @@ use self::{
 
 mod spheres;
 
-/// Parser for the same grammar that the crate pest generates, for comparison. All times are printed
-/// as multiples of its time.
+/// Parser that the crate pest generates from the same grammar, for comparison. All times are
+/// printed as multiples of this parser's time.
 mod grammar {
     #[derive(pest_derive::Parser)]
     #[grammar = "grammar/scn.pest"]

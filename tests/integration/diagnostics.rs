@@ -109,8 +109,8 @@ fn underlined(sources: &Sources, label: &Label, sign: &str) -> (usize, String) {
 /// Returns the bytes of a fixture with its expectations replaced by the correct ones.
 fn annotated(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    // A message may contain a line number, and new expectations move lines. So the expectations are
-    // computed again until they no longer change, which takes at most four rounds.
+    // New expectations move lines, and a message may contain a line number. So the expectations are
+    // computed several times, until all line numbers are right.
     for _ in 0..4 {
         let expected = expectations(&read("fixture.scn", &bytes));
         let below = |line: usize| {
