@@ -1,4 +1,5 @@
-//! The tilings that [`tilings`] lists for a method have one sample in each cell.
+//! Tests that each tiling (division of the pixel into equal cells) that [`tilings`] lists for a
+//! method has one sample in each cell.
 
 use pinhole::sampling::tilings;
 
