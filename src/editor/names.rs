@@ -83,6 +83,10 @@ pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
 }
 
 /// Returns all spans that must be replaced to rename the name at the offset `at` to `new`.
+///
+/// # Errors
+///
+/// Returns a sentence that says why the name cannot be renamed to `new`.
 pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>, String> {
     renamable(analysis, at)?;
     let occurrences = occurrences(analysis, at);

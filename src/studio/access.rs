@@ -128,6 +128,10 @@ pub enum NotAdmitted {
 
 impl Access {
     /// Makes the tokens of a host that starts now.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the system's random number generator fails.
     pub fn new() -> io::Result<Self> {
         Ok(Self {
             printed: secret()?,

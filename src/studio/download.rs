@@ -69,6 +69,10 @@ pub struct Sliced {
 impl Sliced {
     /// Begins to render the file that a request asks for. Refuses to make an EXR file, since the
     /// tables of EXR's compression methods would be a quarter of the code that a browser loads.
+    ///
+    /// # Errors
+    ///
+    /// Returns the reason if the request is refused.
     pub fn new(request: &Request) -> Result<Self, Refusal> {
         catch_panics(|| {
             if request.method == EXR {

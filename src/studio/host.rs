@@ -66,6 +66,10 @@ struct Shared {
 impl Host {
     /// Listens at a port that only programs on this machine can reach. If `port` is 0, the system
     /// chooses a free port.
+    ///
+    /// # Errors
+    ///
+    /// Returns an error if the port is taken, or if the system's random number generator fails.
     pub fn new(port: u16, file: SceneFile) -> io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         listener.set_nonblocking(true)?;

@@ -132,6 +132,10 @@ impl SceneFile {
 
     /// Replaces the draft that a page has stored under the key `id`. If `unsaved` is `None`,
     /// removes it.
+    ///
+    /// # Errors
+    ///
+    /// Returns a message if the draft cannot be stored.
     pub fn keep_draft(&self, id: &str, unsaved: Option<Unsaved>) -> Result<(), String> {
         let mut drafts = self.drafts.kept(self.read);
         drafts.retain(|it| it.id != id);

@@ -47,6 +47,10 @@ pub fn range_behind(behind: &str) -> Option<&str> {
 /// Parses the range of a slider, such as `1:5` or `1:0.1:5`: an end, a step if there are three
 /// numbers, and the other end. Either end may come first. The numbers are converted to `unit`, the
 /// unit of the slider's value.
+///
+/// # Errors
+///
+/// Returns a sentence that says why the text is not a range.
 pub fn parse(range: &str, unit: Option<Unit>) -> Result<CommentRange, String> {
     let numbers = range.split(':').map(|it| in_unit(it.trim(), unit));
     let numbers = numbers.collect::<Result<Vec<(f64, bool)>, _>>()?;

@@ -48,7 +48,10 @@ pub fn distance(scene: &Scene) -> f64 {
 /// Returns the camera after the pointer has dragged the handle `handle`, such as `orbit`, from the
 /// point `from` to the point `to` of the picture. `distance` is the distance from the eye to the
 /// pivot, which [`distance`] returns.
-/// ~~why the camera cannot be moved so~~why the camera cannot be moved in this way
+///
+/// # Errors
+///
+/// Returns a sentence that says why the camera cannot be moved in this way.
 pub fn moved(
     camera: &Camera,
     projection: &Projection,

@@ -94,6 +94,10 @@ fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Sp
 
 /// Returns the edits of the text that move a handle as `drag` says. `alone` is the text without the
 /// blocks of other objects; the function [`alone`] returns it.
+///
+/// # Errors
+///
+/// Returns a sentence that says why the handle cannot be dragged there.
 pub fn drag(
     sources: &Sources,
     alone: &Sources,

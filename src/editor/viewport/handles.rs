@@ -215,6 +215,10 @@ pub fn unit(v: DVec3) -> (DVec3, f64) {
 
 /// Returns the object after the handle `handle` was dragged to the point `to` of the picture, or as
 /// near to it as possible.
+///
+/// # Errors
+///
+/// Returns a sentence that says why the handle cannot be moved there.
 pub fn moved(
     shape: Shape,
     handle: &str,
@@ -362,6 +366,10 @@ fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection
 
 /// Returns the spin of a triangle (its rotation about its normal) with which the apex points from
 /// the centroid towards the point that appears at `to`.
+///
+/// # Errors
+///
+/// Returns a sentence if the triangle's plane is not visible at `to`.
 fn spun(
     triangle: &CenteredTriangle,
     apex: DVec3,

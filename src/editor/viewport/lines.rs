@@ -40,9 +40,9 @@ impl Projection {
         self.joined(segments)
     }
 
-    /// Joins segments in the picture to polygonal lines. Cuts off what is farther outside of the
-    /// picture than [`REACH`]. A segment that starts where the previous one ends continues its
-    /// line.
+    /// Joins segments in the picture to polygonal lines. A segment that starts where the previous
+    /// one ends continues its line. Parts that are more than 128 times the picture's size outside
+    /// of it are cut off, since browsers cannot draw them exactly.
     pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Polyline> {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = segments.into_iter();
