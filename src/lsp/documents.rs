@@ -15,7 +15,7 @@ pub enum Encoding {
 }
 
 impl Encoding {
-    /// Returns the number of columns of `text` in this unit.
+    /// Returns the number of columns of `text`, counted in the unit `self`.
     pub fn columns(self, text: &str) -> usize {
         match self {
             Self::Utf8 => text.len(),

@@ -49,7 +49,9 @@ const LONGEST_BURST: Duration = Duration::from_millis(200);
 /// that, a program may be saving it: some empty or remove a file before they write the new content.
 const ABSENCE: Duration = Duration::from_millis(300);
 
-/// Maximum time to wait until a missing or empty file has content, even if events still arrive.
+/// Maximum time to wait until a missing or empty file has content, even if events still arrive. Two
+/// seconds are longer than a usual save, but short enough to tell the user soon that the file is
+/// missing.
 const LONGEST_ABSENCE: Duration = Duration::from_secs(2);
 
 /// Time between two checks of the file without an event. A check reads only the file's time and

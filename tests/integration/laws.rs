@@ -171,7 +171,7 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
 #[test]
 fn quarter_turns_about_y_swap_the_boards_colours() {
     for (world, turns) in worlds(1, Method::MultiJittered).zip([1, 2, 3].into_iter().cycle()) {
-        // A quarter turn moves the square (i, j) to (j, −1 − i).
+        // A quarter turn moves the square of the board with the indices (i, j) to (j, −1 − i).
         let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         let mut after = mapped(&world, turn, turn, 1.0);
         // If the normal of a triangle is vertical, its base is parallel to the x axis, whatever the

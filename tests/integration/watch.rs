@@ -210,8 +210,8 @@ fn links_and_the_file_at_their_end_are_watched() {
     watch.shows("red");
     far.write("a.scn", scene("gold"));
     watch.shows("gold");
-    // The folder of the middle link is not watched, so a change of the link causes no event. The
-    // program notices the change when any other event occurs.
+    // The path is a chain of three links. The folder of the middle link is not watched, so a change
+    // of this link causes no event. The program notices the change when any other event occurs.
     symlink(far.path("blue"), middle.path("other")).unwrap();
     fs::rename(middle.path("other"), middle.path("middle")).unwrap();
     watch.wait("the picture is blue", || {

@@ -5,9 +5,9 @@ use crate::{
     syntax::tree::{Unit, Value, ValueKind},
 };
 
-/// Minimum decimal exponent, both of a slider's step and of a literal that a slider changes.
-/// Smaller exponents, and greater ones than its negative, are replaced by these limits. 10^−300 and
-/// 10^300 are well within the range of `f64`, so that no power of ten becomes 0 or infinite.
+/// Minimum decimal exponent of a slider's step, and of a literal that a slider changes. The maximum
+/// is its negative, 300. Powers of ten within these limits are well within the range of `f64`, so
+/// that none becomes 0 or infinite.
 const LEAST_EXPONENT: i32 = -300;
 
 /// Maximum number of significant digits of a number that a slider changes. The slider's step is at

@@ -174,7 +174,7 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     let whole = apply(&Fix::new("", edits), SourceId::File, text);
     let rest = &text[block.span.end..];
     let copy = format!("\n{}", &whole[block.span.start..whole.len() - rest.len()]);
-    // A comment after the block belongs to it, so the copy is inserted after the comment.
+    // A comment after the block belongs to the block, so the copy is inserted after the comment.
     let behind = rest.lines().next().unwrap_or_default();
     let is_comment = behind.trim_start().starts_with("//");
     let end = block.span.end + if is_comment { behind.len() } else { 0 };

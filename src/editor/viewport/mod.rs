@@ -7,7 +7,7 @@
 //!
 //! `lines` projects lines into the picture. `handles` computes the handles of an object and moves
 //! the object, `camera` moves the camera, and `edits` writes the changed fields into the text.
-//! `drag` combines these. `add` writes new blocks.
+//! `drag` combines them. `add` writes new blocks.
 
 mod add;
 mod camera;

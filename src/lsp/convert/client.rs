@@ -64,7 +64,7 @@ pub fn capabilities(client: &Client) -> Value {
             Encoding::Wide(WideEncoding::Utf32) => "utf-32",
             Encoding::Wide(_) => "utf-16",
         },
-        // The protocol calls 2 `Incremental`: changes are sent as edits of the text.
+        // In the protocol, 2 stands for `Incremental`: changes are sent as edits of the text.
         "textDocumentSync": { "openClose": true, "change": 2 },
         "completionProvider": { "triggerCharacters": ["("] },
         "hoverProvider": true,

@@ -12,17 +12,17 @@ impl Converter<'_> {
     pub fn completion(&self, index: usize, completion: Completion) -> Value {
         let kind = match completion.kind {
             CompletionKind::Function => 3,
-            // The protocol calls 6 `Variable`.
+            // 6 is the number of the kind `Variable` in the protocol.
             CompletionKind::Definition => 6,
-            // The protocol calls 10 `Property`.
+            // 10 is the number of the kind `Property` in the protocol.
             CompletionKind::Field => 10,
             CompletionKind::Value => 12,
             CompletionKind::Keyword => 14,
             CompletionKind::Color(_) => 16,
-            // The protocol calls 20 `EnumMember`.
+            // 20 is the number of the kind `EnumMember` in the protocol.
             CompletionKind::Method => 20,
             CompletionKind::Constant => 21,
-            // The protocol calls 22 `Struct`.
+            // 22 is the number of the kind `Struct` in the protocol.
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
@@ -48,7 +48,7 @@ impl Converter<'_> {
             "documentation": documentation,
             // Editors sort by this text. The number in it preserves the order of the list.
             "sortText": format!("{index:04}"),
-            // The protocol calls 1 `PlainText` and 2 `Snippet`.
+            // In the protocol, 1 stands for `PlainText` and 2 for `Snippet`.
             "insertTextFormat": 1 + u8::from(is_snippet),
             "textEdit": { "range": self.range(completion.replaces), "newText": text },
         }))

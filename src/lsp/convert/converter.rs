@@ -90,7 +90,7 @@ impl Converter<'_> {
             "code": diagnostic.code.trim_start_matches("pinhole::"),
             "source": "pinhole",
             "message": message,
-            // The protocol calls 1 `Unnecessary`; editors show such text in grey.
+            // In the protocol, 1 stands for `Unnecessary`; editors show such text in grey.
             "tags": diagnostic.is_needless.then_some([1]),
             "relatedInformation": Some(related).filter(|related| !related.is_empty()),
         }))
@@ -124,7 +124,7 @@ impl Converter<'_> {
     }
 
     pub fn highlight(&self, occurrence: Occurrence) -> Value {
-        // The protocol calls 3 `Write` and 2 `Read`.
+        // In the protocol, 3 stands for `Write` and 2 for `Read`.
         let kind = if occurrence.is_definition { 3 } else { 2 };
         json!({ "range": self.range(occurrence.span), "kind": kind })
     }
@@ -211,11 +211,11 @@ impl Converter<'_> {
             "name": symbol.name,
             "detail": Some(symbol.detail).filter(|detail| !detail.is_empty()),
             "kind": match symbol.kind {
-                // The protocol calls 2 `Module`.
+                // 2 is the number of the kind `Module` in the protocol.
                 SymbolKind::Setting => 2,
-                // The protocol calls 7 `Property`.
+                // 7 is the number of the kind `Property` in the protocol.
                 SymbolKind::Field => 7,
-                // The protocol calls 13 `Variable`.
+                // 13 is the number of the kind `Variable` in the protocol.
                 SymbolKind::Definition => 13,
                 SymbolKind::Object => 19,
             },
@@ -238,7 +238,7 @@ impl Converter<'_> {
     }
 
     pub fn hint(&self, hint: Hint) -> Value {
-        // The protocol calls 1 `Type`.
+        // 1 is the number of the kind `Type` of hints in the protocol.
         let kind = 1;
         json!({
             "position": self.position(hint.at), "label": hint.text, "kind": kind, "paddingLeft": true

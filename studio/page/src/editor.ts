@@ -148,7 +148,7 @@ class SceneEditor {
   /** The text, with LF line ends. */
   get text(): string { return this.view.state.doc.toString(); }
 
-  /** Sends a request about the scene, as `Connection.request` does. */
+  /** Sends a request about the scene. Rejects if it fails, or if there is no connection. */
   request<Result>(method: string, params: object): Promise<Result> {
     return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }

@@ -4,7 +4,7 @@ import { byId } from "./dom";
 import type { Shown } from "./frames";
 import type { Point } from "./protocol";
 
-/** Minimum zoom, in screen pixels per pixel, at which pixels are drawn as sharp squares. */
+/** Minimum zoom, in screen pixels per pixel, at which pixels are sharp squares; chosen by eye. */
 const SQUARES = 3;
 const MOST_ZOOM = 64;
 /** Margin between the whole picture and the border of its area, in screen pixels. */

@@ -341,8 +341,8 @@ fn a_picture_in_every_folder_is_a_template_only_beside_others() {
             ("ben", "class/ben/render.png", "wrong", &[]),
         ],
     );
-    // If one student has a second picture, the common one counts as a template, unless `--picture`
-    // names it.
+    // If one student has a second picture, a picture that all students have counts as a template,
+    // unless `--picture` names it.
     put(&folder, &[("class/ben/test.png", "size.png")]);
     let given = ["render.png (equal in every folder: --picture chooses it)"];
     let others: &[(&str, &str, &str, &[&str])] = &[

@@ -39,7 +39,7 @@ pub struct Object {
 /// The way in which a student's program converts light to a byte.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
-    /// Encodes by the curve of sRGB.
+    /// Encodes the light by the curve of sRGB, which is correct.
     Srgb,
     /// Does not encode: the byte is proportional to the light, which is a mistake.
     None,
@@ -54,11 +54,11 @@ pub enum Encoding {
 pub enum Visible {
     /// The nearest surface, which is correct.
     Nearest,
-    /// The surface of the first object in the scene.
+    /// The surface of the object that comes first in the scene, which is a mistake.
     First,
-    /// The surface of the last object in the scene.
+    /// The surface of the object that comes last in the scene, which is a mistake.
     Last,
-    /// The farthest surface.
+    /// The farthest surface, which is a mistake.
     Farthest,
 }
 

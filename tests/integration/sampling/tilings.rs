@@ -5,7 +5,8 @@ use pinhole::sampling::tilings;
 
 use super::*;
 
-/// Returns the cell of a tiling that contains a point: its row, and its index in the row.
+/// Returns the cell that contains a point if a pixel is divided into rows with the given numbers of
+/// cells: the cell's row, and its index in the row.
 fn cell(rows: &[u64], point: DVec2) -> (usize, u64) {
     let n: u64 = rows.iter().sum();
     let height = ((point.y + 0.5) * n as f64).floor() as u64;

@@ -88,9 +88,10 @@ impl TracerAndOracle {
     }
 }
 
-/// Compares the tracer with the oracle at random points. Then bisects random segments within
-/// pixels, and compares both sides of each colour boundary at neighbouring `f64` points. Returns
-/// the number of boundaries found, so that a test can require a minimum.
+/// Compares the tracer with the oracle, an independent tracer of high precision, at random points.
+/// Then bisects random segments within pixels, and compares both sides of each colour boundary at
+/// neighbouring `f64` points. Returns the number of boundaries found, so that a test can require a
+/// minimum.
 #[track_caller]
 fn assert_agrees_with_oracle(scene: &Scene, points: usize) -> usize {
     let both = TracerAndOracle::new(scene);
