@@ -84,17 +84,19 @@ impl<T> Latest<T> {
         &self.stale
     }
 
-    /// Puts a value into the slot, and sets the flag [`stale`](Self::stale).
+    /// Puts a value into the slot for the other thread. Sets the flag [`stale`](Self::stale), since
+    /// the value that was taken last is now outdated.
     pub fn put(&self, value: T) {
         self.change(|state| state.next = Some(value));
     }
 
-    /// Ends the slot, and sets the flag [`stale`](Self::stale). Waiting threads then get `None`.
+    /// Ends the passing of values through the slot, and sets the flag [`stale`](Self::stale).
+    /// Waiting threads then get `None`.
     pub fn end(&self) {
         self.change(|state| state.is_over = true);
     }
 
-    /// Returns whether the slot has ended, so that no further values are accepted.
+    /// Returns whether the slot has ended, i.e. whether no further values are passed.
     pub fn is_over(&self) -> bool {
         lock(&self.state).is_over
     }

@@ -39,7 +39,7 @@ const LIFETIME: Duration = Duration::from_secs(5);
 
 /// Maximum number of bytes that a connection may send before it has sent a valid token. A
 /// connection that sends more fails. A browser's request has about 1 KiB, or more if other programs
-/// on this machine have set many cookies.
+/// on this machine have set many cookies. 32 KiB leave room for these.
 const LONGEST: usize = 32 << 10;
 
 /// State of a connection, which the connection shares with the handlers of its requests.

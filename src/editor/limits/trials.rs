@@ -7,13 +7,14 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum cost of all trials for one answer to the editor, in bytes of text that are analyzed. A
-/// trial that would exceed it is not made. A choice: at 64 KiB, a text of 1 KiB is tried up to 64
-/// times. More trials would find more ends of sliders in long texts, but delay the answer.
+/// Maximum cost of all trials (analyses of the text with another number in it) for one answer to
+/// the editor, in bytes of analyzed text. A trial that would exceed it is not made. A choice: at 64
+/// KiB, a text of 1 KiB is tried up to 64 times. More trials would find more ends of sliders in
+/// long texts, but delay the answer.
 const BYTES: usize = 1 << 16;
 
-/// Cost of making one object of a scene in a trial, in bytes of text that take as long to analyze.
-/// The factor need only be roughly right, since the cost bounds nothing but the time of an answer.
+/// Cost of making one object of a scene, in bytes of text that take as long to analyze. It need
+/// only be roughly right, since it serves to limit the time of an answer.
 const OBJECT: usize = 12;
 
 /// Analyses of a text with another number in place of a literal. Their total cost is limited by

@@ -52,7 +52,7 @@ class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Number of the latest attempt to connect. Events of earlier attempts are ignored. */
   private current = 0;
-  /** Times of the last message and of the open test request; whether its reply is late. */
+  /** Times of the last message and the open test request; (`hangs`) whether its reply is late. */
   private heard = 0;
   private asked = 0;
   private hangs = false;

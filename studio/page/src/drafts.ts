@@ -15,7 +15,7 @@ import { setText } from "./visible";
 const BEHIND = 500;
 /** Maximum number of drafts in the browser. If there are more, the oldest are deleted. */
 const MOST = 10;
-/** Maximum number of drafts offered at once. Others follow as soon as these are answered. */
+/** Maximum number of drafts offered at once, to save room. Others follow after these. */
 const OFFERED = 3;
 
 const store = createStore("pinhole-drafts", "drafts");

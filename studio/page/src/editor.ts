@@ -20,7 +20,7 @@ import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-/** Maximum time to compare two texts, in ms. Then larger parts of them count as different. */
+/** Maximum time to compare two texts, in ms; a longer pause is felt. Then results are coarser. */
 const DIFF_TIME = 100;
 
 /** Matches unpaired surrogates. UTF-8, in which files and messages are written, has none. */

@@ -314,7 +314,7 @@ class Files {
     this.conflict.returnValue = "";
     this.conflict.onclose = () => {
       const { returnValue: choice } = this.conflict;
-      // If nothing is chosen, the base stays the older text, so the next save asks again.
+      // If nothing is chosen, the page stays based on the older text, so the next save asks again.
       if (choice === "") return;
       this.at.seen = this.at.base = theirs;
       if (choice === "page") void this.save();

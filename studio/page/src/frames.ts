@@ -25,7 +25,7 @@ const COARSE_PIXELS = 320 * 180;
 const MOST = { pixels: 16_000_000, side: 8192 };
 /** Pause in a drag, in ms, before finer pictures are requested: a little over a screen refresh. */
 const HAND_RESTS = 20;
-/** If the last final picture took at most this time, in ms, the one before it is left out. */
+/** Time of a final picture, in ms, so short that no sharp picture is requested before it. */
 const SOON = 200;
 
 /** A requested picture: its text, and the number of the request. */

@@ -9,7 +9,7 @@ import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 /** Marks a change of the text as the first or a later one of a gesture (a drag, for example). */
 const step = Annotation.define<"first" | "next">();
 
-/** Pause in typing, in ms, after which Undo treats further typing as a separate change. */
+/** Pause in typing, in ms, after which Undo separates further typing; CodeMirror's default. */
 const TYPING_PAUSE = 500;
 const touched = Decoration.mark({ class: "touched" });
 

@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** Least and greatest share of the text in the page's width (or height, if narrow), in %. */
+/** Least and greatest share of the text in the page's width or height, in %; no side vanishes. */
 const LEAST = 20;
 const MOST = 80;
 

@@ -26,7 +26,7 @@ import { mapSliders, refreshSliders, stop } from "./sliders";
 import * as status from "./status";
 import { setText } from "./visible";
 
-/** Delay, in ms, after the last change before hints, sliders and objects are requested. */
+/** Delay, in ms, before hints, sliders and objects are requested, so not at each typed letter. */
 const REST = 150;
 
 editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls,

@@ -13,7 +13,7 @@ import type { Limits } from "./protocol";
 /** A number in the text, from its sign at `from` to `to`. Its unit, if any, reaches to `end`. */
 interface Literal { from: number; to: number; end: number; value: number }
 
-/** Distance of a horizontal drag, in screen pixels, that changes the number by one step. */
+/** Pixels of a horizontal drag per step of the number; with fewer, it would be hard to control. */
 const DRAG_PIXELS = 4;
 
 /** Matches text at whose end a `-` is the sign of a number rather than a subtraction. */

@@ -290,7 +290,8 @@ fn a_crop_is_compared_with_the_part_that_is_named() {
         "render a.scn -o part.png --crop 4,3,10,12 --set sampler.method=exact",
         0,
     );
-    // A PNG file can contain its crop. Saving the picture again removes it.
+    // A PNG file can state which crop of the picture it is. Saving it again removes this
+    // information.
     let path = folder.path("part.png");
     image::open(&path).unwrap().to_rgb8().save(&path).unwrap();
     for command in ["grade a.scn part.png", "diff part.png a.scn"] {
