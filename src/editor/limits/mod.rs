@@ -152,8 +152,8 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let is_count = trials.is_count(literal);
     if is_count {
         bounds.is_whole = true;
-        // A negative count causes no error if a formula, for example, squares it. Trials would then
-        // not exclude negative counts.
+        // A negative count causes no error if a formula, for example, squares it. So analyses with
+        // other numbers in the text would not exclude negative counts.
         if literal.value >= 0.0 && bounds.least == f64::NEG_INFINITY {
             bounds.least = 0.0;
         }
