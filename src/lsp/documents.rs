@@ -1,21 +1,21 @@
-//! Keeps the texts that are open in the editor, and converts between byte offsets and positions by
-//! line and column.
+//! Keeps the texts that are open in the editor. Converts between byte offsets and positions, i.e.
+//! lines and columns.
 
 use line_index::{LineCol, LineIndex, WideEncoding, WideLineCol};
 
 use crate::source::{Source, Sources};
 
-/// Unit in which columns of a line are counted.
+/// Unit in which the columns of a line are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// Bytes.
+    /// The unit is a byte of UTF-8.
     Utf8,
-    /// UTF-16 code units, or characters (UTF-32).
+    /// The unit is a UTF-16 code unit, or a character (UTF-32).
     Wide(WideEncoding),
 }
 
 impl Encoding {
-    /// Returns the number of columns of `text` in this unit.
+    /// Returns the number of columns of `text`, counted in the unit `self`.
     pub fn columns(self, text: &str) -> usize {
         match self {
             Self::Utf8 => text.len(),
@@ -24,30 +24,30 @@ impl Encoding {
     }
 }
 
-/// A position: line and column, both counted from 0.
+/// A position in a text: line and column, both counted from 0.
 pub type LineColumn = (u32, u32);
 
 /// A text that is open in the editor.
 #[derive(Debug)]
 pub struct Document {
-    /// The version of the text, as the client numbers them.
+    /// Version of the text, as the client counts versions.
     pub version: i32,
-    /// The text, as the file of a scene without `--set` arguments.
+    /// The text as the only source of a scene, i.e. without any `--set` arguments.
     pub sources: Sources,
     encoding: Encoding,
 }
 
 /// A change that replaces a part of a text, or the whole text.
 pub struct TextChange {
-    /// Start and end of the replaced part; `None` for the whole text.
+    /// Start and end of the replaced part; `None` if the whole text is replaced.
     pub range: Option<[LineColumn; 2]>,
-    /// The new text.
+    /// The new text for the replaced part.
     pub text: String,
 }
 
 impl Document {
-    /// Makes the document of a text that the client has opened. `encoding` is the client's unit for
-    /// columns.
+    /// Makes the document of a text that the client has opened. `encoding` is the unit in which the
+    /// client counts columns.
     pub fn new(name: &str, version: i32, text: String, encoding: Encoding) -> Self {
         Self {
             version,
@@ -56,8 +56,8 @@ impl Document {
         }
     }
 
-    /// Applies changes in order. The positions of each change refer to the text after the previous
-    /// changes. If a change is invalid, the text stays as it was before all changes.
+    /// Applies changes in order. The positions of a change refer to the text after the previous
+    /// changes. If one change is invalid, none is applied.
     ///
     /// # Errors
     ///
@@ -90,15 +90,15 @@ impl Document {
         self.sources.file.text()
     }
 
-    /// Returns the byte offset of a position. A column beyond the end of a line is treated as the
-    /// line's end, a position within a character as the character's start, and a line beyond the
-    /// last one as the end of the text.
+    /// Returns the byte offset of a position. Any position has an offset: a column beyond the end
+    /// of its line counts as the line's end, a position within a character as the character's
+    /// start, and a line beyond the last one as the end of the text.
     pub fn offset(&self, place: LineColumn) -> usize {
         let text = self.text();
         offset(text, self.sources.file.lines(), self.encoding, place).unwrap_or(text.len())
     }
 
-    /// Returns the position of a byte offset.
+    /// Returns the line and column of a byte offset.
     pub fn line_column(&self, offset: usize) -> LineColumn {
         let place = self.sources.file.line_col(offset);
         match self.encoding {
@@ -111,7 +111,7 @@ impl Document {
     }
 }
 
-/// Returns the byte offset of a position in the text whose line index is `lines`. The start of the
+/// Returns the byte offset of a position in `text`, whose line index is `lines`. The start of the
 /// line after the last one is the end of the text. Returns `None` for later lines.
 fn offset(
     text: &str,
@@ -157,7 +157,7 @@ mod tests {
                 assert_eq!(document.line_column(offset), (0, column));
                 assert_eq!(document.offset((0, column)), offset);
             }
-            // These positions lie after the end of their line, or in a line after the last one.
+            // Positions at or after the end of their line, and positions after the last line.
             for (place, offset) in [((0, 99), 10), ((1, 1), 13), ((2, 0), 14), ((99, 99), 14)] {
                 assert_eq!(document.offset(place), offset);
             }
@@ -182,8 +182,8 @@ mod tests {
         let changes = [
             change([(0, 0), (0, 3)], "🎱"),
             change([(0, 2), (1, 0)], " "),
-            // The start of this range is after its end, and beyond the end of the line. The next
-            // range is in the line after the last one.
+            // This range starts after its own end, and beyond the end of the line. The next range
+            // is in the line after the last one.
             change([(0, 99), (0, 3)], "!"),
             change([(2, 0), (2, 0)], "end"),
         ];
