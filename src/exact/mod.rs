@@ -86,35 +86,29 @@ const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
 /// Maximum memory of a pixel's queued parts, in bytes. Above it, the pixel is not divided any
-/// further, and uncomputed parts count as errors. The limit excludes memory that a part needs only
-/// while it is computed, and does not apply to a pixel that is not divided. The value, 64 MiB, is a
-/// choice.
+/// further, and uncomputed parts count as errors. Memory that a part needs only while it is
+/// computed is not counted. The value, 64 MiB, is a choice.
 const MAX_MEMORY: usize = 64 << 20;
 /// Minimum side of a square part of a pixel that is quartered because too many curves pass through
 /// it, in pixels. A smaller part counts as an error instead; its area is less than a unit roundoff
 /// of the pixel's area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
-/// about 50 ns. A rough value is enough, because the budget only stops computations that take too
-/// long.
+/// about 50 ns. Rough, because the budget only stops what takes too long.
 const PIECE_WORK: f64 = 100.0;
-/// Work charged to a pixel's budget per object that may be seen in a part of the pixel, in units of
-/// about 50 ns. A rough value is enough, because the budget only stops computations that take too
-/// long.
+/// Work charged per object that may be seen in a part of a pixel, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
-/// Work charged to a pixel's budget per ordered pair of curves in a part of the pixel with a conic,
-/// in units of about 50 ns. Without it, the work charged for regions is only half of the time
-/// measured for a heap of 10⁴ spheres.
+/// Work charged per ordered pair of curves in a part of a pixel with a conic, in units of about
+/// 50 ns. Without it, half of the time measured for a heap of 10⁴ spheres is not accounted for.
 const SLABS_WORK: f64 = 60.0;
-/// Work per pixel that shows only a few squares of a checkerboard, in units of about 50 ns. It
-/// counts towards the limit on the picture's work, for which a rough value is enough.
+/// Work charged per pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
 const BOARD_PIXEL_WORK: u64 = 10;
 
 /// A computed pixel. Each colour has N values from 0 to 1, by default its three channels in linear
 /// light, and the pixel has the mean of each value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactPixel<const N: usize = 3> {
-    /// Mean of each of the colour's values over the pixel's area.
+    /// Mean of each value over the pixel's area.
     pub mean: [f64; N],
     /// Maximum absolute error of each mean.
     pub bound: f64,
@@ -148,8 +142,7 @@ enum PieceState {
     /// budget is spent.
     Crowded,
     Computed,
-    /// The shares of this part are computed, and it will not be quartered: quartering the part that
-    /// contains it reduced the error bound by less than half.
+    /// Computed, and not quartered: quartering its parent reduced the bound by less than half.
     Final,
 }
 
@@ -251,8 +244,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
                     }
                     _ => film.set(x, y, self.pixel(x, y, candidates, &mut curves, cancel)),
                 },
-                // `Quartering::new` sets no limit on the number of objects in a part, so that no
-                // part is crowded.
+                // `Quartering::new` sets no limit on candidates, so that no part is crowded.
                 PicturePart::Crowded { .. } => {
                     unreachable!("every part of an exact picture is quartered")
                 }
@@ -270,10 +262,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Calls `show` with each area in which only one object is seen, and with each other pixel,
-    /// together with the shares of the area that the objects cover, by palette index. The world
-    /// must be made by [`World::by_object`], so that palette indices stand for objects. Above the
-    /// work limit, a pixel's middle counts for the whole pixel. Returns whether all shares are
-    /// known to within 1e-6.
+    /// together with the objects' shares of the area. The world must be made by
+    /// [`World::by_object`], so that palette indices stand for objects. Above the work limit, a
+    /// pixel's middle counts for the whole pixel. Returns whether all shares are within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -343,8 +334,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue of parts of the pixel grows by copying to twice the memory; the old
-                // memory exists until then.
+                // A full queue grows by copying to twice the memory; the old one exists until then.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
