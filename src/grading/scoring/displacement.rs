@@ -70,36 +70,57 @@ pub struct Displacement {
     pub square: f64,
 }
 
+/// A symmetric matrix; only the entries on the diagonal and to the left of it are used.
+type Symmetric = [[f64; TERMS]; TERMS];
+
 /// Normal equations of the least-squares fit of a displacement to a group of pixels.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct NormalEquations {
-    normal: Vec<Vec<f64>>,
-    variance: Vec<Vec<f64>>,
-    right_side: Vec<f64>,
+    normal: Symmetric,
+    variance: Symmetric,
+    right_side: [f64; TERMS],
 }
 
 impl NormalEquations {
+    /// Adds the equation of one channel of a pixel: `row` has the coefficients' factors, and
+    /// `variance` is that of `difference`.
+    fn add(&mut self, row: &[f64; TERMS], difference: f64, weight: f64, variance: f64) {
+        for (j, one) in row.iter().enumerate() {
+            let weighted = weight * one;
+            self.right_side[j] += weighted * difference;
+            for (k, other) in row[..=j].iter().enumerate() {
+                let product = weighted * other;
+                self.normal[j][k] += product;
+                self.variance[j][k] += weight * variance * product;
+            }
+        }
+    }
+
     /// Solves for the displacement. `off_middle` is subtracted: the displacement, in pixels, that
     /// few samples may cause. Returns `None` if the displacement may be chance.
     fn displacement(&self, off_middle: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let full = |matrix: &Symmetric| -> Vec<Vec<f64>> {
+            let row = |i: usize| (0..TERMS).map(move |j| matrix[i.max(j)][i.min(j)]);
+            (0..TERMS).map(|i| row(i).collect()).collect()
+        };
         // Adds a small diagonal, so that a coefficient that no edge determines becomes 0.
-        let solved = |matrix: &[Vec<f64>]| {
-            let mut matrix = matrix.to_vec();
+        let solved = |mut matrix: Vec<Vec<f64>>| {
             let most = (0..TERMS).map(|i| matrix[i][i]).fold(0.0, f64::max);
             (0..TERMS).for_each(|i| matrix[i][i] += 1e-3 * most + 1e-30);
-            solve(matrix, self.right_side.clone())
+            solve(matrix, self.right_side.to_vec())
         };
-        let square = dot(&self.right_side, &solved(&self.variance)?);
-        let mut fitted = solved(&self.normal)?;
+        let square = dot(&self.right_side, &solved(full(&self.variance))?);
+        let normal = full(&self.normal);
+        let mut fitted = solved(normal.clone())?;
         let by = [fitted[0], fitted[3]];
         for at in [0, 3] {
             fitted[at] -= fitted[at].clamp(-off_middle, off_middle);
         }
-        let product = fitted.iter().zip(&self.normal);
+        let product = fitted.iter().zip(&normal);
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
         // Only the part of a displacement along the gradient is visible.
-        let length = (product / (self.normal[0][0] + self.normal[3][3])).sqrt();
+        let length = (product / (normal[0][0] + normal[3][3])).sqrt();
         (square > CHANCE).then_some(Displacement { length, by, square })
     }
 }
@@ -212,42 +233,29 @@ impl Prediction<'_> {
             let ([x, y], own) = (place(at), &mut boxes[*group]);
             *own = [own[0].min(x), own[1].max(x), own[2].min(y), own[3].max(y)];
         }
-        let empty = NormalEquations {
-            normal: vec![vec![0.0; TERMS]; TERMS],
-            variance: vec![vec![0.0; TERMS]; TERMS],
-            right_side: vec![0.0; TERMS],
-        };
-        let mut sums = vec![empty; all];
+        let mut sums = vec![NormalEquations::default(); all];
         for (at, group) in groups.iter().enumerate() {
             let (x, y) = (at % width, at / width);
             let is_inside = x > 0 && y > 0 && x + 1 < width && y + 1 < height;
             if !is_inside || self.observed[at].x.is_nan() {
                 continue;
             }
-            let difference = self.difference(at);
-            let error = self.error(at, share);
+            let gradient = |by: usize| (mean[at + by] - mean[at - by]) / 2.0;
+            let [right, down] = [gradient(1), gradient(width)];
+            if right == DVec3::ZERO && down == DVec3::ZERO {
+                continue;
+            }
+            let (difference, error) = (self.difference(at), self.error(at, share));
             let [x0, x1, y0, y1] = boxes[*group];
             let reach = ((x1 - x0).max(y1 - y0) / 2.0).max(1.0);
             let [x, y] = place(at);
             let (x, y) = ((x - (x0 + x1) / 2.0) / reach, (y - (y0 + y1) / 2.0) / reach);
             for i in 0..3 {
-                let right = (mean[at + 1][i] - mean[at - 1][i]) / 2.0;
-                let down = (mean[at + width][i] - mean[at - width][i]) / 2.0;
-                if right == 0.0 && down == 0.0 {
-                    continue;
-                }
+                let (right, down) = (right[i], down[i]);
                 let row = [right, right * x, right * y, down, down * x, down * y];
                 let deviation = deviations[3 * at + i];
                 let weight = 1.0 / (deviation * deviation);
-                let own = &mut sums[*group];
-                for j in 0..TERMS {
-                    own.right_side[j] += weight * row[j] * difference[i];
-                    for k in 0..TERMS {
-                        let product = weight * row[j] * row[k];
-                        own.normal[j][k] += product;
-                        own.variance[j][k] += weight * product * error[i];
-                    }
-                }
+                sums[*group].add(&row, difference[i], weight, error[i]);
             }
         }
         sums.iter()

@@ -94,12 +94,15 @@ impl Prediction<'_> {
     pub fn score(&self) -> Score {
         let errors = (0..self.observed.len()).map(|at| PixelError::of(self, at));
         let errors: Vec<PixelError> = errors.collect();
+        // Pixels of one colour do not determine the share.
+        let has_several = |one: &&PixelError| one.variance != DVec3::ZERO;
+        let mixed: Vec<&PixelError> = errors.iter().filter(has_several).collect();
         // Variance of errors relative to that of one sample: 1/n for n samples per pixel. At most
         // 1.
         let mut share: f64 = 1.0;
         for _ in 0..ROUNDS {
             let (mut above, mut below) = (0.0, 0.0);
-            for one in &errors {
+            for one in &mixed {
                 let weight = (FREEDOM + 3.0) / (FREEDOM + one.chi_square(share));
                 let total = one.total(share);
                 let part = one.variance / (total * total);

@@ -10,7 +10,6 @@ use std::sync::Arc;
 use super::{
     judge::{CELL_STEP, Judge, least},
     plain_numbers::shortened,
-    residual::Residual,
 };
 use crate::grading::{
     hypotheses::{Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows},
@@ -95,7 +94,7 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let edges = judge.central_crop();
     // What is found so far is tested even if the budget of work is used up.
     let (residual, null) = judge.work.without_limit(|| {
-        let residual = Residual::of_candidate(judge, candidate);
+        let residual = judge.residual(candidate);
         residual.zip(judge.judged(candidate, edges))
     })?;
     // Truncated bytes and wrong encodings are visible in whole areas, so they are tried even if the
@@ -194,7 +193,7 @@ fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     if judge.explains(&with) {
         return Some(with);
     }
-    if !Residual::of_candidate(judge, &with)?.is_at_edges {
+    if !judge.residual(&with)?.is_at_edges {
         return None;
     }
     let fitted = refitted(judge, &with, judge.fitting(&with), [0, ROUNDS])?;

@@ -15,7 +15,6 @@ use super::{
     numeric_mistakes::{numeric_mistakes, slightly_wrong},
     patch::patch,
     plain_numbers::plain,
-    residual::Residual,
 };
 use crate::{
     cancel::{self, Cancelled},
@@ -219,10 +218,14 @@ impl Search<'_> {
             if let Some(fitted) = fitted {
                 judged = judge.judged(&fitted, &judge.middle)?;
             }
+            // It cannot become better than the hypothesis that explains the picture.
+            if self.has_better(judged.candidate(), judged.cost) {
+                return Some(judged);
+            }
             // Slightly wrong numbers leave errors at edges, which a mistake at edges would seem to
             // explain.
             let has_numbers = judged.candidate().numeric().next().is_some();
-            let residual = || Residual::of_candidate(judge, judged.candidate());
+            let residual = || judge.residual(judged.candidate());
             if has_numbers && residual().is_some_and(|residual| residual.is_at_edges) {
                 let plain = plain(judge, judged.candidate());
                 judged = judge.judged(&plain, &judge.middle).unwrap_or(judged);

@@ -1,14 +1,14 @@
 //! A picture that is judged: its resolutions, its budget of work, and the operations of the search.
 
-use std::sync::Arc;
+use std::{cell::RefCell, collections::VecDeque, sync::Arc};
 
 use super::levenberg_marquardt::{Fitted, absolute, fit};
 use crate::{
     area::Area,
     film::{Film, Jpeg},
     grading::{
-        hypotheses::{Candidate, Effect},
-        scoring::{Grid, Level, Prediction, Rendering, Score, Work, work},
+        hypotheses::{Candidate, Effect, Mistake},
+        scoring::{Displacement, Grid, Level, Prediction, Rendering, Score, Work, work},
     },
     scene::Scene,
 };
@@ -46,6 +46,38 @@ pub struct Judge<'a> {
     /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
     central: Option<Level<'a>>,
     pub work: Work<'a>,
+    /// What the last few hypotheses left unexplained, by their mistakes.
+    pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
+}
+
+/// What a hypothesis leaves unexplained in the pixels of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Residual {
+    /// Number of pixels that should show one colour and show another one.
+    pub strays: usize,
+    /// Whether areas of one colour are right, except for a few pixels that samples may miss, and
+    /// errors in pixels that mix several colours look like noise.
+    pub are_areas_right: bool,
+    /// Whether almost all wrong pixels lie near edges.
+    pub is_at_edges: bool,
+    /// Whether errors in pixels that mix several colours look like sampling noise.
+    pub is_noise_everywhere: bool,
+    /// Displacement of edges; `None` if it may be chance. Tested only if the wrong pixels lie near
+    /// edges.
+    pub displacement: Option<Displacement>,
+    /// Width of the pixel filter, in pixels; `None` if it may be 1. Tested only if the wrong pixels
+    /// lie near edges.
+    pub width: Option<f64>,
+}
+
+impl Residual {
+    /// Returns whether sampling noise explains all errors.
+    pub fn is_noise(&self) -> bool {
+        self.are_areas_right
+            && self.displacement.is_none()
+            && self.width.is_none()
+            && self.is_noise_everywhere
+    }
 }
 
 /// A hypothesis about the program that was judged at one resolution.
@@ -88,6 +120,7 @@ impl<'a> Judge<'a> {
             fine: level(part, u32::MAX, None),
             central: central(part).map(|part| level(part, u32::MAX, None)),
             work,
+            residuals: RefCell::default(),
         };
         let levels = [&judge.coarse, &judge.middle, &judge.fine];
         for level in levels.into_iter().chain(&judge.central) {

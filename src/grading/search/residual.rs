@@ -1,9 +1,12 @@
 //! What a hypothesis about the program leaves unexplained in the pixels of a picture.
 
-use super::{judge::Judge, labels::labels};
+use super::{
+    judge::{Judge, Residual},
+    labels::labels,
+};
 use crate::grading::{
-    hypotheses::Candidate,
-    scoring::{Displacement, Prediction, Strays, work},
+    hypotheses::{Candidate, Mistake},
+    scoring::{Displacement, Prediction, work},
 };
 
 /// Number n such that one in n pixels may be wrong if the prediction is not exact, i.e. if it was
@@ -43,6 +46,10 @@ const MOVED: f64 = 0.2;
 /// it is significant enough to be reported. Chosen by trial.
 const SURELY_MOVED: f64 = 150.0;
 
+/// Number of hypotheses whose residuals are remembered: the search asks a few times in turn for the
+/// residual of each.
+const RESIDUALS: usize = 4;
+
 impl Judge<'_> {
     /// Returns whether a hypothesis explains the picture: no pixel that should have one colour
     /// shows another one, and edges lie in their places and are as sharp as they should be.
@@ -55,13 +62,26 @@ impl Judge<'_> {
             || self
                 .predicted(candidate, &self.middle)
                 .is_some_and(|prediction| prediction.strays().are_no_more(0));
-        let is_explained = || {
-            let prediction = self.predicted(candidate, &self.fine)?;
-            let strays = prediction.strays();
-            let are_areas_right = strays.are_no_more(self.missed(candidate));
-            Some(are_areas_right && Residual::of(self, candidate, &prediction, &strays).is_noise())
-        };
-        is_possible && is_explained() == Some(true)
+        is_possible
+            && self
+                .residual(candidate)
+                .is_some_and(|residual| residual.is_noise())
+    }
+
+    /// Returns what a hypothesis leaves unexplained. Remembers it for the last few hypotheses.
+    /// Returns `None` if the budget of work is used up.
+    pub fn residual(&self, candidate: &Candidate) -> Option<Residual> {
+        let mut known = self.residuals.borrow_mut();
+        let is_same = |(mistakes, _): &(Vec<Mistake>, Residual)| *mistakes == candidate.mistakes;
+        if let Some((_, residual)) = known.iter().find(|one| is_same(one)) {
+            return Some(*residual);
+        }
+        let residual = residual_of(self, candidate, &self.predicted(candidate, &self.fine)?);
+        if known.len() == RESIDUALS {
+            known.pop_front();
+        }
+        known.push_back((candidate.mistakes.clone(), residual));
+        Some(residual)
     }
 
     /// Returns how many pixels that should have one colour may show another one. Samples may miss
@@ -81,75 +101,32 @@ impl Judge<'_> {
     }
 }
 
-/// What a hypothesis leaves unexplained in the pixels of a picture.
-#[derive(Clone, Copy, Debug)]
-pub struct Residual {
-    /// Number of pixels that should show one colour and show another one.
-    pub strays: usize,
-    /// Whether areas of one colour are right, except for a few pixels that samples may miss, and
-    /// errors in pixels that mix several colours look like noise.
-    pub are_areas_right: bool,
-    /// Whether almost all wrong pixels lie near edges.
-    pub is_at_edges: bool,
-    /// Whether errors in pixels that mix several colours look like sampling noise.
-    pub is_noise_everywhere: bool,
-    /// Displacement of edges; `None` if it may be chance. Tested only if the wrong pixels lie near
-    /// edges.
-    pub displacement: Option<Displacement>,
-    /// Width of the pixel filter, in pixels; `None` if it may be 1. Tested only if the wrong pixels
-    /// lie near edges.
-    pub width: Option<f64>,
-}
-
-impl Residual {
-    /// Computes what a hypothesis leaves unexplained. Returns `None` if the budget of work is used
-    /// up.
-    pub fn of_candidate(judge: &Judge, candidate: &Candidate) -> Option<Self> {
-        let prediction = judge.predicted(candidate, &judge.fine)?;
-        Some(Self::of(
-            judge,
-            candidate,
-            &prediction,
-            &prediction.strays(),
-        ))
-    }
-
-    /// Computes what a prediction leaves unexplained. `strays` are the errors that no sampling can
-    /// explain.
-    fn of(judge: &Judge, candidate: &Candidate, prediction: &Prediction, strays: &Strays) -> Self {
-        let level = &judge.fine;
-        judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
-        let missed = judge.missed(candidate);
-        let reach = level.jpeg.map_or(EDGE_REACH, |_| CODED_EDGE_REACH);
-        let is_inside = |at: &&usize| {
-            level
-                .grid
-                .around(**at, reach)
-                .all(|at| prediction.is_flat(at))
-        };
-        let inside = strays.pixels.iter().filter(is_inside).count();
-        let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
-        let (displacement, width) = if is_at_edges {
-            displacement_and_width(judge, candidate, prediction)
-        } else {
-            (None, None)
-        };
-        Self {
-            strays: strays.pixels.len(),
-            are_areas_right: strays.are_no_more(missed),
-            is_at_edges,
-            is_noise_everywhere: candidate.is_filtered() || prediction.is_noise_everywhere(),
-            displacement,
-            width,
-        }
-    }
-
-    /// Returns whether sampling noise explains all errors.
-    pub fn is_noise(&self) -> bool {
-        self.are_areas_right
-            && self.displacement.is_none()
-            && self.width.is_none()
-            && self.is_noise_everywhere
+/// Computes what the prediction of a hypothesis leaves unexplained.
+fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) -> Residual {
+    let (level, strays) = (&judge.fine, prediction.strays());
+    judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
+    let missed = judge.missed(candidate);
+    let reach = level.jpeg.map_or(EDGE_REACH, |_| CODED_EDGE_REACH);
+    let is_inside = |at: &&usize| {
+        level
+            .grid
+            .around(**at, reach)
+            .all(|at| prediction.is_flat(at))
+    };
+    let inside = strays.pixels.iter().filter(is_inside).count();
+    let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
+    let (displacement, width) = if is_at_edges {
+        displacement_and_width(judge, candidate, prediction)
+    } else {
+        (None, None)
+    };
+    Residual {
+        strays: strays.pixels.len(),
+        are_areas_right: strays.are_no_more(missed),
+        is_at_edges,
+        is_noise_everywhere: candidate.is_filtered() || prediction.is_noise_everywhere(),
+        displacement,
+        width,
     }
 }
 
