@@ -30,7 +30,10 @@ use self::{
     hypotheses::{Candidate, Curve, mistakes},
     plain_facts::EmptyRows,
     scoring::{Moments, Rendering, Work, moments, work},
-    search::{Judge, forward_selection},
+    search::{
+        Judge,
+        forward_selection::{self, MAX_MISTAKES},
+    },
 };
 pub use self::{
     objects::ObjectVerdict,
@@ -205,22 +208,24 @@ impl Reference {
             return Ok(verdict);
         }
         let Some(empty) = EmptyRows::of(film, exact) else {
-            return self.judge_full(film, jpeg, cancel);
+            return self.judge_full(film, jpeg, MAX_MISTAKES, cancel);
         };
         // Rows of one colour may never have been written, or the camera may look elsewhere. They
         // count as never written if the rest of the picture is right.
-        let rest = self.judge_full(&empty.removed_from(film), jpeg, cancel)?;
+        let rest = self.judge_full(&empty.removed_from(film), jpeg, 0, cancel)?;
         match rest.kind {
             Kind::Right | Kind::Noise => Ok(rest.with_fact(empty.fact())),
-            Kind::Wrong | Kind::Unknown => self.judge_full(film, jpeg, cancel),
+            Kind::Wrong | Kind::Unknown => self.judge_full(film, jpeg, MAX_MISTAKES, cancel),
         }
     }
 
-    /// Judges a picture by a search for mistakes. Pixels without a sample are ignored.
+    /// Judges a picture by a search for at most `most` mistakes, besides those that are visible only
+    /// at edges. Pixels without a sample are ignored.
     fn judge_full(
         &self,
         film: &Film,
         jpeg: Option<Jpeg>,
+        most: usize,
         cancel: &AtomicBool,
     ) -> Result<Verdict, RenderError> {
         let empties = [self.scene.image.background.to_linear(), [0.0; 3]];
@@ -231,7 +236,7 @@ impl Reference {
         let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
         let work = Work::new(self.part.pixels(), self.work, self.effort, cancel);
         let judge = Judge::new(&self.scene, &self.correct, &film, jpeg, work);
-        let found = forward_selection::run(&judge)?;
+        let found = forward_selection::run(&judge, most)?;
         // The verdict must be computed completely, so the budget of work does not limit this.
         let conclude = || conclusion::conclude(&judge, &film, found);
         let verdict = judge.work.without_limit(conclude);

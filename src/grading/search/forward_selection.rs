@@ -26,7 +26,7 @@ use crate::{
 
 /// Maximum number of mistakes in a set, not counting those that are visible only at edges. The
 /// value is a choice; each further mistake takes another round of the search.
-const MAX_MISTAKES: usize = 3;
+pub const MAX_MISTAKES: usize = 3;
 
 /// Maximum number of sets of each size that are examined and extended. A wider beam finds more
 /// mistakes, at proportionally more work. The value is a choice.
@@ -58,6 +58,14 @@ const PROMISING: f64 = 0.5;
 /// picture. Only errors that sampling cannot explain count. The value is a choice.
 const NEAR_RATIO: f64 = 0.1;
 
+/// Factor by which a hypothesis may leave more of that error than the best one so far, for its
+/// numbers to be fitted completely. Mistakes that are visible only at edges hardly change this
+/// error, so they cannot make up for more.
+const WORSE: f64 = 4.0;
+/// Fraction of a correct program's squared error that counts as none when hypotheses are compared:
+/// the best one may leave nothing.
+const NEGLIGIBLE: f64 = 1e-3;
+
 /// Maximum number of objects that are suspected to be wrong, those with the largest error in and
 /// beside them first. The work of a search grows with this number. The value is a choice.
 const MAX_SUSPECTS: usize = 12;
@@ -66,16 +74,19 @@ const MAX_SUSPECTS: usize = 12;
 /// wrong. Smaller errors are mostly noise. The value is a choice.
 const SUSPECT_RATIO: f64 = 0.03;
 
-/// Searches for the mistakes that explain a picture best. Returns the best hypothesis, i.e. set of
-/// mistakes, and whether it explains the picture.
-pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
+/// Searches for the mistakes, at most `most` besides those that are visible only at edges, that
+/// explain a picture best. Returns the best hypothesis, i.e. set of mistakes, and whether it
+/// explains the picture.
+pub fn run(judge: &Judge, most: usize) -> Result<Option<(Judged, bool)>, Cancelled> {
     let mut search = Search {
         judge,
         examined: Vec::new(),
+        completed: Vec::new(),
+        least_left: f64::INFINITY,
         nearest: None,
         explained: None,
     };
-    search.run();
+    search.run(most);
     // The budget of work may have run out before the numbers of the last set were fitted.
     if search.explained.is_none() && judge.work.is_cut() {
         let nearest = search.nearest.clone();
@@ -116,6 +127,11 @@ struct Search<'a> {
     judge: &'a Judge<'a>,
     /// Hypotheses, i.e. sets of mistakes, that were examined so far.
     examined: Vec<Candidate>,
+    /// Sets of mistakes with completely fitted numbers that do not explain the picture, even with a
+    /// mistake at edges.
+    completed: Vec<Vec<Mistake>>,
+    /// Least fraction of a correct program's error that a hypothesis leaves so far.
+    least_left: f64,
     /// Hypothesis with the least cost so far, and its cost.
     nearest: Option<(f64, Candidate)>,
     /// Hypothesis that explains the picture, and its cost. Of several, the one with the fewest
@@ -124,10 +140,10 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn run(&mut self) {
+    fn run(&mut self, most: usize) {
         let judge = self.judge;
         let mut beam = Vec::from_iter(self.examine(&Candidate::correct(judge.scene)));
-        for _ in 0..MAX_MISTAKES {
+        for _ in 0..most {
             let mut examined: Vec<Judged> = Vec::new();
             let mut next: Vec<(f64, Candidate)> = Vec::new();
             for extension in beam.iter().map_while(|from| Extension::from(judge, from)) {
@@ -211,8 +227,11 @@ impl Search<'_> {
         self.examined.push(candidate.clone());
         let fitted = refitted(judge, candidate, &judge.coarse, [2, 1]);
         let mut judged = judge.judged(fitted.as_ref().unwrap_or(candidate), &judge.middle)?;
-        // A hypothesis far from the picture is not fitted further.
-        if is_near(judge, judged.candidate()) {
+        // A hypothesis far from the picture, or much farther than another, is not fitted further.
+        let left = left(judge, judged.candidate())?;
+        self.least_left = self.least_left.min(left);
+        let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
+        if candidate.mistakes.is_empty() || left <= most {
             let level = judge.fitting(judged.candidate());
             let fitted = refitted(judge, judged.candidate(), level, [0, ROUNDS]);
             if let Some(fitted) = fitted {
@@ -230,11 +249,16 @@ impl Search<'_> {
                 let plain = plain(judge, judged.candidate());
                 judged = judge.judged(&plain, &judge.middle).unwrap_or(judged);
             }
-            let explained = explained_with(judge, judged.candidate());
-            if let Some(explained) =
-                explained.filter(|explained| !self.has_better(explained, judged.cost))
-            {
-                self.explained = Some((judged.cost, explained));
+            if !self.completed.contains(&judged.candidate().mistakes) {
+                match explained_with(judge, judged.candidate()) {
+                    Some(explained) if !self.has_better(&explained, judged.cost) => {
+                        self.explained = Some((judged.cost, explained));
+                    }
+                    None if !judge.work.is_cut() => {
+                        self.completed.push(judged.candidate().mistakes.clone());
+                    }
+                    _ => {}
+                }
             }
         }
         if self.nearest.as_ref().is_none_or(|one| judged.cost < one.0) {
@@ -253,15 +277,26 @@ fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     explained_with(judge, &patched)
 }
 
-/// Returns whether a hypothesis leaves little of a correct program's error. Only errors that
-/// sampling cannot explain count.
+/// Returns whether a hypothesis leaves little of a correct program's error.
 fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
+    candidate.mistakes.is_empty() || left(judge, candidate).is_some_and(|left| left <= NEAR_RATIO)
+}
+
+/// Returns the fraction of a correct program's squared error that a hypothesis leaves. Only errors
+/// that sampling cannot explain count. Returns `None` if the budget of work is used up.
+fn left(judge: &Judge, candidate: &Candidate) -> Option<f64> {
     let square = |candidate: &Candidate| {
-        let predicted = judge.predicted(candidate, &judge.middle);
-        predicted.map(|predicted| predicted.strays().square())
+        let predicted = judge.predicted(candidate, &judge.middle)?;
+        Some(predicted.strays().square())
     };
-    let squares = square(candidate).zip(square(&Candidate::correct(judge.scene)));
-    candidate.mistakes.is_empty() || squares.is_some_and(|(own, all)| own <= NEAR_RATIO * all)
+    let all = match judge.square_of_correct.get() {
+        Some(all) => *all,
+        None => {
+            let all = square(&Candidate::correct(judge.scene))?.max(f64::MIN_POSITIVE);
+            *judge.square_of_correct.get_or_init(|| all)
+        }
+    };
+    Some(square(candidate)? / all)
 }
 
 /// Removes mistakes as long as the remaining ones explain the picture.

@@ -1,6 +1,10 @@
 //! A picture that is judged: its resolutions, its budget of work, and the operations of the search.
 
-use std::{cell::RefCell, collections::VecDeque, sync::Arc};
+use std::{
+    cell::{OnceCell, RefCell},
+    collections::VecDeque,
+    sync::Arc,
+};
 
 use super::levenberg_marquardt::{Fitted, absolute, fit};
 use crate::{
@@ -48,6 +52,9 @@ pub struct Judge<'a> {
     pub work: Work<'a>,
     /// What the last few hypotheses left unexplained, by their mistakes.
     pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
+    /// Squared error of a correct program on the middle level that sampling cannot explain;
+    /// computed on demand.
+    pub square_of_correct: OnceCell<f64>,
 }
 
 /// What a hypothesis leaves unexplained in the pixels of a picture.
@@ -121,6 +128,7 @@ impl<'a> Judge<'a> {
             central: central(part).map(|part| level(part, u32::MAX, None)),
             work,
             residuals: RefCell::default(),
+            square_of_correct: OnceCell::new(),
         };
         let levels = [&judge.coarse, &judge.middle, &judge.fine];
         for level in levels.into_iter().chain(&judge.central) {
