@@ -77,8 +77,8 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that pass through the same small part are unlikely to be separated in smaller
-/// ones. The value is a choice. Measured on a heap of objects: with 1 instead of 4, the time is two
-/// thirds; with 16, it is four times as long.
+/// ones. Measured on a heap of objects: with 1 instead of 4, the time is two thirds; with 16, it is
+/// four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
 /// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest
@@ -86,15 +86,15 @@ const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
 /// Maximum memory of a pixel's queued parts, in bytes. Above it, the pixel is not divided any
-/// further, and uncomputed parts count as errors. Memory that a part needs only while it is
-/// computed is not counted. The value, 64 MiB, is a choice.
+/// further, and uncomputed parts count as errors, which a smaller maximum would make more frequent.
+/// Memory that a part needs only while it is computed is not counted.
 const MAX_MEMORY: usize = 64 << 20;
 /// Minimum side of a square part of a pixel that is quartered because too many curves pass through
 /// it, in pixels. A smaller part counts as an error instead; its area is less than a unit roundoff
 /// of the pixel's area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
-/// about 50 ns. Rough, because the budget only stops what takes too long.
+/// about 50 ns. A rough value is enough, because the budget only stops what takes too long.
 const PIECE_WORK: f64 = 100.0;
 /// Work charged per object that may be seen in a part of a pixel, in units of about 50 ns.
 const OBJECT_WORK: f64 = 4.0;
@@ -420,7 +420,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film: &mut PartPixels<N>,
         deferred: &mut Vec<BoardPixel>,
     ) {
-        // The share is rounded once, before the roundings of a mean of two colours.
+        // The share has one rounding, and the mean of the two colours adds `rounding(2)`.
         let roundings = UNIT + rounding(2);
         let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {

@@ -31,8 +31,9 @@ const MAX_EXTRA_CORNERS: usize = 32;
 const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
-/// pixels. Returns 0 with the polygon's area as the bound if the budget does not afford the rows or
-/// the picture is cancelled. A row whose squares the budget does not afford contributes 0 to the
+/// pixels. The polygon is cut into the rows (or columns) of the board, and each row into squares.
+/// Returns 0 with the polygon's area as the bound if the budget does not afford the rows or the
+/// picture is cancelled. If the budget does not afford the squares of a row, the row adds 0 to the
 /// value and its area to the bound.
 pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
     let mut tally = CompensatedSum::default();

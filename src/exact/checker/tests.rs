@@ -218,7 +218,8 @@ fn wide_views() {
                 foot: DVec2::new(0.3, 0.45),
             };
             let found = view.board().alone(&PIXEL);
-            // `size` is the factor by which the terms of the board's forms exceed the pixel's side.
+            // The expected value is computed with coordinates as large as the pixel's distance from
+            // the centre of the horizon, which multiplies its rounding errors.
             let size = view.place.length();
             agree_in_size(found, brute(view.forms(), &PIXEL), size, 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
