@@ -152,7 +152,7 @@ pub struct Direction<T> {
     pub y: T,
     /// Z, ahead.
     pub z: T,
-    /// X² + Y² + Z².
+    /// Squared length of the direction, X² + Y² + Z².
     pub square: T,
 }
 

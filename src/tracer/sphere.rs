@@ -43,7 +43,8 @@ pub struct Sphere<T: Real> {
     /// Power of two by which an inverse depth in the sphere's own unit is multiplied to give the
     /// inverse depth in the world's unit.
     scale: f64,
-    /// Error bound of Q = R² r·r − |c × r|² ([`Sphere`]) in the camera's window.
+    /// Error bound, in the camera's window, of Q, a quarter of the discriminant of the equation for
+    /// a ray's crossings ([`Sphere`]).
     rad_q: T::Radius,
     /// Error bound of c·r, the product of the centre and a ray's direction, in the camera's window.
     rad_b: T::Radius,
@@ -99,7 +100,9 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns Q and c·r, as in [`Sphere`], for the ray of direction `r`.
+    /// Returns two numbers for the ray of direction `r`: Q, a quarter of the discriminant of the
+    /// equation for the crossings, and the scalar product of the sphere's centre and `r`. Both are
+    /// defined in [`Sphere`].
     #[inline]
     fn discriminant(&self, r: &Direction<T>) -> (Ball<T>, Ball<T>) {
         let [cx, cy, cz] = &self.center;
@@ -163,9 +166,10 @@ impl<T: Real> Sphere<T> {
         Some(self.exit(&q, &b, r))
     }
 
-    /// Returns the crossing where the ray leaves the sphere, given Q (`q`) and c·r (`b`) as in
-    /// [`Sphere`]. Its inverse depth is computed by one of two equal formulas, the one that does
-    /// not cancel.
+    /// Returns the crossing where the ray leaves the sphere. `q` is a quarter of the discriminant
+    /// of the equation for the crossings, and `b` the scalar product of the centre and the ray's
+    /// direction ([`Sphere`]). Of two equal formulas for the inverse depth, the one that does not
+    /// cancel is used.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
@@ -248,14 +252,17 @@ impl Sphere<f64> {
         self.is_outside().then(|| self.widened(exits()))
     }
 
-    /// Returns the range of the inverse depths at which rays leave the sphere, from the ranges of Q
-    /// and of b = c·r ([`Sphere`]) over a rectangle.
-    ///
-    /// 1/λ = r·r/(b + √Q) = (√Q − b)/(−C)
-    ///
-    /// falls as b grows, where λr is the crossing. If b may be ≤ 0 and the eye is inside, the
-    /// second formula gives the upper bound.
+    /// Returns the range of the inverse depths at which rays leave the sphere, for rays through the
+    /// rectangle `patch`. `q` and `b` are the ranges of two numbers over the rectangle: a quarter
+    /// of the discriminant of the equation for the crossings, and the scalar product of the centre
+    /// and the ray's direction ([`Sphere`]).
     fn exits(&self, q: Interval, b: Interval, patch: &Patch) -> Interval {
+        // The inverse depth at the crossing λr, where r is the ray's direction,
+        //
+        // 1/λ = r·r/(b + √Q) = (√Q − b)/(−C),
+        //
+        // falls as b grows. If b may be ≤ 0 and the eye is inside, the second formula gives the
+        // upper bound.
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
             (at.abs() + half, (at.abs() - half).max(0.0))
@@ -282,12 +289,14 @@ impl Sphere<f64> {
         }
     }
 
-    /// Expands Q and c·r, as in [`Sphere`], about the centre of a rectangle.
-    ///
-    /// The factors of Q consist of the same products as Q, and the rectangle lies within the
-    /// window. Q's error bound therefore counts eight times: once for the value at the centre,
-    /// twice for each of the two gradients, and once for each of the three second derivatives.
+    /// Returns two forms over a rectangle, as functions of the offset from its centre: a quarter of
+    /// the discriminant of the equation for a ray's crossings, and the scalar product of the
+    /// sphere's centre and the ray's direction ([`Sphere`]).
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
+        // The factors of Q, a quarter of the discriminant, consist of the same products as Q, and
+        // the rectangle lies within the window. Q's error bound therefore counts eight times: once
+        // for the value at the centre, twice for each of the two gradients, and once for each of
+        // the three second derivatives.
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
         let (r, [width, height]) = (&patch.center, patch.sides);
@@ -311,10 +320,10 @@ impl Sphere<f64> {
         (q, LocalForm::new(b, 2.0 * self.rad_b))
     }
 
-    /// With c, r, Q and C as in [`Sphere`], the near side has the inverse depth (c·r + √Q)/C.
-    /// Returns 1/C in the world's unit, and a bound on its relative error. Returns `None` if the
-    /// eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4, the relative
-    /// error of 1/C is at most twice that of C.
+    /// Returns the factor 1/C in the inverse depth (c·r + √Q)/C of the sphere's near side
+    /// ([`Sphere`]), in the world's unit, and a bound on the factor's relative error. Returns
+    /// `None` if the eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4,
+    /// the relative error of 1/C is at most twice that of C.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))

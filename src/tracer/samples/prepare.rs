@@ -213,9 +213,9 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // The form of line k has the sign of x/square − k, or of z/square − k for lines of
-                // constant z. If it is positive in the whole pixel, the pixel lies beyond the line,
-                // where the parity changes.
+                // `line` is the form of the line with the number k between squares: a positive
+                // multiple of x/square − k, or of z/square − k. If it is positive in the whole
+                // pixel, the pixel lies beyond the line, where the parity changes.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
