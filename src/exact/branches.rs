@@ -274,7 +274,8 @@ struct ArcEnd<T> {
 struct Tangents {
     /// Position of the control point relative to the arc's start.
     control: DVec2,
-    /// Square of the arc's weight.
+    /// Square of the arc's weight, i.e. of the weight of its control point as a rational Bézier
+    /// curve.
     w2: f64,
     /// Maximum error of the area between the arc and its chord.
     off: f64,

@@ -66,8 +66,7 @@ use self::{
 };
 
 /// Default of the requested error bound: the fraction of a pixel's area that may have a wrong
-/// colour. It is a little below 1e-9, so that the result is within 1e-9 even after the rounding of
-/// sums.
+/// colour. It is a little below 1e-9, to leave room for the rounding of sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// Maximum number of curves that pass through a whole pixel. With more curves, the pixel is
 /// quartered before anything is computed. n curves cross at about n² points, where all curves have
@@ -96,7 +95,8 @@ const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
 /// about 50 ns. A rough value is enough, because the budget only stops what takes too long.
 const PIECE_WORK: f64 = 100.0;
-/// Work charged per object that may be seen in a part of a pixel, in units of about 50 ns.
+/// Work charged per object that may be seen in a part of a pixel, in units of about 50 ns. A rough
+/// value is enough, because the budget only stops what takes too long.
 const OBJECT_WORK: f64 = 4.0;
 /// Work charged per ordered pair of curves in a part of a pixel with a conic, in units of about
 /// 50 ns. Without it, half of the time measured for a heap of 10⁴ spheres is not accounted for.

@@ -146,11 +146,11 @@ pub struct Camera<T: Real> {
 /// X and Y are at most 5 · [`UNIT`](Real::UNIT).
 #[derive(Clone, Debug)]
 pub struct Direction<T> {
-    /// X, to the right.
+    /// Component X of the direction, to the right.
     pub x: T,
-    /// Y, down.
+    /// Component Y of the direction, downwards.
     pub y: T,
-    /// Z, ahead.
+    /// Component Z of the direction, ahead.
     pub z: T,
     /// Squared length of the direction, X² + Y² + Z².
     pub square: T,

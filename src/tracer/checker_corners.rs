@@ -56,8 +56,8 @@ pub struct CheckerPixel {
     /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
     /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
-    /// in a neighbouring square, but only within the error bounds of `squares` of the line between
-    /// both.
+    /// in a neighbouring square, but then it is no farther from the line between both squares than
+    /// the error bounds of `squares`.
     pub(crate) is_certain: bool,
 }
 

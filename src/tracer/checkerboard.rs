@@ -37,7 +37,9 @@ pub struct Checkerboard<T: Real> {
     /// plane. N/ℓ, where ℓ is `below`, is the coordinate in squares, measured from the line between
     /// squares that is nearest to the eye.
     pub across: [Form<T>; 2],
-    /// Whether the sum of the indices of the two lines nearest to the eye, in x and in z, is odd.
+    /// Whether the two colours change places. The board's coordinates are measured from the two
+    /// lines that are nearest to the eye, one in x and one in z. The colours change places if the
+    /// sum of the numbers of these lines, counted from the world's origin, is odd.
     pub odd: bool,
 }
 

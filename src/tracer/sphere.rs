@@ -50,8 +50,9 @@ pub struct Sphere<T: Real> {
     rad_b: T::Radius,
 }
 
-/// Number of roundings of a value of Q ([`Sphere`]), in units of [`Real::UNIT`]. A linear form has
-/// 12 roundings, its square therefore 24, and the sum of squares adds 8.
+/// Number of roundings in a value of Q, a quarter of the discriminant of the equation for a ray's
+/// crossings ([`Sphere`]). A linear form has 12 roundings, its square therefore 24, and the sum of
+/// squares adds 8.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -431,9 +432,11 @@ fn power<T: Real>(
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Returns upper bounds of the errors of Q and c·r ([`Sphere`]) for rays whose |X|, |Y| and |Z| are
-/// at most `[x, y, z]`. `[cx, cy, cz]` are the absolute values of the centre's coordinates, and
-/// `rad_c` is their error; `square` is R², and `rad_square` its error.
+/// Returns upper bounds of the errors of two numbers ([`Sphere`]): Q, a quarter of the discriminant
+/// of the equation for a ray's crossings, and the scalar product of the sphere's centre and the
+/// ray's direction. The bounds hold for rays whose |X|, |Y| and |Z| are at most `[x, y, z]`. `[cx,
+/// cy, cz]` are the absolute values of the centre's coordinates, and `rad_c` is their error;
+/// `square` is the square of the radius, and `rad_square` its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,

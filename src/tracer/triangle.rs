@@ -45,13 +45,14 @@ fn by_vertices<T: Real>(
     Some((triangle, corners))
 }
 
-/// Returns the normal a × b of the plane through the eye and the edge from a to b; `corner` is the
-/// position of a relative to the eye. The normal may have any scale, because only the sign of its
-/// form matters.
+/// Returns a normal of the plane through the eye and the edge from `a` to `b`, in the camera's
+/// axes: the cross product of the two ends relative to the eye. `corner` is the first end relative
+/// to the eye. The normal may have any length, because only the sign of its scalar product with
+/// rays matters.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
-        // Because a × b = a × (b − a), the difference b − a is used, which is computed without
-        // cancellation.
+        // With a and b relative to the eye, a × b = a × (b − a). The difference b − a is computed
+        // without cancellation.
         let along: Ball3<T> = array::from_fn(|i| Ball::difference(b[i], a[i]));
         let along = camera.turned(&scaled_to_one(&along));
         let normal = cross(&scaled_to_one(corner), &along);

@@ -19,10 +19,11 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// Maximum number of corners that cutting may add to the rest of a polygon, the part from which no
-/// squares are cut yet. With more corners, the area of the rest is added to the error bound, and
-/// cutting ends. Exact cuts add at most two corners, both on the last line. Many more show that the
-/// lines are closer to each other than rounding errors, so that cutting is useless.
+/// Maximum number of corners that cutting may add to a polygon. Squares are cut off the polygon one
+/// after another, and each cut changes what is left. If this has more corners, cutting ends, and
+/// its area is added to the error bound. Exact cuts add at most two corners, both on the last line.
+/// Many more show that the lines are closer to each other than rounding errors, so that cutting is
+/// useless.
 const MAX_EXTRA_CORNERS: usize = 32;
 
 /// Maximum absolute value of a board coordinate, in squares, in a polygon that is cut into squares.

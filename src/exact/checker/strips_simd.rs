@@ -60,11 +60,12 @@ pub(super) struct BoardLanes {
     many: FormRows,
     below: FormRows,
     /// Sign for each pixel: 1 if the pixel's first square has the board's first colour, −1 if it
-    /// has the second. The first square is the one with the smallest number in each family of
-    /// lines.
+    /// has the second. The first square is the one in the first of the pixel's columns of squares
+    /// and in the first of its rows.
     sign: Lanes,
-    /// Number of the square at each corner of the pixel, for each pixel. Squares are counted across
-    /// the family of lines with fewer lines, from the smallest number in the pixel.
+    /// Numbers of the squares at the four corners of each pixel. Of the board's two families of
+    /// lines (columns and rows), squares are counted in the direction that crosses the family with
+    /// fewer lines in the pixel. The square with the smallest number has the number 0.
     squares: [Lanes; 4],
 }
 

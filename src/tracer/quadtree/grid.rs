@@ -49,7 +49,8 @@ pub struct Nearness(u32);
 pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// First unit of the camera's window on each axis; no point outside of the window is looked up.
+    /// First grid unit of the camera's window on each axis. No point outside of the window is
+    /// looked up in the quadtree.
     low: [u32; 2],
     high: [u32; 2],
 }
