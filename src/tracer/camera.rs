@@ -38,9 +38,9 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// Returns a + b, or 0 if the sum does not exceed the errors of a and b, at most four roundings
-/// each. With a roll of 45 degrees, components of the camera's axes u and v that should be 0 are
-/// sums of opposite numbers.
+/// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b, at
+/// most four roundings each. It is used to turn the camera's axes u and v by the roll. With a roll
+/// of 45 degrees, some components are sums of opposite numbers, and must become exactly 0.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);

@@ -104,8 +104,8 @@ impl<T: Real> Convex<T> {
         self.is_inside
     }
 
-    /// Returns the surface part of the face with the index `face`. The faces that rays hit first
-    /// are counted before those that rays hit behind them.
+    /// Returns the face with the index `face` as a part of the object's surface. The faces that
+    /// rays hit first are counted before those that rays hit behind them.
     pub fn part(&self, face: usize) -> SurfacePart {
         SurfacePart::Plane(self.planes[face])
     }

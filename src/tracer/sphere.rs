@@ -112,9 +112,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // After the highest precision, no other is tried. Its errors are therefore bounded for
-            // this ray alone: in the middle of the widest views, they are far smaller than
-            // elsewhere.
+            // The highest precision has to decide, so that its errors are bounded for this ray
+            // alone: in the middle of the widest views, they are far smaller than the bounds for
+            // the whole window.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,

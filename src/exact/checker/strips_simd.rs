@@ -124,9 +124,10 @@ impl LaneSums {
 }
 
 impl BoardLanes {
-    /// Sets the board of the pixel in lane `place`, of eight. The board has two families of
-    /// parallel lines, 0 and 1; `families` lists both, the one with fewer lines in the pixel first.
-    /// `first[k]` is the smallest number of a square in the pixel, counted across family k.
+    /// Sets the board of the pixel with the index `place`, from 0 to 7. A board has two families of
+    /// parallel lines, between columns (0) and between rows (1). `families` lists the two, the one
+    /// with fewer lines in the pixel first. `first` has the smallest number of a column, and of a
+    /// row, of squares in the pixel.
     pub fn set(
         &mut self,
         place: usize,

@@ -301,8 +301,8 @@ fn the_horizon() {
     }
 }
 
-/// Compares two integrals over the part of a pixel on the horizon that is below a line: the direct
-/// one, and the integral over the pixel minus that over the part above the line.
+/// The pixel lies on the horizon, and a line divides it in two. The integral over the pixel minus
+/// that over the upper part must equal the sum over the squares of the lower part.
 #[test]
 fn the_end_is_the_limit() {
     for degrees in [0.0, 45.0, 30.0, 71.565_051_177, 44.999] {

@@ -9,8 +9,8 @@ use super::super::special::{Complex, integrals};
 /// 100 roundings; the Lerch series, to which it contributes, may have an error of 500 roundings.
 const NEAR_POLE: f64 = 0.2;
 
-/// Computes the Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s), j = 0, 1, 2, … for s = 3, 4 and 5
-/// at θ = `theta`. |θ| must be at most π, and `rotation` must be e^iθ. The truncation error is at
+/// Computes the Lerch series Σ_j e^(iθj)·(w + j)^(−s), j = 0, 1, 2, … for s = 3, 4 and 5. θ is
+/// `theta`, with |θ| ≤ π, and w is positive. `rotation` must be e^iθ. The truncation error is at
 /// most 0.04·s·(s + 1)·w^(−s−2).
 pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
     // The series is also an integral (`tail`), whose integrand is the sum of a pole and a regular

@@ -127,8 +127,9 @@ pub(super) fn sum(
     for (end, crossing) in ends.iter().enumerate() {
         let Some(crossing) = crossing else { continue };
         let rest = receding::sum_from(all, crossing, series, share, budget);
-        // Crossing j has the sign (−1)^j. If the edge ends before the horizon, the sum from its end
-        // to the horizon is subtracted.
+        // `rest` is the sum from `crossing` to the horizon, in which the first term is positive. In
+        // the whole sum, crossing j has the sign (−1)^j. If the edge ends before the horizon, the
+        // second `rest`, from the edge's end on, is subtracted from the first.
         let odd = crossing.floor().1 != (end == 1);
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;
