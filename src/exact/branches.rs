@@ -193,8 +193,8 @@ impl<'a> ConicSpan<'a> {
         if !y[1].is_finite() {
             return None;
         }
-        // If the branch is curved in one direction only, its distance from the chord is nowhere
-        // more than twice `sagitta`, the distance in the middle.
+        // If the branch is curved in one direction only, its distance from the chord is at most
+        // twice `sagitta`, the distance in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;

@@ -142,7 +142,8 @@ enum PieceState {
     /// budget is spent.
     Crowded,
     Computed,
-    /// Computed, and not quartered: quartering its parent reduced the bound by less than half.
+    /// Computed, and not to be quartered: quartering its parent reduced the bound by less than
+    /// half.
     Final,
 }
 

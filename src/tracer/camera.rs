@@ -115,7 +115,7 @@ pub struct Window<R> {
 }
 
 impl<R: Copy> Window<R> {
-    /// Returns the bounds of |X|, |Y| and Z, in this order.
+    /// Returns the bounds of the components of a ray's direction: of |X|, |Y| and Z, in this order.
     pub fn sizes(&self) -> [R; 3] {
         [self.x, self.y, self.z]
     }

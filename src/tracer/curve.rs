@@ -76,7 +76,7 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// The sub-pixel's side, in the unit of a direction's X and Y.
+    /// Side of the sub-pixel, in the unit of the components X and Y of a ray's direction.
     pitch: Ball<T>,
 }
 

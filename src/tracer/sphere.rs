@@ -46,7 +46,8 @@ pub struct Sphere<T: Real> {
     /// Error bound, in the camera's window, of Q, a quarter of the discriminant of the equation for
     /// a ray's crossings ([`Sphere`]).
     rad_q: T::Radius,
-    /// Error bound of c·r, the product of the centre and a ray's direction, in the camera's window.
+    /// Error bound, in the camera's window, of c·r, the scalar product of the sphere's centre c and
+    /// a ray's direction r.
     rad_b: T::Radius,
 }
 

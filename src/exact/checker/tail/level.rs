@@ -1,5 +1,5 @@
 //! The sum over the lines that an edge crosses, by Fourier modes, for an edge along which the depth
-//! less than doubles. Green's theorem makes such sums of a board's integral
+//! less than doubles. Green's theorem turns a board's integral into such sums
 //! ([`green`](super::super::green)).
 
 use std::f64::consts::PI;

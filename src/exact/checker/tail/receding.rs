@@ -1,5 +1,5 @@
 //! The sum over the lines that an edge crosses, by Fourier modes, for an edge along which the depth
-//! at least doubles. Green's theorem makes such sums of a board's integral
+//! at least doubles. Green's theorem turns a board's integral into such sums
 //! ([`green`](super::super::green)). The sum starts at a depth from which the expansion of the
 //! Lerch series is accurate.
 
