@@ -213,9 +213,9 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // A branch may be so flat that rounding does not leave it an arc. It is treated as
-            // straight if the distance between its middle and the chord is at most the rounding
-            // error `flat`. Each y has six roundings, and the mean of two y adds two.
+            // A branch may be so flat that rounding errors prevent the computation of an arc. It is
+            // treated as straight if the distance between its middle and the chord is at most the
+            // rounding error `flat`. Each y has six roundings, and the mean of two y adds two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {

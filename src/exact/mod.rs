@@ -142,8 +142,7 @@ enum PieceState {
     /// budget is spent.
     Crowded,
     Computed,
-    /// Computed, and not to be quartered: quartering its parent reduced the bound by less than
-    /// half.
+    /// Computed and final: quartering its parent reduced the bound by less than half.
     Final,
 }
 
