@@ -49,8 +49,9 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     /// fewer rounds. Errors that have a fix after the last round are counted as `waiting`.
     const ROUNDS: usize = 1000;
     /// Maximum number of bytes that all rounds of fixes read together, 32 MiB. It bounds the time.
-    /// The number is a choice: a long text gets few rounds, so mistakes that show only after other
-    /// fixes may remain in it.
+    /// A text of 1 MiB gets at most 32 rounds, so a mistake in it that shows only after many other
+    /// fixes may remain. With a larger maximum, fewer mistakes would remain, but the time could be
+    /// longer.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;

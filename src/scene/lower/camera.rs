@@ -54,8 +54,8 @@ impl<'s> Lowering<'s> {
                     .at(eye_place, "the eye")
                     .help("move one of them, or give a `direction` instead of `lookat`")
                     .report(&mut self.problems);
-                // An editor shows the correct parts of a scene with errors. Without a view, it
-                // shows no camera.
+                // An editor shows those parts of a scene that have no errors. The camera has no
+                // view direction, so it is left out.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
