@@ -78,9 +78,10 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
         .collect()
 }
 
-/// Ratios of one field's change to the largest change on the same axis that are recognized when a
-/// dragged point changes several fields together. The ratio is 1 for two vertices of a triangle,
-/// which move alike, and ±1/2 for the `center` of a box whose `size` changes.
+/// Ratios of one field's change to the largest change on the same axis. If each change on an axis
+/// has one of these ratios, the changes are rounded together, so that the ratios remain exact. The
+/// ratio is 1 for two vertices of a triangle, which move alike, and ±1/2 for the `center` of a box
+/// whose `size` changes.
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
 /// Maximum difference between a field's change and one of [`RATIOS`] times the largest change,
@@ -157,8 +158,8 @@ impl DecimalRounding {
     fn number(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // If the ratio is 1/2, half of the rounded amount may have one decimal more than the
-            // amount.
+            // An amount that is half of a rounded amount, as [`RATIOS`] allows, may have one
+            // decimal more than `decimals`.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }
