@@ -134,9 +134,9 @@ impl Problem {
 /// would change the same place, only the first is included; the other is left for the next round.
 struct Round {
     fix: Fix,
-    /// Fixes that lengthen the text, each mapped to the problems that offer it. If all problems of
-    /// a fix remain after it was applied, it is excluded from the next round, since it could be
-    /// applied forever.
+    /// Fixes that lengthen the text, each mapped to the problems that offer it. If all of these
+    /// problems remain after the fix was applied, the fix is excluded from the next round, because
+    /// it could be applied again and again.
     lengthened: HashMap<Vec<Edit>, Vec<Problem>>,
     done: Vec<Done>,
     /// Maps the offset of each edit to the number of bytes by which the edit lengthens the text.
