@@ -101,9 +101,10 @@ pub struct DecimalRounding {
     exact: Vec<f64>,
 }
 
-/// Rounds changes to `decimals` decimals. If the changes on one axis have the ratios [`RATIOS`],
-/// the largest change is rounded, and the others become the same multiples of it as before. So the
-/// points of the object that the pointer does not drag stay exactly in place.
+/// Rounds changes to `decimals` decimals. If each change on an axis is the largest change on this
+/// axis times one of [`RATIOS`], the largest change is rounded, and the others become the same
+/// multiples of it as before. So the points of the object that the pointer does not drag stay
+/// exactly in place.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
@@ -179,7 +180,7 @@ fn decimals_of(number: f64) -> i32 {
 }
 
 /// Returns a copy of the object or camera `owner` in which the fields of `changes` have their new,
-/// rounded values. Returns `None` if it does not have one of the fields.
+/// rounded values. Returns `None` if `owner` lacks one of these fields.
 pub fn rounded(
     owner: FieldOwner,
     changes: &[FieldChange],
