@@ -34,9 +34,10 @@ impl Color {
     pub fn to_linear(self) -> [f64; 3] {
         self.srgb.map(|channel| {
             if channel.fract() == 0.5 {
-                // With rounding errors, the light could become slightly too dark. A channel of k +
-                // 1/2 would then become the byte k in the picture, although `to_bytes` rounds it up
-                // to k + 1. `half_byte` returns the least light that becomes the byte k + 1.
+                // Rounding errors of `srgb_to_linear` could make the light slightly too dark. A
+                // channel of 127.5 would then become the byte 127 in the picture, although
+                // `to_bytes` rounds it up to 128. `half_byte(127)` returns the least light that
+                // becomes the byte 128.
                 half_byte(channel as u8)
             } else {
                 srgb_to_linear(channel / 255.0)
@@ -82,11 +83,11 @@ pub fn half_byte(k: u8) -> f64 {
 /// Returns whether `light`, in linear light, is darker than the light whose sRGB value is `k` +
 /// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // Bound on the relative rounding error of `difference` below, which is computed in
-    // double-doubles (sums of two `f64`). These decide most cases; integers alone would take half
-    // the time of rendering a small picture. In units of the double-double rounding, the relative
-    // errors are at most 4 for light^5, 11 for scale^12, 1 for the product of these, 11 for x^12,
-    // and 1 for the difference, in sum less than 32.
+    // Bound on the relative rounding error of `difference` below. The difference is computed in
+    // double-doubles (sums of two `f64`), which decide most cases. Integers alone would take half
+    // the time of rendering a small picture. As multiples of the unit roundoff of a double-double,
+    // the relative errors are at most 4 for light^5, 11 for scale^12, 1 for the product of these,
+    // 11 for x^12, and 1 for the difference, in sum less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));

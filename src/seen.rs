@@ -83,7 +83,8 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
                 Some(place) => Visibility::Outside(place),
-                // Only for listed objects, the object in front is searched for.
+                // The search for the object in front takes time, so it is made only for objects
+                // that the readable output lists.
                 None if index >= LISTED => Visibility::Nothing,
                 None => hidden_by(scene, &asked, index)
                     .map_or(Visibility::Nothing, Visibility::HiddenBy),
