@@ -22,7 +22,7 @@ fn bounds_stay_below_1e_9_and_certify_nearly_all_bytes() {
     }
 }
 
-/// Within one pixel, the spheres intersect one another, and most of their silhouettes are hidden.
+/// The spheres intersect one another within one pixel, and most of their silhouettes are hidden.
 /// The error bound must still be at most 1e-9.
 #[test]
 fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {

@@ -47,7 +47,7 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
 type Edge = (DVec2, f64, f64);
 
 /// Returns the error at each edge: the fraction of points on the edge's inner side, minus the area
-/// on this side. Each edge is tested in another pixel.
+/// on this side. For each edge, the points of another pixel are used.
 fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     let sampling = sampling(method, n, n);
     let error = |(i, &(normal, distance, area)): (u32, &Edge)| {
