@@ -159,9 +159,9 @@ impl Class {
         self.students.extend(students);
     }
 
-    /// Marks the pictures that are equal in every submission as not compared, since they come from
-    /// the assignment's template, and removes other equal files. If no student would keep a
-    /// picture, all students made the same one, so pictures are kept.
+    /// Finds the files that are equal in every submission, since they come from the assignment's
+    /// template. Pictures among them are marked as not compared; other files are removed. If no
+    /// student has any other picture, all students made the same one, so it is kept and compared.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -290,10 +290,11 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds the arguments that a shell expanded from a pattern such as `class/*`, so that each of them
-/// is a student, not a class. Returns the folder of each such class, with the names in it that are
-/// arguments. A folder counts as a class if an argument in it is a Git clone, has a name in
-/// Moodle's form or is Gradescope's metadata, or if two of them contain pictures of the same name.
+/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Each of these
+/// arguments is a student, and the folder that contains them is a class. Returns each such folder
+/// with the names of its arguments. A folder counts as a class if one of its arguments is a Git
+/// clone, has a name in Moodle's form, or is Gradescope's metadata file, or if two of its arguments
+/// contain a picture of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
