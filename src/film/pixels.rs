@@ -13,8 +13,8 @@ pub trait Pixel: Copy + Default + Send + Sync {
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
     /// Returns whether the pixel's value is certain, i.e. whether all means within `bound` of
-    /// `light` in each channel are converted to the same value. For 64-bit floats, the 32-bit
-    /// floats in an EXR file are meant.
+    /// `light` in each channel are converted to the same value. Means as 64-bit floats count as
+    /// certain if they give the same 32-bit floats, because EXR files contain those.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 

@@ -13,9 +13,9 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Number of bytes at the start of a file in which a picture is searched for. A program may have
-/// printed at most this much text before its picture. The value is a choice, far above usual
-/// messages.
+/// Number of bytes at the start of a file in which a picture is searched for. A program may print
+/// messages before its picture; if they are longer than this, the picture is not found. Usual
+/// messages are far shorter.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
