@@ -17,7 +17,8 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Returns whether a file may be overwritten in place if replacing it failed with `error`.
+/// Returns whether `error`, with which replacing a file failed, is a reason to overwrite the file
+/// in place.
 pub fn is_reason(error: &io::Error) -> bool {
     use io::ErrorKind;
     matches!(
