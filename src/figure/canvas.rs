@@ -41,16 +41,16 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
 /// Height of the empty space that a cropped figure keeps above and below its marks, in SVG units.
-/// The value is a choice.
+/// It is enough that the marks do not touch the text around the figure.
 const MARGIN: f64 = 12.0;
 
 /// Cost of a label that covers a line segment of a mark. A label is placed where the sum of its
-/// costs is least. Moving it one step away from its point costs only 6, so a label moves several
-/// steps to leave a mark free. The value is a choice.
+/// costs is least. Moving it one step away from its point costs only 6, so a label moves up to six
+/// steps to leave a segment free. With a smaller cost, labels would cover more marks.
 const MARK: f64 = 40.0;
 
 /// Cost of a label that covers a diagonal of a filled polygon. About four diagonals stand for the
-/// polygon's area. Moving a label one step away from its point costs 6, a little less, so a label
+/// polygon's area. Moving a label one step away from its point costs 6, which is less, so a label
 /// leaves the polygon if there is free space near it.
 const FILL: f64 = 7.0;
 
