@@ -150,8 +150,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut many = String::new();
     for index in 0..4000 {
         let (a, b) = (place(), place());
-        // Triangles of even index lie in the plane y = −z/3, the others in the board's plane, y =
-        // 0. The normals of the triangles in one plane differ in length.
+        // Triangles of even index lie in the plane y = −z/3, and the others in the board's plane.
+        // The normals of the triangles in one plane differ in length.
         let (centroid, normal) = match index % 2 {
             0 => ((a, b / 2.0, -1.5 * b), (0, 3, 1)),
             _ => ((a, 0.0, b), (0, 1, 0)),

@@ -25,8 +25,8 @@ use crate::{
 };
 
 /// Number of generated scenes in an exhaustive run, unless the environment variable
-/// `PINHOLE_SCENES` gives another. A normal run renders an eighth of them. It is a compromise: more
-/// scenes find rarer errors, but the tests take longer.
+/// `PINHOLE_SCENES` gives another. A normal run renders an eighth of them. More scenes would find
+/// rarer errors, but the tests would take longer.
 const SCENES: usize = 1200;
 
 /// Number of random samples per pixel whose mean is compared with the exact mean. With 64 samples,

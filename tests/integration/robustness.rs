@@ -210,7 +210,8 @@ fn deeply_nested_values_are_refused_and_long_sums_accepted() {
         };
         open.repeat(100_000) + inner + &close.repeat(100_000)
     });
-    // A delimiter within quotes does not close a list, so these values are deeply nested, too.
+    // A delimiter in quotes does not close a list. So the lists in these texts are nested as deeply
+    // as if the quotes were not there.
     let quotes = ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "];
     let quotes = quotes.map(|piece| piece.repeat(100_000)).into_iter();
     let few_quotes = "( \")\" ".repeat(300);

@@ -300,7 +300,7 @@ fn saving_an_unchanged_text_renders_it_again() {
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.becomes("red");
     watch.says("after the save", 1);
-    // The save replaces the file itself by another file.
+    // This time, the editor saves a new file and renames it to the name of the scene's file.
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.replace(&scene("red"));
     watch.shows("red");

@@ -189,8 +189,8 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The drag may also have changed the camera, if the camera uses the name of the moved
-        // value.
+        // If the camera uses the name of the moved value, the drag has also changed the camera. The
+        // handle is compared with the pointer in the old camera, for which the drag was computed.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);
@@ -281,7 +281,8 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
             along: None,
             step,
         };
-        // A drag is refused if a face would pass the opposite face. The text then stays as it is.
+        // A drag that would move a face past the opposite face is refused, and the text stays as it
+        // is.
         text = dragged(&text, &moved).unwrap_or(text);
         shapes.push(read(&text).objects[0].shape);
     }

@@ -338,7 +338,8 @@ fn render_never_overwrites_its_own_input() {
     }
 }
 
-/// The program checks the output path first. Only then, the test creates a link to the input there.
+/// The test creates a link to the input at the output path only after the program has checked this
+/// path.
 #[test]
 fn a_link_created_while_rendering_cannot_redirect_output_onto_an_input() {
     for (line, input, target, about) in [
