@@ -110,8 +110,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trou
         sources.sets.push(Source::from_text(name, set));
         SceneInput { sources, ..input }
     };
-    // Warnings are printed only for the first scene, since those of other scenes would mostly
-    // repeat them. Errors are printed for every scene.
+    // In a sweep, warnings are printed only for the first scene, since the other scenes mostly have
+    // the same ones. Errors are printed for every scene.
     let later = |input: &SceneInput| {
         let reading = scene::read(&input.sources);
         if reading.scene.is_none() {

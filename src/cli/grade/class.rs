@@ -77,8 +77,8 @@ impl Class {
         Ok(class)
     }
 
-    /// Adds the students of a folder or zip file. If it contains folders of whole classes, their
-    /// students are added, too.
+    /// Adds the students of a folder or zip file. It may also contain folders of whole classes,
+    /// whose students are then added as well.
     fn add(&mut self, folder: Option<String>, mut tree: FileTree, chosen: Option<&Glob>) {
         for (name, inner) in tree.take_classes() {
             self.add(Some(name), inner, chosen);
@@ -256,8 +256,9 @@ fn student_of_picture(path: &Path) -> Student {
     }
 }
 
-/// Merges students such as `anna.png` and `anna.cpp` into one: a file that is not a picture goes to
-/// the picture whose name differs only in the extension. Without one, it remains a student.
+/// Merges files with the same name but different extensions into one student. For example,
+/// `anna.cpp` becomes a file of the student with the picture `anna.png`. A file for which there is
+/// no such picture remains a student of its own.
 fn with_companions(students: Vec<Student>) -> Vec<Student> {
     let stem = |student: &Student| {
         let [file] = &student.files[..] else {
@@ -300,9 +301,8 @@ fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // A link is not grouped with other arguments: links named on the command line are followed,
-        // but links inside a class's folder are not. A path such as `..` has no name, so it is not
-        // grouped either.
+        // Links are excluded: a link on the command line is followed, but a link inside a class's
+        // folder would not be. Paths such as `..` are excluded, too, because they have no name.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }
