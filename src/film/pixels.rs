@@ -100,8 +100,8 @@ impl<P: Pixel> Film<P> {
     /// There is not enough memory for the picture.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
         memory::reserve(width, height, size_of::<P>() as u64)?;
-        // This zeroed memory comes from the system, which provides each page only when something is
-        // written to it.
+        // This zeroed memory comes from the system, which allocates each memory page only when
+        // something is written to it.
         Ok(Self {
             width,
             height,
