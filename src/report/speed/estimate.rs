@@ -24,8 +24,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns whether this method may be as fast as the `fastest` one. This is so if the time of
-    /// one of them is within the range of the other's single runs.
+    /// Returns whether this method may be as fast as the `fastest` one, since the measurements do
+    /// not distinguish them: the time of one lies within the range of the other's single runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }

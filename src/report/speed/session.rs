@@ -223,7 +223,7 @@ impl Benchmark<'_> {
 
     /// Renders the pictures by which the page compares the sampling methods. All take about the
     /// same CPU time, which is that of the slowest method with about [`SHOWN`] samples per pixel.
-    /// The same area is kept of each picture.
+    /// Of each picture, the same small area is stored.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
