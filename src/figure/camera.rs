@@ -176,10 +176,10 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     [around.x + around.width / 2, around.y + around.height / 2]
 }
 
-/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. For each, it has
-/// the index, and the centre and the radius of the bounding sphere. An object is drawn if it is
-/// smaller than about the distance `reach`, not farther from the eye, and in front of the eye. The
-/// object `hit` need not be in front of the eye.
+/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards: for each, its
+/// index, and the centre and the radius of its bounding sphere. Only objects that are smaller than
+/// `reach` and near the eye compared with `reach` are drawn. Except for the object with the index
+/// `hit`, they must also be in front of the eye.
 fn objects_within(
     scene: &Scene,
     view: &Projection,

@@ -24,8 +24,8 @@ pub const WIDTH: f64 = 680.0;
 const LETTERS: f64 = 18.0;
 
 /// Assumed width of a letter and height of a line of text, in SVG units. The sizes of labels are
-/// estimated from them. The width is the mean of wide typefaces such as DejaVu Sans, so that labels
-/// fit in others, too.
+/// estimated from them. The width is the mean of the letters in a wide typeface such as DejaVu
+/// Sans, so the estimate is large enough for narrower typefaces.
 const LETTER: DVec2 = DVec2::new(10.2, 21.0);
 
 /// Style sheet of every figure: the appearance of its CSS classes, on light and on dark pages.
@@ -153,8 +153,8 @@ impl Canvas {
         self.labels.push((class, at, away, text.into()));
     }
 
-    /// Writes a text at a fixed position. `anchor` is `start`, `middle` or `end`: the point of the
-    /// text's base line that lies at `at`. Words between asterisks are italic.
+    /// Writes a text at a fixed position. `anchor` is `start`, `middle` or `end`, and says which
+    /// point of the text's base line is at `at`. Words between asterisks are italic.
     pub fn text(&mut self, class: &str, anchor: &str, at: DVec2, text: &str) {
         let mut spans = String::new();
         for (part, text) in text.split('*').enumerate() {
