@@ -34,9 +34,9 @@ struct Words {
 }
 
 impl Words {
-    /// Reads the words of `text`. With `is_two`, a field's name that is joined with its value is
-    /// read as two words: `radius2`, or `centerball` if the whole text `all` contains the word
-    /// `ball`.
+    /// Reads the words of `text`. With `is_two`, a field's name that is written together with its
+    /// value, such as `radius2`, is read as two words. So is `centerball`, but only if `ball` is
+    /// also a word in the whole text `all`.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
         // A zero-width character is not part of a number.

@@ -70,9 +70,9 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// Returns the area of the part of the pixel in which normal · p < distance. Each corner of the
-/// pixel is the tip of a quadrant. The areas that the edge cuts off these four quadrants are added
-/// with alternating signs.
+/// Returns the area of the part of the pixel in which normal · p < distance. From each quadrant
+/// whose tip is a corner of the pixel, the edge cuts off an area. The result is the sum of these
+/// four areas with alternating signs.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);
