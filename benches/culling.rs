@@ -41,8 +41,8 @@ enum Way {
 
 const WAYS: [Way; 2] = [Way::OneByOne, Way::Culled];
 
-/// Names of the examples that are rendered in both ways ([`Way`]). Culling saves much time in some
-/// of them and little in others.
+/// Names of the examples that are rendered in both ways ([`Way`]). In some of these scenes, culling
+/// saves much time; in others, little.
 const SCENES: [&str; 5] = [
     "scatter",
     "near_and_far",

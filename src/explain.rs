@@ -16,9 +16,10 @@ pub const SAMPLING: &str = include_str!("../grammar/sampling.md");
 /// upwards.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// Words of other programs, and what explains them in Pinhole. A row holds such words, separated by
-/// commas, and a heading of the language's reference or a word of the language. A heading may be
-/// followed by `: ` and the first words of an item or paragraph in its section.
+/// Words that other programs use, and where Pinhole explains what they mean. A row holds several
+/// such words, separated by commas. Then it holds either a word of the language or a heading of the
+/// language's reference. A heading may be followed by `: ` and the first words of an item or
+/// paragraph in its section.
 const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop, repeat, array, index, for loop", "repetition"),
     ("group, move, translate, scale", "limits: A group"),

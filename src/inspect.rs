@@ -180,12 +180,12 @@ fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
 
 /// Returns the vanishing point of the lines parallel to an axis, in pixels from the picture's top
 /// left corner. Returns `None` if the axis is parallel to the view plane.
-///
-/// A ray along the axis a has the direction (a·u, a·v, −a·w), where u, v and w are the camera's
-/// axes. Scaled to depth 1, it ends in the view plane.
 fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
-    // The camera's axis w is opposite to the view direction. So its component along this axis is 0
-    // exactly if the axis is parallel to the view plane.
+    // The camera's axis w is opposite to the view direction. Its component along the given axis is
+    // 0 exactly if the given axis is parallel to the view plane. Otherwise, a ray along the given
+    // axis a has the direction (a·u, a·v, −a·w) in the camera's axes u, v and −w. Scaled to depth 1
+    // and divided by a pixel's side at this depth, its first two coordinates are the distances of
+    // the vanishing point from the picture's middle.
     if basis.w[axis].is_zero() {
         return None;
     }

@@ -18,8 +18,8 @@ use glam::DVec2;
 
 /// Sides of the blocks of a coarse picture in successive steps, in pixels. Each step takes four
 /// times as long as the step before. All steps together take less time than a picture with one
-/// sample per pixel. The first side is a choice: a larger one would show a picture sooner, but a
-/// coarser one.
+/// sample per pixel. With a larger first side, a picture would appear sooner, but show less of the
+/// scene.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
 /// A picture in square blocks, each of one colour.

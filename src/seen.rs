@@ -19,8 +19,8 @@ use glam::DVec2;
 
 /// Maximum work on a whole picture, in units of about 50 ns, i.e. about 5 s in all. Each tile has
 /// an equal share. After a tile's share is used up, a pixel counts as showing only what is seen at
-/// its centre. The number is a choice: with a larger one, more areas are exact, but the answer may
-/// take longer.
+/// its centre. With a larger maximum, the areas would be exact for more scenes, but the answer
+/// could take longer.
 const MAX_WORK: u64 = 100_000_000;
 
 /// Minimum area, in pixels, for which an object counts as seen. Printed areas have the same
@@ -83,7 +83,8 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
                 Some(place) => Visibility::Outside(place),
-                // Only for listed objects, the object in front is searched for.
+                // The search for the object in front takes time, so it is made only for objects
+                // that the readable output lists.
                 None if index >= LISTED => Visibility::Nothing,
                 None => hidden_by(scene, &asked, index)
                     .map_or(Visibility::Nothing, Visibility::HiddenBy),
@@ -94,8 +95,8 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
 }
 
 /// Maximum number of objects that the readable output of `inspect` lists. For each listed object
-/// that is hidden, it also names the object in front. The number is a choice that keeps the output
-/// readable.
+/// that is hidden, it also names the object in front. A list of many more objects would hardly be
+/// read by a person; the JSON output contains all objects.
 pub const LISTED: usize = 100;
 
 /// Map from an object's index to the bounding rectangle of its pixels and to the area that shows

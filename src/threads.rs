@@ -46,8 +46,8 @@ pub(crate) fn available() -> usize {
 pub(crate) enum Threads {
     /// A pool that was started for the work.
     Started(ThreadPool),
-    /// The current threads. Work that consists of hundreds of pictures thus renders all pictures on
-    /// the same threads.
+    /// The threads on which the caller already runs. When hundreds of pictures are rendered in one
+    /// pool, each of them uses the threads of this pool instead of starting others.
     Current,
 }
 

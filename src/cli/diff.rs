@@ -216,8 +216,8 @@ struct DiffReport {
     sizes: [[u32; 2]; 2],
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    /// Verdict on picture A: whether it is right, and by which mistakes it is wrong. `None` if B is
-    /// not a scene.
+    /// Verdict on picture A: whether it is right and, if not, by which mistakes it became wrong.
+    /// `None` if B is not a scene.
     verdict: Option<Verdict>,
     is_strict: bool,
 }

@@ -16,8 +16,8 @@ use crate::{
     schema, suggest,
 };
 
-/// Maximum width of a printed page, in columns. It also holds on wider terminals, since longer
-/// lines are hard to read. The exact value is a choice.
+/// Maximum width of a printed page, in columns. It also limits the width on wider terminals,
+/// because longer lines are hard to read. Any similar width works.
 const WIDEST: usize = 90;
 
 /// Prints the page of `args.words`, or the list of all codes if there are no words.

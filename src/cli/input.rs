@@ -31,9 +31,9 @@ const SCENE_LIMIT: u64 = 256 << 20;
 /// programs insert there.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// Number of bytes at the start of a file that are searched for a picture. A program may have
-/// printed lines of text before its picture, but at most this much. The value is a choice, far
-/// above usual messages.
+/// Number of bytes at the start of a file that are searched for a picture. A program may print
+/// messages before its picture; if they are longer than this, the picture is not found. Usual
+/// messages are far shorter.
 const START: u64 = 1 << 16;
 
 /// A scene that was read, but not yet parsed.

@@ -94,9 +94,9 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // Advances the text with fewer characters before its next line, not counting white
-                // space. If the numbers are equal, advances the text whose next line is empty, or
-                // both texts if that does not decide.
+                // Advances the text that has fewer characters before its next line, not counting
+                // white space. If the numbers are equal, advances the text whose next line is
+                // empty. If both next lines are empty, or neither is, advances both texts.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),

@@ -91,9 +91,10 @@ pub fn run() -> ExitCode {
     status_of(done).into()
 }
 
-/// Returns clap's error or help text with control characters made visible, since it repeats
-/// arguments, which must not control the terminal. To this end, the arguments are parsed again
-/// after their control characters are replaced. Returns `None` if clap then accepts them.
+/// Returns clap's error or help text with control characters made visible. The text repeats
+/// arguments, and their control characters must not reach the terminal. Therefore, the arguments
+/// are parsed again after their control characters are replaced. Returns `None` if clap accepts the
+/// replaced arguments.
 fn visible_answer() -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(env::args_os().map(shown)).err()

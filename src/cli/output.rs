@@ -120,8 +120,9 @@ pub fn wrapped(text: &str, width: usize) -> String {
     broken.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the offset of the last column that starts after two spaces, as columns of tables do, at
-/// most `most`. If there is no such column, returns 2, or `most` if that is less.
+/// Returns the offset at which the last column of a table's row starts. A column starts after at
+/// least two spaces. Columns that start after the offset `most` do not count. If there is no
+/// column, returns 2, or `most` if that is less.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();

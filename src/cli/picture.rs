@@ -120,8 +120,9 @@ pub fn render_part<P: film::Pixel>(
 }
 
 /// Error bound of a pixel's mean, in linear light, above which the user gets a note that the pixel
-/// is known less well than usual. It is a choice: bounds are usually below 1e-9, and an error of
-/// 1e-6 is still invisible.
+/// is known less well than usual. Usual bounds are below 1e-9, and an error of 1e-6 is still
+/// invisible. With a much larger limit, a visible error could go without a note; with a smaller
+/// one, there would be more notes about invisible errors.
 const VAGUE: f32 = 1e-6;
 
 /// Phrase for the rounding to bytes of sRGB, used in notes to the user about a PNG.
@@ -144,7 +145,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        // The bound is 0 if every pixel has a single colour, so that nothing is averaged.
+        // The bound is 0 only if every pixel has a single colour, so that nothing is averaged.
         0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };

@@ -15,8 +15,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::output;
 use crate::render::Control;
 
-/// Time before the progress bar appears, so that short work shows none. The value is a choice; any
-/// time around half a second works.
+/// Time before the progress bar appears, so that short work shows none. With a shorter time, the
+/// bar would flash up for work that ends soon; with a longer one, the user would wonder whether
+/// anything happens.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Interval between updates of the progress bar. Ten updates per second look smooth and take almost

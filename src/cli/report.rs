@@ -8,8 +8,8 @@ use super::{
 };
 use crate::{render::RenderError, report::numerics};
 
-/// Default number of random inputs for each hard case of the arithmetic. It is a hundredth of the
-/// full count, a million, which takes half an hour of processor time.
+/// Default number of random inputs for each hard case of the arithmetic. A million inputs take half
+/// an hour of processor time, so the default is a hundredth of that number.
 const INPUTS: u64 = 10_000;
 
 /// Prints or writes the report that the arguments select.

@@ -32,16 +32,17 @@ use crate::{
 /// size on the sheet.
 type SheetCell = (Scene, String);
 
-/// Gap between two cells of the sheet, and around all cells, in pixels. The value is a choice.
+/// Gap between two cells of the sheet, and around all cells, in pixels. It separates the pictures;
+/// any similar width works.
 const GAP: u32 = 12;
-/// Colour of the frame around each picture, in sRGB bytes. The light gray is visible on the white
-/// sheet, but does not distract. The value is a choice.
+/// Colour of the frame around each picture, in sRGB bytes. This light gray is visible on the white
+/// sheet, but does not distract from the pictures.
 const FRAME: [u8; 3] = [192; 3];
-/// Height of the letters of captions, in pixels. The value is a choice among the heights of the
-/// font.
+/// Height of the letters of captions, in pixels. Chosen among the few heights in which the font
+/// exists.
 const LETTERS: RasterHeight = RasterHeight::Size16;
-/// Height of a caption's line, in pixels. It is 6 more than that of the letters, so that there is
-/// space around them.
+/// Height of a caption's line, in pixels. It is 6 more than the height of the letters, 16, so that
+/// there is space around them.
 const LINE: u32 = 22;
 const REGULAR: FontWeight = FontWeight::Regular;
 
@@ -109,8 +110,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trou
         sources.sets.push(Source::from_text(name, set));
         SceneInput { sources, ..input }
     };
-    // Warnings are printed only for the first scene, since those of other scenes would mostly
-    // repeat them. Errors are printed for every scene.
+    // In a sweep, warnings are printed only for the first scene, since the other scenes mostly have
+    // the same ones. Errors are printed for every scene.
     let later = |input: &SceneInput| {
         let reading = scene::read(&input.sources);
         if reading.scene.is_none() {

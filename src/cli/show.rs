@@ -200,8 +200,8 @@ fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> Stri
     text
 }
 
-/// Returns how many pixels, in each direction, are shown as one dot. A character cell contains two
-/// dots, one above the other, since it is about twice as high as wide.
+/// Returns how many pixels of the picture, in each direction, are shown as one dot. A character
+/// cell contains two dots, one above the other, since it is about twice as high as wide.
 fn scale(width: usize, height: usize, columns: usize, rows: usize) -> f64 {
     (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64)
 }

@@ -27,8 +27,8 @@ use crate::{
     scene::{Method, Scene},
 };
 
-/// Number of steps of the progress bar. With 1000 steps, it is accurate to a tenth of a per cent,
-/// and it shows whole per cents.
+/// Number of steps of the progress bar. The bar shows whole per cents, so 1000 steps are more than
+/// enough.
 const STEPS: u64 = 1000;
 
 /// File name of a report's HTML page.

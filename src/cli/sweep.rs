@@ -11,8 +11,8 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum number of scenes in a sweep. More are rejected. The value is a choice: a sheet with more
-/// pictures would hardly be readable, and a mistyped number would take very long.
+/// Maximum number of scenes in a sweep. More are rejected, because a sheet with more pictures would
+/// hardly be readable, and because a mistyped number could take very long.
 const MOST: usize = 1000;
 
 /// The argument of `--sweep`: the target, the first and last value, and the number of scenes.

@@ -67,7 +67,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 screen.print(&format!("wrote {output} {time} {what}\n"));
             }
             Err(Trouble::SceneErrors | Trouble::Interrupted) => {}
-            // After an error, watching continues, since the next save may remove its cause.
+            // An error does not end watching, since the next save may remove its cause.
             Err(trouble) => screen.print(&output::worded_error(&trouble)),
         }
         is_first = false;
@@ -76,8 +76,8 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
 }
 
 /// Interval between checks of the terminal's size while the scene does not change. If the size has
-/// changed, the picture is drawn again. A fifth of a second is a choice: it seems immediate, and
-/// the checks take almost no time.
+/// changed, the picture is drawn again. With a fifth of a second, this seems immediate, and the
+/// checks take almost no time.
 const REFIT: Duration = Duration::from_millis(200);
 
 /// Returns the file to which the picture is written.
@@ -145,8 +145,8 @@ fn render_and_write(
     Ok(done)
 }
 
-/// Time after which coarse pictures are shown while the picture is rendered. A fifth of a second is
-/// a choice: a faster render needs no coarse pictures.
+/// Time that a render may take before coarse pictures are shown meanwhile. Faster renders need no
+/// coarse picture first. The value is a guess at when a user gets impatient.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Renders the scene. If this takes longer than [`PATIENCE`] and pictures are shown in the
@@ -175,8 +175,8 @@ fn with_sketch(
                     progress: &|_| {},
                     cancel: is_stale,
                 };
-                // Errors are ignored, since cancelling also ends the render of the picture itself,
-                // which reports it.
+                // An error, usually that the render was cancelled, is ignored here, because the
+                // render of the picture itself reports it.
                 let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
                     screen.draw(sketch.film);
                 });

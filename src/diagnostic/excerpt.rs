@@ -38,20 +38,22 @@ struct ExcerptLine {
 }
 
 /// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
-/// Longer lines are cut. The number is a choice.
+/// Longer lines are cut, because a line may have megabytes. Most lines that people write are
+/// shorter.
 pub const LONG_LINE_BYTES: usize = 160;
 /// Minimum width of an excerpt, in columns. An excerpt is this wide even if the terminal is
-/// narrower, so that some text around each label is shown. The number is a choice.
+/// narrower, so that some text around each label is shown. A smaller minimum would cut this text to
+/// a few characters.
 pub const MIN_COLUMNS: usize = 30;
 /// Number of columns that miette, the library that draws reports, needs for the line from the
 /// middle of a label to the label's message, as in `╰── message`.
 const HOOK_COLUMNS: usize = 4;
 /// Minimum width, in columns, to which a label's message is wrapped. It is used if the label stands
-/// so far to the right that less room is left. The number is a choice: a narrower message would be
-/// hard to read.
+/// so far to the right that less room is left. A narrower message would be hard to read, and a much
+/// wider one would leave less room for the text of the scene.
 const MIN_MESSAGE_COLUMNS: usize = 16;
 /// Maximum number of lines of a label that is drawn whole. A longer label is drawn only in its
-/// first line, so that a label of a long block does not fill the screen. The number is a choice.
+/// first line. With a much larger maximum, a label of a long block could fill the screen.
 const MAX_LABEL_LINES: usize = 6;
 
 /// Returns an excerpt of every source that has labels, in the order of the labels.

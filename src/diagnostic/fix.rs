@@ -151,7 +151,7 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
     Span::new(span.source, span.start, span.end + behind.trim_end().len())
 }
 
-/// Blanks: the characters of white space within a line.
+/// Characters of white space within a line: space and tab. Comments call them blanks.
 const BLANK: [char; 2] = [' ', '\t'];
 
 /// Returns whether a text that follows `before` is the first on its line, apart from blanks.

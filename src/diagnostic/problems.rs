@@ -9,9 +9,9 @@ use super::{Diagnostic, Label, Severity};
 use crate::source::Span;
 
 /// Maximum number of problems that a stage of reading a scene reports, and of places that one fix
-/// changes. Further problems are omitted, and a last diagnostic says so. Without a limit, a large
-/// file that is no scene would need a thousand times its size for the reports. The number is a
-/// choice.
+/// changes. Further problems are omitted, and a last diagnostic says so. Without a limit, the
+/// reports about a large file that is no scene would need a thousand times its memory. The number
+/// is far above what anyone reads.
 pub const MOST_PROBLEMS: usize = 10_000;
 
 /// Message of the diagnostic that stands for all omitted problems. The summary does not count this

@@ -287,7 +287,8 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
 }
 
 /// Returns completions for the indices of the current block and for the definitions before the
-/// typed word. If `is_color` is known, only those that are or are not colours are returned.
+/// typed word. If `is_color` is `Some(true)`, leaves out those that are no colours; if it is
+/// `Some(false)`, leaves out the colours.
 fn definitions(
     analysis: &Analysis<'_>,
     situation: &Situation,

@@ -16,8 +16,8 @@ use crate::{
     },
 };
 
-/// Made-up name that stands for the word at the cursor while the text is parsed. Any name would do
-/// that no scene uses.
+/// Made-up name that stands for the word at the cursor while the text is parsed. Any name that no
+/// scene uses would do.
 const CURSOR: &str = "__cursor__";
 
 /// The context of an offset in the text: what can be typed, and where.

@@ -110,8 +110,9 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // `room` is the length of `out` at which equal curves are merged next. It exceeds `2 *
-        // max_curves` only if more than `max_curves` curves were left after merging.
+        // `room` is the length of `out` above which equal curves are merged again. After a merge,
+        // it is the number of unequal curves plus `max_curves`. If it exceeds `2 * max_curves`,
+        // there are more than `max_curves` unequal curves, and the search stops.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }

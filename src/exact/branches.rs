@@ -193,8 +193,8 @@ impl<'a> ConicSpan<'a> {
         if !y[1].is_finite() {
             return None;
         }
-        // If the branch is curved in one direction only, its distance from the chord is nowhere
-        // more than twice `sagitta`, the distance in the middle.
+        // If the branch is curved in one direction only, its distance from the chord is at most
+        // twice `sagitta`, the distance in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -213,9 +213,9 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // A branch may be so flat that rounding does not leave it an arc. It is treated as
-            // straight if the distance between its middle and the chord is at most the rounding
-            // error `flat`. Each y has six roundings, and the mean of two y adds two.
+            // A branch may be so flat that rounding errors prevent the computation of an arc. It is
+            // treated as straight if the distance between its middle and the chord is at most the
+            // rounding error `flat`. Each y has six roundings, and the mean of two y adds two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -274,7 +274,8 @@ struct ArcEnd<T> {
 struct Tangents {
     /// Position of the control point relative to the arc's start.
     control: DVec2,
-    /// Square of the arc's weight.
+    /// Square of the arc's weight, i.e. of the weight of its control point as a rational Bézier
+    /// curve.
     w2: f64,
     /// Maximum error of the area between the arc and its chord.
     off: f64,
@@ -282,21 +283,21 @@ struct Tangents {
 
 impl Tangents {
     /// Intersects the tangents of the conic with the coefficients `factors` at the points `ends`,
-    /// and bounds the error of the area between arc and chord.
-    ///
-    /// The chord and the two tangents are the sides of a triangle. The computed gradient of the
-    /// conic has an error of κ roundings of its length, where κ − 1 is the size of its terms
-    /// divided by its length. The direction of each tangent has the same error in radians. It
-    /// changes the triangle's area by half the square of the tangent's side times the error. If the
-    /// control point moves along a tangent, the triangle's area and the weight change in opposite
-    /// directions, so that the area between arc and chord changes no more.
-    ///
-    /// The square of the weight is the quotient of two values of the conic's quadratic part Q. The
-    /// area between arc and chord grows no faster than the weight. A value of Q has the rounding
-    /// errors of its own terms, and the error of the vector at which Q is taken. An error of the
-    /// root √Δ ([`ConicGraph`]) is not counted: it corresponds to another conic within the error of
-    /// the given one, which moves points and tangents together.
+    /// and bounds the error of the area between the arc and its chord.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
+        // The chord and the two tangents are the sides of a triangle. The computed gradient of the
+        // conic has an error of κ roundings of its length, where κ − 1 is the size of its terms
+        // divided by its length. The direction of each tangent has the same error in radians. It
+        // changes the triangle's area by half the square of the tangent's side times the error. If
+        // the control point moves along a tangent, the triangle's area and the weight change in
+        // opposite directions, so that the area between arc and chord changes no more than the
+        // triangle's.
+        //
+        // The square of the weight is the quotient of two values of the conic's quadratic part Q.
+        // The area between arc and chord grows no faster than the weight. A value of Q has the
+        // rounding errors of its own terms, and the error of the vector at which Q is taken. An
+        // error of the root √Δ (`ConicGraph`) is not counted: it corresponds to another conic
+        // within the error of the given one, which moves points and tangents together.
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
@@ -427,18 +428,17 @@ impl Section {
     /// Returns two bounds for arcs over the same range of x: how far this arc rises above `other`,
     /// and how far the two are apart in y. Returns `None` unless both curves are arcs that bulge to
     /// the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
-    ///
-    /// Derivation: compare points with the same curve parameter, with heights measured from the
-    /// direction of this arc's chord. If the weights are equal, a point of each arc is the same
-    /// weighted mean of that arc's three control points. A difference in x counts times the slope
-    /// of the steepest tangent. A difference in weight moves a point by at most this difference
-    /// times the point's distance from the control point.
-    ///
-    /// The control point of a narrow arc is uncertain along the arc, where the area hardly depends
-    /// on it. The error of a point is less than eight times the area's error divided by the width,
-    /// plus the rounding error of x, which changes the area by at most itself times the arc's
-    /// height.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
+        // Points of the two arcs with the same curve parameter are compared, with heights measured
+        // from the direction of this arc's chord. If the weights are equal, a point of each arc is
+        // the same weighted mean of that arc's three control points. A difference in x counts times
+        // the slope of the steepest tangent. A difference in weight moves a point by at most this
+        // difference times the point's distance from the control point.
+        //
+        // The control point of a narrow arc is uncertain along the arc, where the area hardly
+        // depends on it. The error of a point is less than eight times the area's error divided by
+        // the width, plus the rounding error of x, which changes the area by at most itself times
+        // the arc's height.
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
             return None;

@@ -49,8 +49,8 @@ impl PictureWork {
 #[derive(Debug)]
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
-    /// Requested error bound of the pixel's mean, as a fraction of the pixel's area. Infinite sums
-    /// may be truncated at fractions of it.
+    /// Requested error bound of the pixel's mean, as a fraction of the pixel's area. An infinite
+    /// sum ends where the omitted terms are at most a given fraction of this bound.
     pub tolerance: f64,
     /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,
@@ -76,8 +76,8 @@ impl<'a> PixelBudget<'a> {
         self.cancel.load(Relaxed)
     }
 
-    /// Returns whether the budget is used up or the picture is cancelled, so that nothing more
-    /// should be computed.
+    /// Returns whether the budget is used up or the picture is cancelled. Nothing more should then
+    /// be computed.
     pub fn is_spent(&self) -> bool {
         self.left.get() <= 0.0 || self.is_cancelled()
     }

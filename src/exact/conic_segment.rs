@@ -133,16 +133,17 @@ fn series(z: f64) -> f64 {
 }
 
 impl Homography {
-    /// Integrates the board's sign s(a)·s(b) over the region between an arc and its chord, in
-    /// square pixels.
-    ///
-    /// The arc is cut where it crosses a line of the board, so that the segment of each piece lies
-    /// in one square. The chords of the pieces enclose the rest of the region, a convex polygon. A
-    /// piece whose segment is negligible is replaced by its chord. If a segment of area A is cut
-    /// into n pieces, each piece has a segment of A/n³, and all pieces together have A/n². This
-    /// total equals the tolerance t if each piece has t^(3/2)/√A.
+    /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over the region
+    /// between an arc and its chord, in square pixels.
     pub(super) fn over_segment(&self, arc: &Arc, budget: &PixelBudget) -> BoundedSum {
         let area = arc.area();
+        // The arc is cut where it crosses a line of the board, so that the segment of each piece
+        // lies in one square. The chords of the pieces enclose the rest of the region, a convex
+        // polygon.
+        //
+        // A piece whose segment is smaller than a limit is replaced by its chord. If an arc with a
+        // segment of area A is cut into n pieces, each piece has a segment of A/n³, and all pieces
+        // together have A/n². This total equals the tolerance t if the limit is t^(3/2)/√A.
         if let Some(sign) = self.square_of(arc) {
             return over_one_square(area, sign);
         }

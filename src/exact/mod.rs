@@ -66,8 +66,7 @@ use self::{
 };
 
 /// Default of the requested error bound: the fraction of a pixel's area that may have a wrong
-/// colour. It is a little below 1e-9, so that the result is within 1e-9 even after the rounding of
-/// sums.
+/// colour. It is a little below 1e-9, to leave room for the rounding of sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
 /// Maximum number of curves that pass through a whole pixel. With more curves, the pixel is
 /// quartered before anything is computed. n curves cross at about n² points, where all curves have
@@ -77,8 +76,8 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that pass through the same small part are unlikely to be separated in smaller
-/// ones. The value is a choice. Measured on a heap of objects: with 1 instead of 4, the time is two
-/// thirds; with 16, it is four times as long.
+/// ones. Measured on a heap of objects: with 1 instead of 4, the time is two thirds; with 16, it is
+/// four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
 /// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest
@@ -86,17 +85,18 @@ const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
 /// Maximum memory of a pixel's queued parts, in bytes. Above it, the pixel is not divided any
-/// further, and uncomputed parts count as errors. Memory that a part needs only while it is
-/// computed is not counted. The value, 64 MiB, is a choice.
+/// further, and uncomputed parts count as errors, which a smaller maximum would make more frequent.
+/// Memory that a part needs only while it is computed is not counted.
 const MAX_MEMORY: usize = 64 << 20;
 /// Minimum side of a square part of a pixel that is quartered because too many curves pass through
 /// it, in pixels. A smaller part counts as an error instead; its area is less than a unit roundoff
 /// of the pixel's area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
 /// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
-/// about 50 ns. Rough, because the budget only stops what takes too long.
+/// about 50 ns. A rough value is enough, because the budget only stops what takes too long.
 const PIECE_WORK: f64 = 100.0;
-/// Work charged per object that may be seen in a part of a pixel, in units of about 50 ns.
+/// Work charged per object that may be seen in a part of a pixel, in units of about 50 ns. A rough
+/// value is enough, because the budget only stops what takes too long.
 const OBJECT_WORK: f64 = 4.0;
 /// Work charged per ordered pair of curves in a part of a pixel with a conic, in units of about
 /// 50 ns. Without it, half of the time measured for a heap of 10⁴ spheres is not accounted for.
@@ -142,7 +142,7 @@ enum PieceState {
     /// budget is spent.
     Crowded,
     Computed,
-    /// Computed, and not quartered: quartering its parent reduced the bound by less than half.
+    /// Computed and final: quartering its parent reduced the bound by less than half.
     Final,
 }
 
@@ -334,7 +334,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue grows by copying to twice the memory; the old one exists until then.
+                // A full queue is copied to twice the memory; during the copy, both exist.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -420,7 +420,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film: &mut PartPixels<N>,
         deferred: &mut Vec<BoardPixel>,
     ) {
-        // The share is rounded once, before the roundings of a mean of two colours.
+        // The share has one rounding, and the mean of the two colours adds `rounding(2)`.
         let roundings = UNIT + rounding(2);
         let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {

@@ -18,21 +18,22 @@ use crate::{
     tracer::Hit,
 };
 
-/// Height of the figure, in SVG units. Its width is 680. The value is a choice.
+/// Height of the figure, in SVG units, before empty space is cropped. Its width is 680. The scene
+/// is scaled to fit; in a lower figure, it would be smaller.
 const HEIGHT: f64 = 460.0;
 
 /// Maximum length of a ray that is drawn to its end, as a multiple of the distance from the eye to
-/// a corner of the window. Only the start of a longer ray is drawn; otherwise, the window would
-/// become too small in the figure. The value is a choice.
+/// a corner of the window. Only the start of a longer ray is drawn. With a larger value, the window
+/// could become too small to be recognised.
 const FARTHEST: f64 = 15.0;
 
 /// Maximum number of objects that are drawn, not counting checkerboards. The first ones in the
-/// scene are drawn. The value is a choice: more objects would make the figure confusing.
+/// scene are drawn. With many more, the figure would be confusing.
 const MOST_OBJECTS: usize = 60;
 
 /// Approximate maximum number of lines on a checkerboard in each direction. If there are more
-/// squares, only every second line, or every third, and so on, is drawn. The value is a choice:
-/// more lines would hide the rest of the figure.
+/// squares, only every second line, or every third, and so on, is drawn. More lines would hide the
+/// rest of the figure.
 const MOST_LINES: f64 = 14.0;
 
 /// Draws the figure. The ray goes through the middle of `pixel` or, if that is `None`, of a pixel
@@ -71,8 +72,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let arrow = 0.13 * (max - min).length();
     points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
 
-    // The observer is to the right of the camera, behind it and above it, so that the ray runs to
-    // the right in the figure.
+    // The direction from the scene to the observer of the figure is to the right of the camera,
+    // behind it and above it. The ray then runs to the right in the figure.
     let level = (view.ahead + view.top * 0.2).with_y(0.0);
     let level = level.normalize_or(DVec3::NEG_Z);
     let side = level.cross(DVec3::Y) * 0.72 - level * 0.55 + DVec3::Y * 0.42;
@@ -91,7 +92,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     for corner in corners {
         outside.line(&mut canvas, "faint", &[view.eye, corner]);
     }
-    // Draw the picture that the camera sees in the window.
+    // In the window, draws the outlines of the objects as the camera sees them.
     let picture = overlays(scene, &ShownObjects::First(None));
     let in_frame = |at: DVec2| view.at_depth(at.clamp(DVec2::ZERO, view.size), facts.d);
     draw_objects(
@@ -175,10 +176,10 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     [around.x + around.width / 2, around.y + around.height / 2]
 }
 
-/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards. For each, it has
-/// the index, and the centre and the radius of the bounding sphere. Objects within about the
-/// distance `reach` of the eye are drawn if they are in front of it, and so is the object with the
-/// index `hit`.
+/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards: for each, its
+/// index, and the centre and the radius of its bounding sphere. Only objects that are smaller than
+/// `reach` and near the eye compared with `reach` are drawn. Except for the object with the index
+/// `hit`, they must also be in front of the eye.
 fn objects_within(
     scene: &Scene,
     view: &Projection,
@@ -202,8 +203,8 @@ fn objects_within(
 }
 
 /// Returns the lines between the squares of the checkerboards. If there are many, only some are
-/// returned ([`MOST_LINES`]). They extend over the points of the figure, `points`; the corners of
-/// each board's drawn part are added to these.
+/// returned ([`MOST_LINES`]). The lines cover the area in which the points of the figure, `points`,
+/// lie. The corners of each board's drawn area are added to `points`.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

@@ -24,8 +24,8 @@ pub const WIDTH: f64 = 680.0;
 const LETTERS: f64 = 18.0;
 
 /// Assumed width of a letter and height of a line of text, in SVG units. The sizes of labels are
-/// estimated from them. The width is the mean of wide typefaces such as DejaVu Sans, so that labels
-/// fit in others, too.
+/// estimated from them. The width is the mean of the letters in a wide typeface such as DejaVu
+/// Sans, so the estimate is large enough for narrower typefaces.
 const LETTER: DVec2 = DVec2::new(10.2, 21.0);
 
 /// Style sheet of every figure: the appearance of its CSS classes, on light and on dark pages.
@@ -41,16 +41,16 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
 /// Height of the empty space that a cropped figure keeps above and below its marks, in SVG units.
-/// The value is a choice.
+/// It is enough that the marks do not touch the text around the figure.
 const MARGIN: f64 = 12.0;
 
 /// Cost of a label that covers a line segment of a mark. A label is placed where the sum of its
-/// costs is least. Moving it one step away from its point costs only 6, so a label moves several
-/// steps to leave a mark free. The value is a choice.
+/// costs is least. Moving it one step away from its point costs only 6, so a label moves up to six
+/// steps to leave a segment free. With a smaller cost, labels would cover more marks.
 const MARK: f64 = 40.0;
 
 /// Cost of a label that covers a diagonal of a filled polygon. About four diagonals stand for the
-/// polygon's area. Moving a label one step away from its point costs 6, a little less, so a label
+/// polygon's area. Moving a label one step away from its point costs 6, which is less, so a label
 /// leaves the polygon if there is free space near it.
 const FILL: f64 = 7.0;
 
@@ -153,8 +153,8 @@ impl Canvas {
         self.labels.push((class, at, away, text.into()));
     }
 
-    /// Writes a text at a fixed position. `anchor` is `start`, `middle` or `end`: the point of the
-    /// text's base line that lies at `at`. Words between asterisks are italic.
+    /// Writes a text at a fixed position. `anchor` is `start`, `middle` or `end`, and says which
+    /// point of the text's base line is at `at`. Words between asterisks are italic.
     pub fn text(&mut self, class: &str, anchor: &str, at: DVec2, text: &str) {
         let mut spans = String::new();
         for (part, text) in text.split('*').enumerate() {

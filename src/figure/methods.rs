@@ -11,11 +11,11 @@ use crate::{
 };
 
 /// Maximum number of samples per pixel in a figure. Figures with more are refused, since the dots
-/// would form a gray area. The value is a choice.
+/// would merge into a gray area.
 const MOST: u64 = 1024;
 
 /// Maximum number of rows, and of columns, of a grid of cells ([`Tiling`]) whose lines are drawn.
-/// The lines of a finer grid would form a gray area. The value is a choice.
+/// The lines of a finer grid would merge into a gray area.
 const MOST_LINES: usize = 64;
 
 /// Side of the square that shows a pixel, in SVG units. Three of these squares fit beside each

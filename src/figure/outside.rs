@@ -19,8 +19,8 @@ use crate::{
 };
 
 /// Distance of the observer from the middle of the shown points, as a multiple of the radius of a
-/// sphere around them. From farther away, parallel lines look more parallel, but the view has less
-/// depth. The value is a choice.
+/// sphere around them. From farther away, parallel lines look more parallel, and the view shows
+/// less depth. Chosen by eye.
 const DISTANCE: f64 = 6.0;
 
 /// Maximum absolute value of the coordinates that determine the view, in metres. Larger coordinates

@@ -17,8 +17,8 @@ use crate::{
     tracer::World,
 };
 
-/// Top left corner of the square that shows the pixel, in SVG units. The value is a choice; it
-/// leaves a margin.
+/// Top left corner of the square that shows the pixel, in SVG units. It leaves a margin at the edge
+/// of the figure.
 const CORNER: DVec2 = DVec2::new(16.0, 16.0);
 
 /// Side of the square that shows the pixel, in SVG units. It takes about half of the figure's
@@ -31,7 +31,7 @@ const SIDE: f64 = 360.0;
 const ROWS: u32 = 120;
 
 /// Maximum number of colours that are listed beside the pixel. If there are more, those with the
-/// largest areas are listed. The value is a choice; the list has space for few.
+/// largest areas are listed. The list has space for few, and most pixels show no more.
 const COLORS: usize = 4;
 
 /// Draws the figure of `pixel` or, if it is `None`, of a pixel with several colours.

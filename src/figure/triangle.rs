@@ -14,7 +14,8 @@ use crate::{
     tracer::vertices,
 };
 
-/// Height of the figure, in SVG units. Its width is 680. The value is a choice.
+/// Height of the figure, in SVG units, before empty space is cropped. Its width is 680. The
+/// triangle is scaled to fit; in a lower figure, it would be smaller.
 const HEIGHT: f64 = 430.0;
 
 /// Number of straight segments by which the arc of the spin is drawn. With 24, it looks round.

@@ -84,8 +84,9 @@ mod tests {
 
     use super::*;
 
-    /// Number of the test's last round; the first is 0. There must be enough rounds that the other
-    /// program saves before, during and after the replacement. The value is a choice.
+    /// Number of the test's last round; the first is 0. From round to round, the other program
+    /// saves a little later. With 400, it saves before, during and after the replacement, and the
+    /// test still ends soon.
     const LAST: u32 = 400;
 
     /// Another program saves the file, in each round at a later moment, from before the replacement

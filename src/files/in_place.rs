@@ -17,7 +17,8 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Returns whether a file may be overwritten in place if replacing it failed with `error`.
+/// Returns whether `error`, with which replacing a file failed, is a reason to overwrite the file
+/// in place.
 pub fn is_reason(error: &io::Error) -> bool {
     use io::ErrorKind;
     matches!(
@@ -29,10 +30,10 @@ pub fn is_reason(error: &io::Error) -> bool {
     )
 }
 
-/// Overwrites the file at `path`, unless it has changed since it was read. Until this is complete,
-/// a copy of the new content exists beside the file or in the user's state folder, so that nothing
-/// is lost if this process is killed. If no copy can be created, returns `reason`, the error that
-/// occurred when replacing the file was tried.
+/// Overwrites the file at `path`, unless it has changed since it was read. In the meantime, a copy
+/// of the new content exists beside the file or in the user's state folder, so that nothing is lost
+/// if this process is killed. Fails if no copy can be created. The error is then `reason`, for
+/// which the file could not be replaced by a new one.
 pub fn write_in_place(
     path: &Path,
     original: &Original,

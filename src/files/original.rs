@@ -34,8 +34,9 @@ pub struct Original(Option<(FileId, Vec<u8>)>);
 impl Original {
     /// Reads the file at `path` by the function `read`, and records the file's identity.
     pub fn read(path: &Path, read: impl FnOnce(&Path) -> io::Result<Vec<u8>>) -> io::Result<Self> {
-        // Another file may replace this one between the two calls. The recorded identity is then
-        // that of the old file, so the new file counts as changed, which is safe.
+        // Another file may replace this one after its identity is recorded and before it is read.
+        // The recorded identity is then that of the old file, so the new file counts as changed,
+        // which is safe.
         let found = fs::metadata(path).map_err(in_words)?;
         Ok(Self(Some((id(&found), read(path)?))))
     }

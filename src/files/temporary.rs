@@ -14,7 +14,8 @@ use super::kind;
 
 /// Maximum number of files that are created in the attempt to lock one; after that, writing fails.
 /// Other processes may lock a new file for a moment, while they look for leftover files, but hardly
-/// this many times in a row. The value is a choice.
+/// a hundred times in a row. Without a limit, a program that removes every new file would make the
+/// loop endless.
 const MOST_TRIES: usize = 100;
 
 /// Calls `make`, which creates a file, until the file can be locked, at most [`MOST_TRIES`] times.

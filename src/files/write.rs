@@ -32,8 +32,9 @@ pub enum Purpose<'a> {
     /// Pinhole chose the name of a file in this folder. An existing file is replaced. Links are
     /// followed, unless they lead out of the folder.
     Within(&'a Path),
-    /// Pinhole chose the name of a file in a folder, and has read the file before. It is replaced
-    /// only if it has not changed since, or created if there was none.
+    /// Pinhole chose the name of a file in a folder, and has tried to read the file before. An
+    /// existing file is replaced only if it has not changed since. If there was none, the file must
+    /// be new.
     Again {
         /// The folder that a link must not lead out of.
         within: &'a Path,

@@ -15,8 +15,9 @@ const STEPS: f64 = 255.0;
 
 /// Bound on the rounding errors of converting a channel to sRGB and back, in steps of 8-bit sRGB. A
 /// difference exceeds a tolerance only if it does so by more than this bound, so that rounding
-/// alone never decides. The bound covers roundings of numbers up to 255, below 1e-12, and the gap
-/// in the sRGB curve where its linear part meets its power, at most 3e-8 of the range.
+/// alone never decides. The linear part and the power part of the sRGB curve do not meet exactly:
+/// their gap is up to 3e-8 of the range from black to white, i.e. 8e-6 steps. Other roundings are
+/// below 1e-12 steps.
 const SLACK: f64 = 1e-5;
 
 /// Slope of the sRGB curve at black, where it is steepest, in steps of 8-bit sRGB per unit of

@@ -21,9 +21,9 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     sums.map(|sum| quotient(&sum, samples as f64))
 }
 
-/// Returns sum/count in two steps of long division. `first` is the quotient of the leading parts,
-/// and `rest` the remainder, which is exact except for the rounding when `sum.lo` is added. Only
-/// the last addition rounds the quotient.
+/// Returns `sum`/`count`, rounded only by the last addition. It is computed in two steps of long
+/// division. The first step divides the leading part of `sum`. The second divides the remainder of
+/// the first, which is exact except for the rounding when the trailing part, `sum.lo`, is added.
 fn quotient(sum: &Double, count: f64) -> f64 {
     let first = sum.hi / count;
     let product = two_product(first, count);

@@ -4,18 +4,19 @@ use super::pixels::Film;
 use crate::area::Area;
 
 /// Approximate maximum number of pixel comparisons in the search for a part's position. It bounds
-/// the time of the search; the value is a choice. At each position, between 16 and 400 pixels are
-/// compared, at equal distances in the part.
+/// the time of the search. With fewer comparisons, a wrong position could be found. At each
+/// position, between 16 and 400 pixels are compared, at equal distances in the part.
 const MAX_COMPARED: u64 = 100_000_000;
 
 /// Maximum ratio of the part's squared difference from the whole picture at the best position to
-/// the mean over all positions. Above it, the position counts as unknown. The value is a choice: at
-/// the right position, usual sampling noise leaves a far smaller ratio, and at a wrong one it is
-/// near 1.
+/// the mean over all positions. Above it, the position counts as unknown. At the right position,
+/// usual sampling noise leaves a far smaller ratio; at a wrong one, the ratio is near 1. Any value
+/// well between the two works.
 const MAX_LEFT: f64 = 0.2;
 
 /// Minimum share of the whole picture's area that a part must have. The position of a smaller part
-/// counts as unknown, since few pixels fit at many positions. The value is a choice.
+/// counts as unknown, since few pixels may also fit at a wrong position. The value is a guess at
+/// how many pixels are enough.
 const MIN_SHARE: f64 = 0.05;
 
 /// Finds the position in the whole picture at which a part fits far better than elsewhere. Returns

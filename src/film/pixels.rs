@@ -13,8 +13,8 @@ pub trait Pixel: Copy + Default + Send + Sync {
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
     /// Returns whether the pixel's value is certain, i.e. whether all means within `bound` of
-    /// `light` in each channel are converted to the same value. For 64-bit floats, the 32-bit
-    /// floats in an EXR file are meant.
+    /// `light` in each channel are converted to the same value. Means as 64-bit floats count as
+    /// certain if they give the same 32-bit floats, because EXR files contain those.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
@@ -100,8 +100,8 @@ impl<P: Pixel> Film<P> {
     /// There is not enough memory for the picture.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
         memory::reserve(width, height, size_of::<P>() as u64)?;
-        // This zeroed memory comes from the system, which provides each page only when something is
-        // written to it.
+        // This zeroed memory comes from the system, which allocates each memory page only when
+        // something is written to it.
         Ok(Self {
             width,
             height,

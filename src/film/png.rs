@@ -21,12 +21,13 @@ use crate::area::Area;
 pub const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
 /// Maximum length, in bytes, of all texts that a PNG stores about its scene. Longer texts are not
-/// stored, and not read from a PNG, so that a small file cannot be unpacked to a huge one. The
-/// value is a choice, far above the length of usual scenes.
+/// stored, and not read from a PNG, so that a small file cannot be unpacked to a huge one. Usual
+/// scenes are far shorter.
 pub const TEXT_LIMIT: usize = 1 << 20;
 
-/// Maximum number of overrides (`--set` arguments) that a PNG stores. If there are more, nothing
-/// about the scene is stored. The value is a choice, far above usual numbers.
+/// Maximum number of overrides (`--set` arguments) that a PNG stores. If a picture has more,
+/// nothing about its scene is stored, and a file that contains more is rejected. Users give far
+/// fewer.
 pub const OVERRIDES_LIMIT: usize = 1000;
 
 const SOFTWARE: &str = "Software";

@@ -13,9 +13,9 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Number of bytes at the start of a file in which a picture is searched for. A program may have
-/// printed at most this much text before its picture. The value is a choice, far above usual
-/// messages.
+/// Number of bytes at the start of a file in which a picture is searched for. A program may print
+/// messages before its picture; if they are longer than this, the picture is not found. Usual
+/// messages are far shorter.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
@@ -57,8 +57,8 @@ pub fn after_lines(bytes: &[u8]) -> Option<usize> {
     let start = &bytes[..bytes.len().min(LINES_BEFORE)];
     let feeds = (0..start.len()).filter(|&at| start[at] == b'\n');
     feeds.map(|at| at + 1).find(|&at| {
-        // A line of text may begin as a PNM does, so the picture's width and height must follow,
-        // too.
+        // A line of text may also begin with such letters. It counts as a PNM only if two numbers,
+        // the picture's width and height, follow.
         let mut head = PnmReader::new(&start[at..]);
         is_head(&start[at..]) && head.number().is_ok() && head.number().is_ok()
     })
@@ -409,8 +409,8 @@ impl<'b> PnmReader<'b> {
         }
     }
 
-    /// Returns the bytes after the header of a binary PNM. One white-space character separates
-    /// them.
+    /// Returns the bytes of the pixels in a binary PNM. Exactly one white-space character separates
+    /// the header from the pixels.
     fn after_one_space(&self) -> &'b [u8] {
         self.bytes.get(self.at + 1..).unwrap_or_default()
     }

@@ -40,8 +40,8 @@ pub fn is_picture_behind_lines(bytes: &[u8]) -> bool {
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {
     let format = image::guess_format(bytes).ok()?;
-    // A scene's text may begin with a name that starts with the same two letters as a PNM. In a
-    // PNM, white space or a comment follows them.
+    // A scene's text may begin with a name that starts with the same two letters as a PNM, for
+    // example `P3`. In a PNM, white space or a comment follows the two letters.
     let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
     if format == ImageFormat::Pnm && bytes.get(2).is_some_and(is_word) {
         return None;

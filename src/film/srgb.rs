@@ -20,8 +20,8 @@ pub struct Encoder {
     /// Threshold between each byte k and k + 1: the linear light whose sRGB value is k + 1/2, in
     /// 8-bit steps. From this light on, the byte is k + 1.
     thresholds: [f64; 255],
-    /// Table of bytes at which the conversion starts: for each of the equal intervals of linear
-    /// light, the byte of its lower end.
+    /// Table with the byte of the lower end of each of the equal intervals of linear light. The
+    /// conversion of a light starts from the byte of its interval.
     start: [u8; PARTS + 1],
 }
 

@@ -16,9 +16,9 @@ use super::{
 };
 use crate::schema;
 
-/// Maximum difference between the widths, in characters, of parts of lines that are aligned in one
-/// column. At the first part whose width differs by more, a new column begins. Without a limit, one
-/// wide part would move the values of all short ones far to the right. The number is a choice.
+/// Maximum difference, in characters, between the widths of aligned parts of lines. At the first
+/// part whose width differs by more, a new column begins. Without a limit, one wide part would move
+/// the values after all short ones far to the right. The language's reference states the number.
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
 /// Minimum number of consecutive blocks of one kind, each written on one line, that form a table.
@@ -83,9 +83,11 @@ enum Alignment {
     Definition,
     Object,
     Field,
-    /// The entry is not aligned, but does not end a group.
+    /// The entry is not aligned with others. Entries before and after it may still be aligned with
+    /// each other.
     Unaligned,
-    /// The entry ends a group, so entries before and after it are not aligned with each other.
+    /// The entry is not aligned with others. Entries before it are not aligned with entries after
+    /// it.
     End,
 }
 

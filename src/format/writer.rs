@@ -6,8 +6,8 @@ use super::{
     token_stream::{Before, WIDTH, Word, column_after, ends_line, is_comment, width},
 };
 
-/// Indentation, in blanks, of a block's fields and of the further lines of a value. The number is a
-/// choice.
+/// Number of blanks by which a block's fields, and the further lines of a value, are indented. The
+/// language's reference states the number.
 const INDENT: usize = 2;
 
 /// Returns the formatted text of a file. `entries` are its definitions, blocks and comments.
@@ -23,8 +23,9 @@ pub fn written(entries: &[Entry<'_>]) -> String {
 #[derive(Default)]
 struct LayoutWriter {
     text: String,
-    /// Lines that are not written yet, each with the comments at its end. They are written when all
-    /// lines of their group are known, since the comments of a group are aligned.
+    /// Lines that are not written yet, each with the comments at its end. The comments of
+    /// neighbouring lines start in the same column, so the lines are written only when all of them
+    /// are known.
     waiting: Vec<(String, String)>,
 }
 

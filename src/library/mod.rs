@@ -1,8 +1,8 @@
 //! The library's main types: a text becomes a [`Scene`], and a scene a [`Picture`].
 //!
 //! In: texts, or data that a program has changed. Out: pictures in memory and in files, and
-//! verdicts on pictures of other programs. The work is done by other modules; these types pass only
-//! scenes without mistakes to them. The crate's root exports the names.
+//! verdicts on pictures of other programs. These types check scenes for mistakes before other
+//! modules work on them. The crate's root exports the types.
 
 mod error;
 mod picture;

@@ -24,7 +24,8 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Picture {
     pub(super) content: Content,
-    /// The text of the scene that the picture shows, with its settings. `None` if they are unknown.
+    /// The text of the scene that the picture shows, and its settings in the form of `--set`.
+    /// `None` if they are unknown.
     pub(super) sources: Option<Arc<Sources>>,
 }
 
@@ -152,8 +153,8 @@ impl Picture {
         })
     }
 
-    /// Returns the scene's text and settings in the form in which a PNG stores them. Returns `None`
-    /// if they are unknown.
+    /// Returns the scene's text and its settings (as of `--set`) in the form in which a PNG stores
+    /// them. Returns `None` if they are unknown.
     fn recipe(&self) -> Option<Recipe> {
         let sources = self.sources.as_ref()?;
         let crop = match &self.content {

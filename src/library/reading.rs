@@ -55,8 +55,9 @@ impl Picture {
         })
     }
 
-    /// Returns the picture in the form of one that was read from a file, and the file's compression
-    /// if it is a JPEG. For a rendered picture, nothing is rounded or compressed.
+    /// Returns the picture with the facts about its file, and the file's compression if it is a
+    /// JPEG or a lossy WebP. A rendered picture is treated as a file without rounding or
+    /// compression.
     fn as_read(&self) -> (Cow<'_, film::Picture>, Option<Jpeg>) {
         match &self.content {
             Content::Read(file) => (Cow::Borrowed(&file.picture), file.jpeg),

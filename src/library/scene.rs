@@ -117,7 +117,7 @@ impl Scene {
         &self.warnings
     }
 
-    /// Returns the text and the settings. The places in warnings refer to them.
+    /// Returns the text and the settings, to whose parts the places in warnings refer.
     pub fn sources(&self) -> &Sources {
         &self.sources
     }

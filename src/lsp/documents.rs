@@ -157,7 +157,8 @@ mod tests {
                 assert_eq!(document.line_column(offset), (0, column));
                 assert_eq!(document.offset((0, column)), offset);
             }
-            // Positions at or after the end of their line, and positions after the last line.
+            // A position after the end of its line counts as the line's end, and a position after
+            // the last line as the end of the text.
             for (place, offset) in [((0, 99), 10), ((1, 1), 13), ((2, 0), 14), ((99, 99), 14)] {
                 assert_eq!(document.offset(place), offset);
             }

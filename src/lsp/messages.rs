@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// Maximum number of JSON values in a message. A message with more values is refused, because it
-/// could fill the memory: an object takes about 400 bytes, but possibly only eight bytes of text.
-/// An editor's message stays far below it, even with 40 000 changes of a text.
+/// could fill the memory: a JSON object takes about 400 bytes of memory, even if its text has only
+/// eight bytes. An editor's message stays far below the limit, even with 40 000 changes of a text.
 const MOST_VALUES: usize = 1 << 19;
 
 /// Error: a text is not a valid message.

@@ -216,8 +216,8 @@ impl Server {
         Some(response(id, answer))
     }
 
-    /// Handles a change of a text. If the text had no errors before, moves its scene to `last` and
-    /// drops its frames. Returns the answers to the requests for these frames.
+    /// Handles a change of a text. If the text had no errors before, stores its scene in the field
+    /// `last` and drops its frames. Returns the answers to the requests for these frames.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
             // The text had errors already. Its unfinished frames show the last version without

@@ -23,7 +23,7 @@ pub struct Ball<T: Real> {
 
 /// Factor by which a computed radius of a [`Ball`] is multiplied so that it is certainly not too
 /// small. A radius is computed in `f64` with fewer than 2^12 roundings of 2^−53 each, together less
-/// than 2^−40, by which the factor exceeds 1.
+/// than 2^−41. The factor exceeds 1 by 2^−40, which is more.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// Factor of the bound on the rounding error of a ball's computed midpoint: the bound is four times
@@ -72,8 +72,8 @@ impl<T: Real> Ball<T> {
 
     /// Returns whether the ball's relative error is at most 2^−80, far below that of `f64`. A
     /// computation in a higher precision is then not worthwhile: it would help only with decisions
-    /// that are uncertain in [`Double`](super::Double), and these decisions allow for such an
-    /// error.
+    /// that are uncertain in [`Double`](super::Double), and these decisions allow for an error of
+    /// this size.
     pub fn is_precise(&self) -> bool {
         /// Maximum radius of a precise ball, divided by the absolute value of its midpoint: 2^−80,
         /// which is 27 bits below the unit roundoff of `f64`.

@@ -25,8 +25,8 @@ pub(super) const PRECISION: usize = 320;
 const GUARD: usize = 320;
 
 impl Big {
-    /// Number of bits of a [`Big`]. An integer with more bits is rounded to a multiple of a power
-    /// of two, which is even.
+    /// Number of bits of a [`Big`]. An integer that would need more bits is rounded to an even
+    /// number.
     pub const BITS: i32 = PRECISION as i32;
 
     /// Rounds `x` to the nearest big number.

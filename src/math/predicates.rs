@@ -163,7 +163,8 @@ mod tests {
         assert!(!near.equals(&plane(normal, beside)));
         let tilted = [1.0, 2.0_f64.next_up(), 3.0];
         assert!(!near.equals(&plane(tilted, [0.0, 0.0, 1.75])));
-        // The numbers 0.1, 0.2 and 0.3 are not exact multiples of each other in `f64`.
+        // In `f64`, the numbers 0.1, 0.2 and 0.3 are not exact multiples of each other, so that
+        // this normal is not exactly parallel to (1, 2, 3).
         assert!(!near.equals(&plane([0.1, 0.2, 0.3], far)));
     }
 

@@ -67,7 +67,8 @@ pub trait Real: Clone + Debug + Sized {
 /// 1, and its last bit shows whether the integer is odd.
 pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 
-/// Returns the floor of `x`, that is the greatest integer at most as large. Requires |x| < 2^63.
+/// Returns the floor of `x`, the greatest integer that is not greater than `x`. Requires |x| <
+/// 2^63.
 ///
 /// It replaces `f64::floor`, which is a function call on targets whose baseline has no instruction
 /// for rounding down.

@@ -138,7 +138,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             };
             match event {
                 Ok(event) if self.concerns(&event) => self.settle(),
-                // An event about another file does not delay the check once a second.
+                // The file is checked once a second, and an event about another file must not delay
+                // this check.
                 Ok(_) if since < next_look => continue,
                 _ => {
                     next_look = since + POLL_INTERVAL;

@@ -15,8 +15,8 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Number of columns and of rows of a picture, unless a test sets other numbers. The value is a
-/// choice.
+/// Number of columns and of rows of a picture, unless a test sets other numbers. A larger picture
+/// would make comparisons of all its pixels slower.
 pub const SIZE: u32 = 64;
 
 /// Returns a camera at `eye` that looks at `lookat`. Its other fields have the language's defaults.

@@ -1,8 +1,8 @@
 //! A tracer that decides by the textbook formulas what is seen at a sample point.
 //!
 //! Ray directions have length 1. A triangle is missed if its determinant is nearly zero. The colour
-//! of a checkerboard's square depends on whether the sum of two coordinates, rounded down, is even.
-//! This tracer exists only for comparison with others.
+//! of a checkerboard's square depends on whether the sum of the square's two indices is even. This
+//! tracer exists only for comparison with others.
 
 use glam::{DVec2, DVec3};
 

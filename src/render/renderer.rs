@@ -44,12 +44,13 @@ const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
 /// Side of the squares, in pixels, for which the nearby objects are searched once for all their
 /// samples. Such squares divide areas in which too many objects may be seen to prepare each pixel.
-/// The value is a choice.
+/// Smaller squares would need more searches; larger ones would have more objects nearby, which each
+/// sample has to test.
 const CROWD_SIDE: u32 = 4;
 
 /// Minimum number of a pixel's samples for which the list of objects near a square of pixels is
-/// reduced to the objects near the pixel. With fewer samples, testing each against the longer list
-/// takes less time. The value is a choice.
+/// reduced to the objects near the pixel. With fewer samples, reducing the list would take longer
+/// than testing each sample against all of it.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
 /// Renders the tiles (rectangles of pixels) of a picture. All threads share this data.

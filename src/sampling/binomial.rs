@@ -14,8 +14,9 @@
 use rand::{Rng, RngExt};
 
 /// Maximum number of fair coins whose heads are drawn by counting random bits, 64 per random
-/// number. The time of counting grows with the number of coins. So the heads of more coins are
-/// drawn by transformed rejection, whose time does not grow. The value is a choice.
+/// number. The heads of more coins are drawn by transformed rejection. With a much larger maximum,
+/// counting would be slow, because its time grows with the number of coins. With a much smaller
+/// one, Stirling's formula, which the rejection uses, would be inaccurate.
 const MAX_COUNTED: u64 = 512;
 
 /// Draws the number of successes in `n` trials, each with the success probability `part`/`whole`.

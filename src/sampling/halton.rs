@@ -11,8 +11,8 @@ use std::ops::Range;
 use super::{lattice, rng::Key};
 
 /// Maximum number of points whose radical inverses (mirrored digits) are stored. For pixels with
-/// more points, they are computed point by point. The value is a choice; the stored numbers take 1
-/// MiB.
+/// more points, they are computed point by point, which takes longer. The stored numbers take 1
+/// MiB; a larger maximum would need more memory.
 const MAX_STORED: u64 = 1 << 16;
 
 /// The Halton sequence, with stored radical inverses (mirrored digits) in base 2 and in base 3.
@@ -53,10 +53,10 @@ impl Halton {
     }
 }
 
-/// Returns φ₃(i), the digits of i in base 3 mirrored at the radix point, in units of 2^−64 and
-/// rounded up. Requires i < 3^40. The mirrored digits are collected as a whole number, which is
-/// divided once at the end.
+/// Returns the number i mirrored in base 3: its digits in reverse order behind the radix point
+/// (φ₃(i), the radical inverse). The result is in units of 2^−64 and rounded up. Requires i < 3^40.
 pub fn radical_inverse_3(i: u64) -> u64 {
+    // The mirrored digits are collected as a whole number, which is divided once at the end.
     let (mut rest, mut mirrored, mut power) = (i, 0_u64, 1_u64);
     while rest > 0 {
         mirrored = 3 * mirrored + rest % 3;

@@ -13,7 +13,8 @@ use super::rng::{scale, scale_by_parts};
 const PLACES: u64 = 1 << 53;
 
 /// Maximum number of strata (equal intervals of a pixel's side) that are stored. If there are more,
-/// each is computed when it is used. The value is a choice; the stored numbers take 512 KiB.
+/// each is computed when it is used, which takes longer. The stored numbers take 512 KiB; a larger
+/// maximum would need more memory.
 pub const MAX_STORED: u64 = 1 << 16;
 
 /// Returns the random offset with the index `place`, from 0 to 2^53 − 1.
@@ -33,7 +34,7 @@ pub fn offset(place: u64) -> f64 {
 }
 
 /// Converts 64 random bits to an offset from the pixel's centre. The bits are a fraction of the
-/// pixel's side, counted from the left or top edge.
+/// pixel's side, measured from the left or top edge.
 #[inline(always)]
 pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
@@ -50,9 +51,9 @@ pub struct Strata {
     stored: Vec<Stratum>,
 }
 
-/// One of n strata, i.e. equal intervals of the 2^53 possible places along a pixel's side. The
-/// number is twice the stratum's first place, plus 1 if the stratum has ⌊2^53/n⌋ + 1 places instead
-/// of ⌊2^53/n⌋.
+/// One of n strata, i.e. equal intervals of the 2^53 possible places along a pixel's side. A
+/// stratum has ⌊2^53/n⌋ places or one more. It is stored as one number: twice its first place, plus
+/// 1 if it has one place more.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
 

@@ -181,8 +181,8 @@ impl Sampling {
     /// replaces the content of `out` by them. `count` must be the pixel's [`count`](Self::count).
     /// `range` has the samples' indices, and must not exceed `count`.
     ///
-    /// A call prepares the data that all points of the pixel share. So it should request a few
-    /// thousand points at once, not single ones.
+    /// Each call first prepares data that all points of the pixel share. A caller should therefore
+    /// request a few thousand points at once, not single ones.
     pub fn place(
         &self,
         vectors: SimdWidth,

@@ -14,8 +14,8 @@ use rand::{SeedableRng, TryRng};
 /// golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Number of pairs of random numbers that [`Key::pairs`] generates at a time. The value is a
-/// choice: the pairs fit into 1 KiB.
+/// Number of pairs of random numbers that [`Key::pairs`] generates at a time. Such a batch takes 1
+/// KiB, which fits into the first-level cache of any processor.
 const BATCH: usize = 64;
 
 /// Key that selects a sequence of random numbers: a hash of a seed, a method, and further parts

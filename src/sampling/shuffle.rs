@@ -2,13 +2,15 @@
 
 use super::rng::Key;
 
-/// Maximum length of a permutation whose entries are stored. Such a permutation is chosen with
-/// equal probability among all. For a longer one, each entry is computed by a hash when it is used.
-/// The value is a choice; the entries take 8 KiB.
+/// Maximum length of a permutation whose entries are stored, in 8 KiB. Such a permutation is chosen
+/// with equal probability among all. For a longer one, each entry is computed by a hash when it is
+/// used. A larger maximum would need more memory. A smaller one would use the hash more often,
+/// which does not choose all permutations with equal probability.
 const MAX_STORED: u64 = 1 << 12;
 
-/// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. The
-/// value is a choice.
+/// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. A
+/// smaller one would allocate memory more often. A larger one would take longer to clear for every
+/// pixel.
 const SHORT: usize = 64;
 
 /// Memory for the entries of a short permutation. A [`Shuffle`] borrows it instead of owning it,

@@ -49,8 +49,9 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     /// fewer rounds. Errors that have a fix after the last round are counted as `waiting`.
     const ROUNDS: usize = 1000;
     /// Maximum number of bytes that all rounds of fixes read together, 32 MiB. It bounds the time.
-    /// The number is a choice: a long text gets few rounds, so mistakes that show only after other
-    /// fixes may remain in it.
+    /// A text of 1 MiB gets at most 32 rounds, so a mistake in it that shows only after many other
+    /// fixes may remain. With a larger maximum, fewer mistakes would remain, but the time could be
+    /// longer.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
@@ -133,9 +134,9 @@ impl Problem {
 /// would change the same place, only the first is included; the other is left for the next round.
 struct Round {
     fix: Fix,
-    /// Fixes that lengthen the text, each mapped to the problems that offer it. If all problems of
-    /// a fix remain after it was applied, it is excluded from the next round, since it could be
-    /// applied forever.
+    /// Fixes that lengthen the text, each mapped to the problems that offer it. If all of these
+    /// problems remain after the fix was applied, the fix is excluded from the next round, because
+    /// it could be applied again and again.
     lengthened: HashMap<Vec<Edit>, Vec<Problem>>,
     done: Vec<Done>,
     /// Maps the offset of each edit to the number of bytes by which the edit lengthens the text.

@@ -189,9 +189,10 @@ impl<'s> Override<'s> {
         false
     }
 
-    /// Returns whether the argument's value has no errors if it sets `place`: either a field
-    /// (`Ok`), whose conditions it must meet, or the `let` of a name (`Err`), whose value may use
-    /// only names defined before it. Returns `false` if the budget of comparisons is spent.
+    /// Returns whether the argument's value has no errors if it is assigned to `place`. This is
+    /// either a field (`Ok`), whose conditions the value must meet, or the name of a `let` (`Err`),
+    /// whose value may use only names defined before it. Returns `false` without a check if
+    /// `budget`, the remaining number of name comparisons, is less than the number of items.
     fn suits(
         &self,
         place: Result<&schema::FieldRow, &str>,
@@ -279,8 +280,8 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
 /// Help text for a `--set` target that the scene does not have. It says which targets are possible.
 const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
 
-/// Maximum number of names that a help text lists. If there are more, the help lists none of them.
-/// The number is a choice that keeps the help short.
+/// Maximum number of names that a help text lists. If there are more, the help lists none of them,
+/// since a longer list would no longer be read.
 const FEW: usize = 8;
 
 /// Returns the error for a `--set` target whose block is not in the file and cannot be added.

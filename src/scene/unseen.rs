@@ -99,9 +99,9 @@ impl Outside {
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
     // For a camera that looks straight down, up may be parallel to the view direction, and then the
-    // camera's axes are unknown. Any axes will do: however the window is rotated, its extents along
-    // x and z are at least its shorter side. With the axes chosen here, one of the extents is equal
-    // to it.
+    // camera's axes are unknown. Axes are chosen for which the window's extents along x and z are
+    // its sides. For any other axes, both extents are at least the shorter side, so squares that
+    // are lost with the chosen axes are lost with any.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
@@ -223,12 +223,11 @@ impl Sight {
         n.dot(center - self.eye) + radius < bound - MARGIN * size
     }
 
-    /// Returns whether the plane of a checkerboard at the height h may be visible between the
+    /// Returns whether a checkerboard at the height `height` may be visible between the
     /// depths `near` and `far`.
-    ///
-    /// A ray whose y changes by d per metre of depth hits the plane at the depth (h − e_y)/d, where
-    /// e is the eye.
     fn may_see_plane(&self, height: f64, near: f64, far: f64) -> bool {
+        // A ray that rises by d metres per metre of depth hits the plane at the depth (height of
+        // the plane − height of the eye)/d.
         let above = height - self.eye.y;
         let middle = self.forward.y * above.signum();
         let [across, up] = self.window;
@@ -243,16 +242,16 @@ impl Sight {
         above != 0.0 && most > 0.0 && nearest <= far && farthest >= near
     }
 
-    /// Returns whether nearly all rays hit the board too many squares away from the eye to tell
-    /// squares apart. The coordinate of such a hit, counted in squares, is so large that it has no
-    /// digit left for single squares, and so always counts as even.
-    ///
-    /// A ray of direction r hits a board at the vertical distance h from the eye at the distance
-    /// |r_x|·h/|r_y| along x, and likewise along z. In the window, |r_x| is at most its `extent`,
-    /// and it is less than 2^−10 of the extent in less than a hundredth of the picture. A
-    /// coordinate of [`Big::BITS`] bits or more counts as even; `most` is 2^10 times this, with a
-    /// factor of 2 to spare. If a number overflows or underflows, the comparison is false.
+    /// Returns whether nearly all rays hit the board so far from the eye that the coordinates of
+    /// the hits, counted in squares, have no digits left to tell neighbouring squares apart. All
+    /// such hits count as hits on even squares.
     fn are_lost(&self, board: &Checkerboard) -> bool {
+        // A ray with the direction r hits a board, at the vertical distance h from the eye, at the
+        // horizontal distance |r_x|·h/|r_y| along x, and likewise along z. In the window, |r_x| is
+        // at most its `extent`, and in more than 99 % of the picture, it is at least 2^−10 of the
+        // extent. A coordinate of [`Big::BITS`] bits or more counts as even, and `most` is 2^10
+        // times as large, with a factor of 2 to spare. If a number overflows or underflows, the
+        // comparison is false.
         let [across, up] = self.window;
         let extent = self.forward.abs() + across.abs() + up.abs();
         let height = (board.y - self.eye.y).abs();

@@ -8,12 +8,12 @@ use glam::DVec3;
 use super::types::{Type, Value};
 use crate::math::compare_half_turns;
 
-/// Fields that exclude each other, grouped into ways to express the same thing. A block uses one of
-/// the ways.
+/// Fields that exclude each other. They are grouped into alternative ways to express the same
+/// thing, and a block uses the fields of one way only.
 #[derive(Debug)]
 pub struct Choice {
-    /// The alternative ways, each a list of fields. A block that uses a way must have those of its
-    /// fields whose preset is [`Preset::Alternative`].
+    /// The alternative ways, each a list of fields. In a block that uses a way, a field of this way
+    /// is required if its preset is [`Preset::Alternative`].
     pub ways: &'static [&'static [&'static str]],
     /// Reason, for messages, why a block can use only one of the alternative ways.
     pub why: &'static str,

@@ -36,9 +36,9 @@ pub use tree::Tree;
 
 use crate::{diagnostic::Diagnostic, source::Span};
 
-/// Maximum depth of nested parentheses, signs and calls in a value, so that parsing cannot overflow
-/// its stack. A deeper value is reported as a problem. The number is a choice; a larger one would
-/// need threads with a larger stack.
+/// Maximum depth of nested parentheses, signs and calls in a value. A deeper value is reported as a
+/// problem, because parsing it could overflow the stack. No usual value nests nearly as deep. A
+/// larger maximum would need threads with a larger stack.
 pub const NESTING_LIMIT: usize = 256;
 
 /// Result of parsing.

@@ -58,14 +58,13 @@ pub const STACK_BYTES: usize = 64 << 20;
 
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
 /// shorter value cannot nest deep, since each level takes at least one byte, so it is parsed on the
-/// caller's stack. The number is a choice: most defaults of fields are shorter and need no thread,
-/// and a much longer value could overflow a small stack.
+/// caller's stack. Most defaults of fields are shorter than 32 bytes and need no thread. With a
+/// much larger minimum, a value could overflow a small stack.
 const SHORT_VALUE_BYTES: usize = 32;
 
 /// Minimum number of bytes that pest, the generated parser, reads at a time. It reads on to the
 /// next place where the text can be split. pest keeps all matches of grammar rules in memory until
-/// it has read its part of the text, so a much larger number would take much memory. The number is
-/// a choice.
+/// it has read its part of the text, so a much larger number would take much memory.
 pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.

@@ -49,8 +49,8 @@ impl Scan {
         // open parentheses, and for each open parenthesis the number of minuses before it.
         let (mut minuses, mut outside, mut open) = (0, 0, Vec::new());
         let mut is_told = false;
-        // Number of tokens between two checks for cancellation. The number is a choice: a larger
-        // one would delay cancellation, and a much smaller one would slow the scan.
+        // Number of tokens between two checks for cancellation. A much larger number would delay
+        // cancellation, and a much smaller one would slow the scan.
         const STRIDE: usize = 1 << 14;
         for count in 0_usize.. {
             let token = lexer.token();

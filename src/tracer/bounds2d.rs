@@ -20,10 +20,10 @@ use crate::{
 /// Bounds of an object as seen from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Ranges of X and Y, as in [`Direction`](super::camera::Direction), in which rays hit the
-    /// object.
+    /// Ranges of the components X (to the right) and Y (down) of a ray's direction in which rays
+    /// may hit the object.
     pub across: [Interval; 2],
-    /// Maximum of the object's inverse depth.
+    /// Upper bound of the inverse depths of the object's points.
     pub nearest: f64,
 }
 
@@ -32,9 +32,9 @@ pub struct Extent {
 /// too tight.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum of the numbers from which an object's bounds are computed. If one is smaller, the object
-/// counts as unbounded. The limit keeps rounding errors, 2^−53 of a number, far above 1e-308, below
-/// which `f64` loses digits.
+/// Minimum of the lengths and products of lengths from which an object's bounds are computed. If
+/// one is smaller, the object counts as unbounded. A number of at least this size has rounding
+/// errors of 2^−53 of itself, because it is far above 1e-308, below which `f64` loses digits.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
@@ -59,14 +59,14 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
         let hull = match (&object, shape.cuboid(), corners) {
-            // In an extremely wide view, Z (`ahead`) is so small that products with it may
-            // underflow and lose digits.
+            // In an extremely wide view, the component Z (`ahead`) of all rays' directions is so
+            // small that products with it may underflow and lose digits.
             _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), ..) => of_sphere(sphere, ahead),
             (_, Some(cuboid), _) => of_corners(&cuboid::corners(fast, cuboid), ahead),
             (_, None, Some(corners)) => of_corners(&corners, ahead),
-            // Other kinds of objects have no hull. They get the whole window as bounds, and only
-            // their depth is limited.
+            // Other kinds of objects have no convex hull to bound. They get the whole window as
+            // bounds, and only their depth is limited.
             (_, None, None) => Hull::Unbounded,
         };
         let extent = match hull {
@@ -101,14 +101,13 @@ impl Extent {
     }
 }
 
-/// Returns the bounds of a sphere from its tangents through the eye. `ahead` is the component Z of
-/// all rays' directions.
-///
-/// In the plane of the X (or Y) axis and the Z axis, the ball is a disc with the centre (c, z) and
-/// the radius R. Two lines through the origin are tangent to it. Their slopes are
-///
-/// (c·z ± R·√(c² + z² − R²))/(z² − R²).
+/// Returns the bounds of a sphere as the eye sees it, from the lines through the eye that touch it.
+/// `ahead` is the component Z of all rays' directions.
 fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
+    // In the plane of the X (or Y) axis and the Z axis, the sphere is a circle with the centre (c,
+    // z) and the radius R. Two lines through the origin are tangent to it. Their slopes are
+    //
+    // (c·z ± R·√(c² + z² − R²))/(z² − R²).
     let Some(([x, y, z], radius)) = sphere.ball() else {
         return Hull::Unbounded;
     };
@@ -136,8 +135,9 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     })
 }
 
-/// Returns the bounds of a convex hull from its corners: the slopes X and Y of its points lie
-/// between those of the corners. `ahead` is the component Z of all rays' directions.
+/// Returns the bounds of a convex hull as the eye sees it, from its corners relative to the eye.
+/// The quotients x/z and y/z of the hull's points lie between those of the corners. `ahead` is the
+/// component Z of all rays' directions.
 fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     let mut across = [Interval {
         low: f64::INFINITY,

@@ -38,9 +38,9 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// Returns a + b, or 0 if the sum does not exceed the errors of a and b, at most four roundings
-/// each. With a roll of 45 degrees, components of the camera's axes u and v that should be 0 are
-/// sums of opposite numbers.
+/// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b, at
+/// most four roundings each. It is used to turn the camera's axes u and v by the roll. With a roll
+/// of 45 degrees, some components are sums of opposite numbers, and must become exactly 0.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -115,7 +115,7 @@ pub struct Window<R> {
 }
 
 impl<R: Copy> Window<R> {
-    /// Returns the bounds of |X|, |Y| and Z, in this order.
+    /// Returns the bounds of the components of a ray's direction: of |X|, |Y| and Z, in this order.
     pub fn sizes(&self) -> [R; 3] {
         [self.x, self.y, self.z]
     }
@@ -146,13 +146,13 @@ pub struct Camera<T: Real> {
 /// X and Y are at most 5 · [`UNIT`](Real::UNIT).
 #[derive(Clone, Debug)]
 pub struct Direction<T> {
-    /// X, to the right.
+    /// Component X of the direction, to the right.
     pub x: T,
-    /// Y, down.
+    /// Component Y of the direction, downwards.
     pub y: T,
-    /// Z, ahead.
+    /// Component Z of the direction, ahead.
     pub z: T,
-    /// X² + Y² + Z².
+    /// Squared length of the direction, X² + Y² + Z².
     pub square: T,
 }
 

@@ -28,9 +28,10 @@ pub struct VisibilityCandidate {
     /// Whether every ray through the part of the picture hits the object between the near and the
     /// far plane.
     pub is_whole: bool,
-    /// Interval that contains the inverse depths of everything that may be seen of the object.
+    /// Interval that contains the inverse depths of everything that may be seen of the object. An
+    /// inverse depth is a constant of the camera divided by the depth.
     pub(crate) inverse_depth: Interval,
-    /// Crossings of a ray with the object that may be seen: only the first one, unless the near
+    /// Which of a ray's crossings with the object may be seen: only the first one, unless the near
     /// plane may cut the object.
     pub(crate) crossings: Crossings,
     /// Bounds of the object in the view plane. Outside of them, the object is not seen.
@@ -148,8 +149,8 @@ fn visible_of(
 }
 
 /// Returns the object with the index `index`, classified by how it is seen in the rectangle `patch`
-/// of the view plane. `near` and `far` are the ranges of the inverse depths of the clip planes over
-/// the rectangle. Returns `None` if the object is certainly not seen there.
+/// of the view plane. `near` and `far` are the ranges of the inverse depths of the near and the far
+/// plane over the rectangle. Returns `None` if the object is certainly not seen there.
 pub(super) fn cover(
     world: &World,
     index: usize,
@@ -222,8 +223,8 @@ fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCan
 }
 
 /// Returns whether the object `front` certainly hides the object `back` in the whole rectangle
-/// `patch`. Every ray through the rectangle must hit `front`. The decision compares the forms of
-/// the objects' planes; the result is `false` if `front` or `back` is a sphere.
+/// `patch`. Every ray through the rectangle must hit `front`. The decision compares the inverse
+/// depths of the objects' planes; the result is `false` if `front` or `back` is a sphere.
 pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
     let [a, b] = [front, back].map(|object| f64::object(&world.geometry, object));
     let (a, b) = match (a.surface_kind(), b.surface_kind()) {

@@ -24,10 +24,12 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// Minimum ratio of the denominator ℓ of a board coordinate N/ℓ, a quotient of linear forms, to the
-/// error bound f of ℓ. With a smaller ratio, the coordinate's error counts as unbounded. With e the
-/// error bound of N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ for ratios
-/// from 4 on. The error bound uses the factor 4 instead of 4/3.
+/// Minimum ratio of ℓ to its error bound f, where ℓ is the denominator of a board coordinate N/ℓ, a
+/// quotient of linear forms. With a smaller ratio, the coordinate's error counts as unbounded.
+///
+/// With e the error bound of N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ
+/// for ratios from 4 on. The error bound of the coordinate uses the factor 4 instead of 4/3, which
+/// leaves a margin.
 const MIN_CLEARANCE: f64 = 4.0;
 
 /// Maximum error of a board coordinate, in squares, at which the squares that a pixel shows are
@@ -38,7 +40,8 @@ const MAX_ERROR: f64 = 0.25;
 
 /// Maximum side of a block of pixels at whose corners a board's squares are computed together, in
 /// pixels. It is also the side of the areas with which quartering begins, and must therefore be a
-/// power of two. The value itself is a choice.
+/// power of two. A smaller block would compute more corners per pixel, because a block of n² pixels
+/// has (n + 1)² corners. A larger block would need larger arrays.
 pub(super) const SIDE: usize = 32;
 
 /// Number of entries for the pixel corners in a row of a block of pixels. The row has 33 corners,
@@ -53,8 +56,8 @@ pub struct CheckerPixel {
     /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
     /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
-    /// in a neighbouring square, but only within the error bounds of `squares` of the line between
-    /// both.
+    /// in a neighbouring square, but then it is no farther from the line between both squares than
+    /// the error bounds of `squares`.
     pub(crate) is_certain: bool,
 }
 
@@ -200,8 +203,8 @@ impl BoardBlock {
         }
     }
 
-    /// Calls `each` with the runs of one colour and with the other pixels in row `row`, which lies
-    /// between the rows of corners `above` and `below`. Stops if `each` breaks.
+    /// Calls `each` with the runs of pixels that show one colour, and with the other pixels, in row
+    /// `row`. The row lies between the rows of corners `above` and `below`. Stops if `each` breaks.
     fn row(
         &self,
         row: u32,
@@ -390,23 +393,24 @@ impl CheckerForms {
         }
     }
 
-    /// Returns the least value of the form ℓ (`below`) over the rectangle. Returns `None` if it is
-    /// not clearly positive.
+    /// Returns the least value over the rectangle of the form `below`, the denominator of the
+    /// board's coordinates. Returns `None` if it is not clearly positive.
     fn least(&self) -> Option<f64> {
         let least = self.below.factors[2] - self.below.spread() * UP;
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)
     }
 
-    /// Returns an upper bound of the error of the board coordinate `across`/ℓ, whose absolute value
-    /// is at most `greatest`. ℓ is the form `below`, and its value must be at least `least`.
+    /// Returns an upper bound of the error of the board coordinate whose numerator is `across` and
+    /// whose denominator is the form `below`. `greatest` is the maximum absolute value of the
+    /// coordinate, and `least` the minimum of the denominator.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
         let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
     /// Returns the ranges of the squares in the rectangle, in x and in z, as first and last square.
-    /// A range may have one square too many at each end. Returns `None` if the form ℓ (`below`) is
-    /// not clearly positive or an error is too large.
+    /// A range may have one square too many at each end. Returns `None` if the denominator of the
+    /// board's coordinates is not clearly positive or an error is too large.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));

@@ -20,8 +20,8 @@ use crate::{
 
 /// Maximum number of squares by which the origin of a board's coordinates is moved to the part of
 /// the board that a rectangle shows ([`Checkerboard::local`]). If the part is farther away, the
-/// origin is not moved, because a rounded quotient of this size need not be the nearest whole
-/// number.
+/// origin is not moved: the number of squares is a rounded quotient, and above 2^52 it need not be
+/// the nearest whole number.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -37,7 +37,9 @@ pub struct Checkerboard<T: Real> {
     /// plane. N/ℓ, where ℓ is `below`, is the coordinate in squares, measured from the line between
     /// squares that is nearest to the eye.
     pub across: [Form<T>; 2],
-    /// Whether the sum of the indices of the two lines nearest to the eye, in x and in z, is odd.
+    /// Whether the two colours change places. The board's coordinates are measured from the two
+    /// lines that are nearest to the eye, one in x and one in z. The colours change places if the
+    /// sum of the numbers of these lines, counted from the world's origin, is odd.
     pub odd: bool,
 }
 
@@ -110,14 +112,14 @@ impl<T: Real> Checkerboard<T> {
         Ok(odd)
     }
 
-    /// Expands the board's forms about the direction `center` of a rectangle, to those of
-    /// [`LocalBoard`]. `sides` are the sides of the rectangle in X and Y, which become the unit.
-    ///
-    /// A multiple of the denominator ℓ of the board's coordinates is subtracted from their
-    /// numerators N₀ and N₁, which moves the origin to a nearby corner of squares. The multiple
-    /// makes N₀ and N₁ small at the corner of the rectangle where ℓ is greatest; elsewhere, ℓ may
-    /// be almost 0.
+    /// Returns the board over a rectangle of the view plane, as a function of the offset from the
+    /// rectangle's centre. `center` is the direction through the centre. `sides` are the sides of
+    /// the rectangle in X and Y, the units of the offset.
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
+        // A multiple of the denominator ℓ of the board's coordinates is subtracted from their
+        // numerators N₀ and N₁, which moves the origin to a nearby corner of squares. The multiple
+        // makes N₀ and N₁ small at the corner of the rectangle where ℓ is greatest; elsewhere, ℓ
+        // may be almost 0.
         let local = |form: &Form<T>| {
             let [a, b, _] = form.factors();
             let factors = [a.times(&sides[0]), b.times(&sides[1]), form.at(center).mid];

@@ -76,7 +76,7 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// The sub-pixel's side, in the unit of a direction's X and Y.
+    /// Side of the sub-pixel, in the unit of the components X and Y of a ray's direction.
     pitch: Ball<T>,
 }
 
@@ -109,18 +109,17 @@ impl<T: Real> SubPixelFrame<T> {
         ([a, b, middle], form.rad())
     }
 
-    /// Returns the silhouette of a sphere,
-    ///
-    /// Q = R² r·r − |c × r|² = 0,
-    ///
-    /// where c is the centre, R the radius and r the ray's direction. For an eye on the sphere's
-    /// surface, returns the line c·r = 0 instead.
-    ///
-    /// For an eye outside, returns the line c·r = 0 in addition. No ray on this line hits the
-    /// sphere, but the line separates the conic's two branches, in front of the eye and behind it.
-    /// If the sphere is almost a plane, to a part in 1e200, no precision distinguishes the two
-    /// branches.
+    /// Returns the silhouette of a sphere: the conic on which rays touch it. If the eye is on the
+    /// sphere's surface, returns instead the line that separates the rays into the sphere from the
+    /// others. If the eye is outside, also returns the line on which rays are perpendicular to the
+    /// direction of the centre.
     pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Boundary> {
+        // The conic is Q = R² r·r − |c × r|² = 0, where c is the centre, R the radius and r the
+        // ray's direction. The line is c·r = 0.
+        //
+        // If the eye is outside, no ray on the line hits the sphere, but the line separates the
+        // conic's two branches, in front of the eye and behind it. If the sphere is almost a plane,
+        // to a part in 1e200, no precision distinguishes the two branches.
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {
@@ -158,14 +157,14 @@ impl<T: Real> SubPixelFrame<T> {
         }
     }
 
-    /// Returns the curve of rays that hit two spheres at equal depths, by the spheres' radical
-    /// plane. For a point q of the plane, |q − c|² − R² is equal for both spheres, so that
-    ///
-    /// 2 (c' − c)·q = C' − C,
-    ///
-    /// with the centres c and c', the radius R of each sphere, and C = c·c − R². Returns `None` for
+    /// Returns the curve of rays that hit two spheres at equal depths. Returns `None` for
     /// concentric spheres.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
+        // The curve lies in the radical plane of the spheres. For a point q of this plane, |q − c|²
+        // − R² is equal for both spheres, with the centre c and the radius R of each. With c and c'
+        // the two centres, and C = c·c − R² of each sphere, it follows that
+        //
+        // 2 (c' − c)·q = C' − C.
         let ((c, square), (d, other)) = (a.parts(), b.parts());
         // Each sphere has its own unit of length. The lengths of `b` are converted to the unit of
         // `a`.
@@ -186,16 +185,17 @@ impl<T: Real> SubPixelFrame<T> {
         Some(self.circle(&c, &square, &linear, &h))
     }
 
-    /// Returns the cone of rays through the circle in which the plane n·q = h intersects the sphere
-    /// with the centre c and the radius R. A ray of direction r hits the plane at q = (h/(n·r)) r,
-    /// so that the cone is
-    ///
-    /// |h r − (n·r) c|² = R² (n·r)².
-    ///
-    /// `plane` is n·r as a linear form, and `square` is R². The left side is a sum of squares that
-    /// are small near the circle. The formula therefore does not cancel if the sphere is small and
-    /// far away.
+    /// Returns the cone of rays through the circle in which a plane intersects a sphere. `c` is the
+    /// sphere's centre, and `square` the square of its radius. The points q of the plane satisfy
+    /// n·q = `h`; `plane` is n·r as a linear form, where r is a ray's direction.
     fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Boundary {
+        // A ray of direction r hits the plane at q = (h/(n·r)) r. With the radius R, the cone is
+        // therefore
+        //
+        // |h r − (n·r) c|² = R² (n·r)².
+        //
+        // The left side is a sum of squares that are small near the circle. The formula therefore
+        // does not cancel if the sphere is small and far away.
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
         let outside = sum(offsets.each_ref().map(|x| product(x, x)));
@@ -247,7 +247,7 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // Unit of the rounding errors of the quotients and of their conversion to `f64`.
+    // Maximum relative rounding error of the quotients, and of their conversion to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
     // The error bound covers the roundings of the quotient, and the rounding of the slope to `f64`.
@@ -298,19 +298,20 @@ fn double<T: Real>(x: &T) -> Double {
 
 impl Conic {
     /// Returns an upper bound of the area between the true conic and the computed one, in square
-    /// pixels. All points between them satisfy |F| ≤ ε, where F is the computed form and ε its
-    /// error bound. The result is the least of three bounds of the area of these points:
-    ///
-    /// - By the coarea formula, 2ε · length/(least gradient). A conic in the pixel is no longer
-    ///   than twice the pixel's perimeter.
-    /// - For an ellipse, 2πε/√(AC − B²), the difference of two ellipses' areas. A, B and C are the
-    ///   factors of x², 2xy and y².
-    /// - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg (1973)
-    ///   for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest |F| is at
-    ///   least 1/16: some factor is at least 1/2, and each factor is a combination of values of F.
-    ///   The factor A combines three values with the weights 2, 4 and 2, and the other factors
-    ///   fewer.
+    /// pixels. It is the least of three bounds, because each of them is poor for some conics.
     pub fn doubtful_area(&self) -> f64 {
+        // All points between the two conics satisfy |F| ≤ ε, where F is the computed form and ε its
+        // error bound. The area of these points has three bounds:
+        //
+        // - By the coarea formula, 2ε · length/(least gradient). A conic in the pixel is no longer
+        //   than twice the pixel's perimeter.
+        // - For an ellipse, 2πε/√(AC − B²), the difference of two ellipses' areas. A, B and C are
+        //   the factors of x², 2xy and y².
+        // - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg
+        //   (1973) for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest
+        //   |F| is at least 1/16: some factor is at least 1/2, and each factor is a combination of
+        //   values of F. The factor A combines three values with the weights 2, 4 and 2, and the
+        //   other factors fewer.
         let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
         let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
         let gradient = 2.0 * (libm::hypot(d, e) - 0.5 * turn);
@@ -328,11 +329,11 @@ impl Conic {
     }
 
     /// Returns an interval that contains the values of the conic's form over the pixel.
-    ///
-    /// Extremes lie at corners, or where the derivative vanishes along a side or in all directions.
-    /// An extreme may be computed at an inaccurate position. This hardly matters, because the form
-    /// differs there by half the product of the distance and the gradient, which is almost 0.
     pub fn over_pixel(&self) -> Interval {
+        // Extremes lie at corners, or where the derivative vanishes along a side or in all
+        // directions. An extreme may be computed at an inaccurate position. This hardly matters,
+        // because the form differs there by half the product of the distance and the gradient,
+        // which is almost 0.
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
         let at = |x: f64, y: f64| x * (a * x + 2.0 * (b * y + d)) + y * (c * y + 2.0 * e) + f;
         let mut range = Interval {

@@ -36,7 +36,8 @@ const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 pub struct Patch {
     /// The direction through the rectangle's centre.
     pub center: Direction<f64>,
-    /// Sides of the rectangle, in the unit of a direction's X and Y.
+    /// Width and height of the rectangle, in the unit of the components X and Y of a ray's
+    /// direction.
     pub sides: [f64; 2],
 }
 

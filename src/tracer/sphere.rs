@@ -43,14 +43,17 @@ pub struct Sphere<T: Real> {
     /// Power of two by which an inverse depth in the sphere's own unit is multiplied to give the
     /// inverse depth in the world's unit.
     scale: f64,
-    /// Error bound of Q = R² r·r − |c × r|² ([`Sphere`]) in the camera's window.
+    /// Error bound, in the camera's window, of Q, a quarter of the discriminant of the equation for
+    /// a ray's crossings ([`Sphere`]).
     rad_q: T::Radius,
-    /// Error bound of c·r, the product of the centre and a ray's direction, in the camera's window.
+    /// Error bound, in the camera's window, of c·r, the scalar product of the sphere's centre c and
+    /// a ray's direction r.
     rad_b: T::Radius,
 }
 
-/// Number of roundings of a value of Q ([`Sphere`]), in units of [`Real::UNIT`]. A linear form has
-/// 12 roundings, its square therefore 24, and the sum of squares adds 8.
+/// Number of roundings in a value of Q, a quarter of the discriminant of the equation for a ray's
+/// crossings ([`Sphere`]). A linear form has 12 roundings, its square therefore 24, and the sum of
+/// squares adds 8.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -99,7 +102,9 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns Q and c·r, as in [`Sphere`], for the ray of direction `r`.
+    /// Returns two numbers for the ray of direction `r`: Q, a quarter of the discriminant of the
+    /// equation for the crossings, and the scalar product of the sphere's centre and `r`. Both are
+    /// defined in [`Sphere`].
     #[inline]
     fn discriminant(&self, r: &Direction<T>) -> (Ball<T>, Ball<T>) {
         let [cx, cy, cz] = &self.center;
@@ -108,9 +113,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // After the highest precision, no other is tried. Its errors are therefore bounded for
-            // this ray alone: in the middle of the widest views, they are far smaller than
-            // elsewhere.
+            // The highest precision has to decide, so that its errors are bounded for this ray
+            // alone: in the middle of the widest views, they are far smaller than the bounds for
+            // the whole window.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
@@ -163,9 +168,10 @@ impl<T: Real> Sphere<T> {
         Some(self.exit(&q, &b, r))
     }
 
-    /// Returns the crossing where the ray leaves the sphere, given Q (`q`) and c·r (`b`) as in
-    /// [`Sphere`]. Its inverse depth is computed by one of two equal formulas, the one that does
-    /// not cancel.
+    /// Returns the crossing where the ray leaves the sphere. `q` is a quarter of the discriminant
+    /// of the equation for the crossings, and `b` the scalar product of the centre and the ray's
+    /// direction ([`Sphere`]). Of two equal formulas for the inverse depth, the one that does not
+    /// cancel is used.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
@@ -248,14 +254,17 @@ impl Sphere<f64> {
         self.is_outside().then(|| self.widened(exits()))
     }
 
-    /// Returns the range of the inverse depths at which rays leave the sphere, from the ranges of Q
-    /// and of b = c·r ([`Sphere`]) over a rectangle.
-    ///
-    /// 1/λ = r·r/(b + √Q) = (√Q − b)/(−C)
-    ///
-    /// falls as b grows, where λr is the crossing. If b may be ≤ 0 and the eye is inside, the
-    /// second formula gives the upper bound.
+    /// Returns the range of the inverse depths at which rays leave the sphere, for rays through the
+    /// rectangle `patch`. `q` and `b` are the ranges of two numbers over the rectangle: a quarter
+    /// of the discriminant of the equation for the crossings, and the scalar product of the centre
+    /// and the ray's direction ([`Sphere`]).
     fn exits(&self, q: Interval, b: Interval, patch: &Patch) -> Interval {
+        // The inverse depth at the crossing λr, where r is the ray's direction,
+        //
+        // 1/λ = r·r/(b + √Q) = (√Q − b)/(−C),
+        //
+        // falls as b grows. If b may be ≤ 0 and the eye is inside, the second formula gives the
+        // upper bound.
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
             (at.abs() + half, (at.abs() - half).max(0.0))
@@ -282,12 +291,14 @@ impl Sphere<f64> {
         }
     }
 
-    /// Expands Q and c·r, as in [`Sphere`], about the centre of a rectangle.
-    ///
-    /// The factors of Q consist of the same products as Q, and the rectangle lies within the
-    /// window. Q's error bound therefore counts eight times: once for the value at the centre,
-    /// twice for each of the two gradients, and once for each of the three second derivatives.
+    /// Returns two forms over a rectangle, as functions of the offset from its centre: a quarter of
+    /// the discriminant of the equation for a ray's crossings, and the scalar product of the
+    /// sphere's centre and the ray's direction ([`Sphere`]).
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
+        // The factors of Q, a quarter of the discriminant, consist of the same products as Q, and
+        // the rectangle lies within the window. Q's error bound therefore counts eight times: once
+        // for the value at the centre, twice for each of the two gradients, and once for each of
+        // the three second derivatives.
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
         let (r, [width, height]) = (&patch.center, patch.sides);
@@ -311,10 +322,10 @@ impl Sphere<f64> {
         (q, LocalForm::new(b, 2.0 * self.rad_b))
     }
 
-    /// With c, r, Q and C as in [`Sphere`], the near side has the inverse depth (c·r + √Q)/C.
-    /// Returns 1/C in the world's unit, and a bound on its relative error. Returns `None` if the
-    /// eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4, the relative
-    /// error of 1/C is at most twice that of C.
+    /// Returns the factor 1/C in the inverse depth (c·r + √Q)/C of the sphere's near side
+    /// ([`Sphere`]), in the world's unit, and a bound on the factor's relative error. Returns
+    /// `None` if the eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4,
+    /// the relative error of 1/C is at most twice that of C.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
@@ -422,9 +433,11 @@ fn power<T: Real>(
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Returns upper bounds of the errors of Q and c·r ([`Sphere`]) for rays whose |X|, |Y| and |Z| are
-/// at most `[x, y, z]`. `[cx, cy, cz]` are the absolute values of the centre's coordinates, and
-/// `rad_c` is their error; `square` is R², and `rad_square` its error.
+/// Returns upper bounds of the errors of two numbers ([`Sphere`]): Q, a quarter of the discriminant
+/// of the equation for a ray's crossings, and the scalar product of the sphere's centre and the
+/// ray's direction. The bounds hold for rays whose |X|, |Y| and |Z| are at most `[x, y, z]`. `[cx,
+/// cy, cz]` are the absolute values of the centre's coordinates, and `rad_c` is their error;
+/// `square` is the square of the radius, and `rad_square` its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,

@@ -42,14 +42,15 @@ fn a_roll_into_a_coordinate_plane_is_exact() {
 #[test]
 fn views_along_the_up_vector_are_oriented_like_a_map() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
-    // Each case gives the view direction and the up vector, and then the directions in the world of
-    // the picture's right and top. In the first cases, up is along the y axis.
+    // Each case gives the view direction and the up vector, and then the world directions that
+    // appear to the right and upwards in the picture. In the first cases, the up vector is along
+    // the y axis.
     let cases = [
         ((-y, y), (x, -z)),
         ((y, y), (x, z)),
         ((-y, -y), (-x, z)),
         ((y, -y), (-x, -z)),
-        // In the following cases, up is along the z or the x axis.
+        // In the following cases, the up vector is along the z or the x axis.
         ((-z, z), (x, y)),
         ((z, z), (x, -y)),
         ((-x, x), (-y, -z)),
@@ -64,7 +65,8 @@ fn views_along_the_up_vector_are_oriented_like_a_map() {
     }
 }
 
-/// A positive roll turns the right side of the picture's frame downwards.
+/// A positive roll turns the right side of the picture's frame downwards. After quarter turns, the
+/// camera's axes must be exactly the turned ones.
 #[test]
 fn any_number_of_quarter_rolls_is_exact() {
     let (x, y) = (DVec3::X, DVec3::Y);

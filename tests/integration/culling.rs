@@ -150,8 +150,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut many = String::new();
     for index in 0..4000 {
         let (a, b) = (place(), place());
-        // Triangles of even index lie in the plane y = −z/3, the others in the board's plane. The
-        // normals of the triangles in one plane differ in length.
+        // Triangles of even index lie in the plane y = −z/3, and the others in the board's plane.
+        // The normals of the triangles in one plane differ in length.
         let (centroid, normal) = match index % 2 {
             0 => ((a, b / 2.0, -1.5 * b), (0, 3, 1)),
             _ => ((a, 0.0, b), (0, 1, 0)),
@@ -195,8 +195,8 @@ fn culling_is_exact_for_parallel_layers() {
     for (count, apart) in [(9, 0.1), (33, 0.1), (33, 1e-13), (33, 1e-30), (120, 0.05)] {
         let mut text = "image { width 24 height 18 } camera { eye (0.3, 0.2, 4) lookat (0, 0, 0) roll 10deg }\n".to_owned();
         for index in 0..count {
-            // The layers are not listed in the order of their heights. Every third layer is hidden
-            // by an equal one.
+            // The layers are not listed in the order of their heights. Every third layer has the
+            // same height as another one, so only one of the two is visible.
             let place = f64::from(index * 37 % count);
             let height = 1.0 + apart * (place - place % 3.0 % 2.0);
             let sign = if index % 2 == 0 { "-" } else { "" };
@@ -221,8 +221,9 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
     let mut random = Random::new(12);
     let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     let mut methods = Method::SAMPLED.into_iter().cycle();
-    // In the larger picture, only few objects may be seen in a pixel, so several samples are
-    // compared at once.
+    // Where few objects may be seen in a pixel, the tracer evaluates several samples of the pixel
+    // at once; elsewhere, it traces samples one by one. The pixels of the larger pictures are so
+    // small that few objects may be seen in each, so these pictures test the first way.
     for (roll, clips, size, counts) in [
         (0, "", "width 31 height 23", &[2, 4, 8, 9, 100][..]),
         (0, "near 5.5 far 8", "width 31 height 23", &[1, 3, 16]),
@@ -246,8 +247,8 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
                  triangle {{ centroid -{at} normal {normal} sides (0.1, 0.1, 0.05) color {color} }}"
             );
         }
-        // The additional objects are two equal spheres, of which the first is visible, a sphere
-        // that touches them, and very large spheres.
+        // The additional objects are: two equal spheres, of which the first is visible; a sphere
+        // that touches them; and two very large spheres.
         text += "sphere { center (0, 0, 0) radius 0.7 color red }
             sphere { center (0, 0, 0) radius 0.7 color lime }
             sphere { center (1.4, 0, 0) radius 0.7 color blue }
@@ -257,10 +258,12 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
         let objects = Arc::make_mut(&mut all.objects);
         let (_, others) = scenes.next().unwrap();
         objects.extend_from_slice(&others.objects);
-        // These copies are hidden by the equal objects before them.
+        // A thousand objects are listed a second time. The copies are invisible, because only the
+        // first of equal objects is seen.
         objects.extend_from_within(3500..4500);
-        // Where objects are dense, a single sample of a pixel is traced alone, but many samples are
-        // traced together.
+        // With one sample per pixel, some areas of the picture must be crowded, i.e. show so many
+        // objects that the tracer takes their samples one by one. Otherwise, the pictures below
+        // would not test this way of tracing.
         let world = World::new(&all);
         let parts = Quartering::for_samples(&world, 1.0);
         let flow = parts.parts(

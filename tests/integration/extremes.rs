@@ -25,8 +25,8 @@ use crate::{
 };
 
 /// Number of generated scenes in an exhaustive run, unless the environment variable
-/// `PINHOLE_SCENES` gives another. A normal run renders an eighth of them. It is a compromise: more
-/// scenes find rarer errors, but the tests take longer.
+/// `PINHOLE_SCENES` gives another. A normal run renders an eighth of them. More scenes would find
+/// rarer errors, but the tests would take longer.
 const SCENES: usize = 1200;
 
 /// Number of random samples per pixel whose mean is compared with the exact mean. With 64 samples,
@@ -50,10 +50,10 @@ fn assert_light(film: &Film, text: &str) {
     }
 }
 
-/// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures.
-/// `is_decided` is false if squares and positions may have any magnitude. Only hundreds of bits
-/// could then decide which square a sample hits, so the samples are not compared with the exact
-/// picture.
+/// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures. If
+/// `is_decided` is false, the samples are not compared with the exact picture. This is for scenes
+/// with squares and positions of any magnitude, where only arithmetic of hundreds of bits could
+/// decide which square a sample hits.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));
@@ -156,8 +156,11 @@ fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     }
 }
 
-/// The silhouette of the sphere is a hyperbola whose two branches coincide even in the highest
-/// precision.
+/// The camera looks horizontally, with the eye 1/4 below a sphere. This distance is tiny compared
+/// with the radius, so the sphere nearly touches the eye and looks like a horizontal plane above
+/// it: it covers about half of the pixel. Its silhouette is the upper branch of a hyperbola whose
+/// two branches run close above and below the pixel's middle. For the largest radius, they are only
+/// 1e-154 pixels apart.
 #[test]
 fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     for radius in ["1e3", "1e10", "1e100", "1e200", "1.7976931348623157e308"] {
@@ -168,9 +171,9 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
         );
         let exact = exact(&read(&text));
         let bound = f64::from(exact.bounds[0]);
-        // The eye is h = 1/4 below the lowest point of the sphere, whose radius is R. The view
-        // plane is as high as it is distant. The edge of the sphere then appears √(2h/R) heights
-        // above the middle.
+        // The eye is h = 1/4 below the lowest point of the sphere, whose radius is R. By default,
+        // the window is 2 m high at a distance of 2 m. In the middle column, the silhouette then
+        // appears √(2h/R) window heights above the middle; the assertion allows twice this height.
         let above = libm::sqrt(0.5 / radius.parse::<f64>().unwrap());
         for channel in exact.film.pixels()[0] {
             assert!(

@@ -156,9 +156,9 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
     let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
     assert_eq!(probe.color.to_string(), "#808000");
     assert!(probed(text, -1e300, 1e300).hits.is_empty());
-    // In the worked example, a point of the floor is at twice the coordinates of its image (1,
-    // −1.5) in the view plane. The image is 160 pixels to the right of the picture's centre and 240
-    // pixels above it.
+    // In the worked example, the eye looks down, and a point of the floor is at twice the
+    // coordinates of its image (1, −1.5) in the view plane. The image is 160 pixels to the right of
+    // the picture's centre and 240 pixels above it.
     let worked = example("looking_down_the_y_axis");
     let hits = probed(&worked, 560.0, 160.0).hits;
     let floor = hits

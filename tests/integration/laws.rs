@@ -161,7 +161,7 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
         let (light, bound) = pixel(&one, x, y);
         let (other, other_bound) = pixel(&other, other_x, other_y);
         let difference = difference(light, other);
-        // Each of the two values may have a rounding error.
+        // Each of the two values may have a rounding error, for which `f64::EPSILON` is added.
         let most = bound + other_bound + f64::EPSILON;
         assert!(difference <= most, "{x}, {y}: {difference:e} of {before:?}");
         assert!(bound <= 1e-6, "{x}, {y}: {bound:e} of {before:?}");

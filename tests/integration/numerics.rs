@@ -54,8 +54,8 @@ fn hard_cases_break_the_textbook_formulas_and_stay_within_the_claimed_bound() {
     for row in &table().rows {
         let (id, tally) = (row.case.id, &row.tally);
         match tally.error[1] {
-            // Distances are rounded, so that the last bit is sometimes wrong. An error of 0 would
-            // therefore mean that nothing was measured.
+            // The last bit of a computed distance is sometimes wrong. So an error of 0 would mean
+            // that nothing was measured.
             Some(error) => assert!(error > 0.0 && error <= row.case.bound, "{id}: {error}"),
             // In the case P2, no ray hits the board, so no distance is measured.
             None => assert_eq!(id, "P2"),

@@ -47,8 +47,9 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // Reading takes a second on an idle machine, two seconds on a busy one, and up to four seconds
-    // without optimization. The limits allow for this.
+    // With optimization, reading takes a second on an idle machine, and at most two seconds, the
+    // limit, on a busy one. Without optimization, it takes up to four seconds; the limit is ten, in
+    // case the machine is busy.
     let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
     assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
@@ -209,7 +210,8 @@ fn deeply_nested_values_are_refused_and_long_sums_accepted() {
         };
         open.repeat(100_000) + inner + &close.repeat(100_000)
     });
-    // A delimiter within quotes does not close a list, so these values are deeply nested, too.
+    // A delimiter in quotes does not close a list. So the lists in these texts are nested as deeply
+    // as if the quotes were not there.
     let quotes = ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "];
     let quotes = quotes.map(|piece| piece.repeat(100_000)).into_iter();
     let few_quotes = "( \")\" ".repeat(300);
@@ -262,8 +264,9 @@ fn many_mistakes_and_many_names_are_read_soon(effort: Effort) {
     ] {
         assert!(!read(format!("{CAMERA}{}", lines(wrong))));
     }
-    // To report such a mistake, the program examines the text around it. All mistakes are on one
-    // line, so a program that examined the whole line each time would take quadratic time.
+    // A definition that uses a later one is a mistake. To report it, the program examines the text
+    // around it. All these mistakes are on one line, so a program that examined the whole line each
+    // time would take quadratic time.
     let wrong_order = lines("let aN = bN /* N */ ") + &lines("/* N */ let bN = N ");
     assert!(!read(wrong_order));
     let chain = lines("let aM = aN + 1\n");

@@ -285,7 +285,8 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // The wait is longer than the pause that ends a burst of events.
+    // The wait is longer than the time without events after which a series of events counts as
+    // ended.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);
@@ -299,7 +300,7 @@ fn saving_an_unchanged_text_renders_it_again() {
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.becomes("red");
     watch.says("after the save", 1);
-    // The save replaces the file itself by another file.
+    // This time, the editor saves a new file and renames it to the name of the scene's file.
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.replace(&scene("red"));
     watch.shows("red");

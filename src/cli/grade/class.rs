@@ -77,8 +77,8 @@ impl Class {
         Ok(class)
     }
 
-    /// Adds the students of a folder or zip file. If it contains folders of whole classes, their
-    /// students are added, too.
+    /// Adds the students of a folder or zip file. It may also contain folders of whole classes,
+    /// whose students are then added as well.
     fn add(&mut self, folder: Option<String>, mut tree: FileTree, chosen: Option<&Glob>) {
         for (name, inner) in tree.take_classes() {
             self.add(Some(name), inner, chosen);
@@ -159,9 +159,9 @@ impl Class {
         self.students.extend(students);
     }
 
-    /// Marks the pictures that are equal in every submission as not compared, since they come from
-    /// the assignment's template, and removes other equal files. If no student would keep a
-    /// picture, all students made the same one, so pictures are kept.
+    /// Finds the files that are equal in every submission, since they come from the assignment's
+    /// template. Pictures among them are marked as not compared; other files are removed. If no
+    /// student has any other picture, all students made the same one, so it is kept and compared.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -256,8 +256,9 @@ fn student_of_picture(path: &Path) -> Student {
     }
 }
 
-/// Merges students such as `anna.png` and `anna.cpp` into one: a file that is not a picture goes to
-/// the picture whose name differs only in the extension. Without one, it remains a student.
+/// Merges files with the same name but different extensions into one student. For example,
+/// `anna.cpp` becomes a file of the student with the picture `anna.png`. A file for which there is
+/// no such picture remains a student of its own.
 fn with_companions(students: Vec<Student>) -> Vec<Student> {
     let stem = |student: &Student| {
         let [file] = &student.files[..] else {
@@ -290,18 +291,18 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds the arguments that a shell expanded from a pattern such as `class/*`, so that each of them
-/// is a student, not a class. Returns the folder of each such class, with the names in it that are
-/// arguments. A folder counts as a class if an argument in it is a Git clone, has a name in
-/// Moodle's form or is Gradescope's metadata, or if two of them contain pictures of the same name.
+/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Each of these
+/// arguments is a student, and the folder that contains them is a class. Returns each such folder
+/// with the names of its arguments. A folder counts as a class if one of its arguments is a Git
+/// clone, has a name in Moodle's form, or is Gradescope's metadata file, or if two of its arguments
+/// contain a picture of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // A link is not grouped with other arguments: links named on the command line are followed,
-        // but links inside a class's folder are not. A path such as `..` has no name, so it is not
-        // grouped either.
+        // Links are excluded: a link on the command line is followed, but a link inside a class's
+        // folder would not be. Paths such as `..` are excluded, too, because they have no name.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }

@@ -22,8 +22,8 @@ pub enum Criterion {
     Colours,
     /// Mistakes in the positions of samples or in their average.
     Sampling,
-    /// Mistakes in which of a ray's hits is visible, and all mistakes that belong to no other
-    /// criterion.
+    /// Mistakes in the choice of the visible hit among a ray's hits, and all mistakes that belong
+    /// to no other criterion.
     Hits,
 }
 

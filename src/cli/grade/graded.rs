@@ -62,7 +62,7 @@ impl JudgedPicture {
         self.verdict.kind.word()
     }
 
-    /// Whether the picture is right, except for sampling noise.
+    /// Returns whether the picture is right, except for sampling noise.
     pub fn is_right(&self) -> bool {
         matches!(self.verdict.kind, Kind::Right | Kind::Noise)
     }
@@ -190,7 +190,7 @@ impl GradedStudent {
         Value::Object(fields)
     }
 
-    /// Returns the comment on the picture that the student will read.
+    /// Returns a comment on the picture, for the student to read.
     pub fn comment(&self) -> String {
         let judged = match self.best() {
             Ok(judged) => judged,

@@ -17,8 +17,8 @@ use crate::cli::{
 const SAME_TIME: i64 = 2;
 
 /// Maximum number of a student's pictures that are compared if several are equally new. The others
-/// are listed as not compared. Chosen so that one student with many pictures does not delay
-/// grading.
+/// are listed as not compared. Chosen so that one student with very many pictures does not delay
+/// the grading of a class.
 const MOST_PICTURES: usize = 12;
 
 /// A student's submission.

@@ -23,13 +23,12 @@ use crate::cli::input::is_same_file;
 pub const METADATA: &str = "submission_metadata.yml";
 
 /// Maximum number of files in a folder or zip file on the command line. With more, listing fails.
-/// The limit bounds time and memory if a wrong folder is named. The value is a choice, far above
-/// the number of files of a class.
+/// The limit bounds time and memory if the user names a wrong folder. A class has far fewer files.
 const MOST_FILES: usize = 200_000;
 
 /// Maximum depth of nested folders that are listed. A deeper folder is listed as an error. The
-/// limit bounds the recursion, which could otherwise exhaust the stack. The value is a choice;
-/// submissions are nested far less deeply.
+/// limit bounds the recursion, which could otherwise exhaust the stack. Submissions are nested far
+/// less deeply.
 const DEEPEST: usize = 40;
 
 /// Maximum depth of folders that are recorded by name. At most two levels are needed: folders of

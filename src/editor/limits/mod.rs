@@ -22,8 +22,8 @@ use crate::{
 };
 
 /// Minimum distance from a number to each end of its slider, in steps of the slider. An end is
-/// nearer only if the numbers beyond it are not valid. Chosen by judgment: with far fewer steps,
-/// the range would be narrow; with far more, a short slider would skip steps.
+/// nearer only if the numbers beyond it are not valid. With far fewer steps, the slider's range
+/// would be narrow. With far more, a slider on a small screen could not reach every step.
 const STEPS: f64 = 50.0;
 
 /// Minimum distance from a whole number, such as a count, to each end of its slider, in steps of 1.
@@ -170,7 +170,8 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let reach = middle.abs().max(steps * step);
     let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
     let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    // If not even the next number on either side is valid, the ends stay where they are.
+    // If already the first step in each direction causes an error, the errors say nothing about the
+    // ends, so the ends are not moved.
     let valid = if valid == [None, None] {
         ends
     } else {

@@ -7,14 +7,14 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum cost of all trials (analyses of the text with another number in it) for one answer to
-/// the editor, in bytes of analyzed text. A trial that would exceed it is not made. A choice: at 64
-/// KiB, a text of 1 KiB is tried up to 64 times. More trials would find more ends of sliders in
-/// long texts, but delay the answer.
+/// Maximum cost of all trials for one answer to the editor, in bytes of analyzed text. A trial is
+/// an analysis of the text with another number in it, and is not made if it would exceed the
+/// maximum. With a larger maximum, the limits of sliders in long texts would be found more often,
+/// but the answer could take longer. With 64 KiB, a text of 1 KiB can be tried 64 times.
 const BYTES: usize = 1 << 16;
 
-/// Cost of making one object of a scene, in bytes of text that take as long to analyze. It need
-/// only be roughly right, since it serves to limit the time of an answer.
+/// Cost of making one object of a scene, as the number of bytes of text whose analysis takes
+/// equally long. A rough value suffices, since it serves only to limit the time of an answer.
 const OBJECT: usize = 12;
 
 /// Analyses of a text with another number in place of a literal. Their total cost is limited by
@@ -24,7 +24,7 @@ pub struct Trials<'a, 's> {
     analysis: &'a Analysis<'s>,
     /// Number of errors in the unchanged text.
     errors: usize,
-    /// Cost that further trials may have, in bytes of text that are analyzed.
+    /// Cost of the trials that can still be made, in bytes of analyzed text.
     left: usize,
 }
 
@@ -83,8 +83,8 @@ impl<'a, 's> Trials<'a, 's> {
     /// with which the text has no more errors than now. Uses bisection. Returns `end` if it is
     /// valid or cannot be tried. Returns `None` if already the first step causes an error.
     ///
-    /// If valid and invalid numbers alternate, returns one of the valid numbers that an invalid one
-    /// follows.
+    /// If valid and invalid numbers alternate, returns one of the valid numbers whose next number
+    /// is invalid.
     pub fn last_right(
         &mut self,
         literal: &Literal,
@@ -128,8 +128,9 @@ fn errors(analysis: &Analysis<'_>) -> usize {
 mod tests {
     use super::*;
 
-    /// If n were 14, the second text would contain half a million objects, because its five indices
-    /// all have the count n.
+    /// Searches for the greatest valid n up to 14 in two texts. With n = 14, the second text would
+    /// contain 14^5 objects, half a million, because its five indices all have the count n. Such a
+    /// trial is too expensive, so none is made, and the budget `left` stays at [`BYTES`].
     #[test]
     fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
         let heads = [

@@ -13,9 +13,9 @@ use crate::{
     scene::{Camera, FieldOwner, Lens, Scene, View},
 };
 
-/// Minimum angle between the view direction and the line of the up vector, in radians: one degree.
-/// The pointer cannot tilt the camera beyond it. If the view direction were parallel to the up
-/// vector, the picture would have no defined top; any small angle avoids this.
+/// Minimum angle, in radians, between the view direction and the up vector or its opposite: one
+/// degree. The pointer cannot tilt the camera any closer. If the view direction were parallel to
+/// the up vector, the picture would have no defined top. Any small angle avoids this.
 const POLE: f64 = PI / 180.0;
 
 /// Factor by which the distance from the eye to the pivot, or to the view plane, changes while the
@@ -72,8 +72,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // In both modes, the picture follows the pointer. Hence, the camera turns against the
-            // pointer's movement when it looks around, and with the movement when it orbits.
+            // The picture follows the pointer in both cases. Hence, a camera that looks around
+            // turns against the pointer's movement, and a camera that orbits turns with it.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {

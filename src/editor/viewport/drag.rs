@@ -44,9 +44,9 @@ pub struct Drag<'a> {
     pub to: DVec2,
     /// Axis or plane along which the handle moves; `None` if it follows the pointer freely.
     pub along: Option<Along>,
-    /// If the drag snaps to a grid, the maximum distance in the picture, in pixels, between
-    /// neighbouring positions of the handle. The grid is the coarsest one that allows this: the
-    /// changed numbers become multiples of a power of ten.
+    /// Maximum distance in the picture, in pixels, between neighbouring positions of the handle if
+    /// the drag snaps to a grid; `None` if it does not snap. On the grid, the changed numbers are
+    /// multiples of a power of ten, the greatest one that keeps the positions this close.
     pub step: Option<f64>,
 }
 

@@ -78,9 +78,10 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
         .collect()
 }
 
-/// Ratios of one field's change to the largest change on the same axis that are recognized when a
-/// dragged point changes several fields together. The ratio is 1 for two vertices of a triangle,
-/// which move alike, and ±1/2 for the `center` of a box whose `size` changes.
+/// Ratios of one field's change to the largest change on the same axis. If each change on an axis
+/// has one of these ratios, the changes are rounded together, so that the ratios remain exact. The
+/// ratio is 1 for two vertices of a triangle, which move alike, and ±1/2 for the `center` of a box
+/// whose `size` changes.
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
 /// Maximum difference between a field's change and one of [`RATIOS`] times the largest change,
@@ -100,9 +101,10 @@ pub struct DecimalRounding {
     exact: Vec<f64>,
 }
 
-/// Rounds changes to `decimals` decimals. If the changes on one axis have the ratios [`RATIOS`],
-/// the largest change is rounded, and the others become the same multiples of it as before. So the
-/// points of the object that the pointer does not drag stay exactly in place.
+/// Rounds changes to `decimals` decimals. If each change on an axis is the largest change on this
+/// axis times one of [`RATIOS`], the largest change is rounded, and the others become the same
+/// multiples of it as before. So the points of the object that the pointer does not drag stay
+/// exactly in place.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
@@ -157,8 +159,8 @@ impl DecimalRounding {
     fn number(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // If the ratio is 1/2, half of the rounded amount may have one decimal more than the
-            // amount.
+            // An amount that is half of a rounded amount, as [`RATIOS`] allows, may have one
+            // decimal more than `decimals`.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }
@@ -178,7 +180,7 @@ fn decimals_of(number: f64) -> i32 {
 }
 
 /// Returns a copy of the object or camera `owner` in which the fields of `changes` have their new,
-/// rounded values. Returns `None` if it does not have one of the fields.
+/// rounded values. Returns `None` if `owner` lacks one of these fields.
 pub fn rounded(
     owner: FieldOwner,
     changes: &[FieldChange],

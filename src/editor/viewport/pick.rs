@@ -13,8 +13,8 @@ use crate::{
 };
 
 /// Maximum number of samples of a pixel that [`samples`] returns; further ones are left out. It
-/// limits the length of the answer to the editor. 65 536 points are far more than a drawing of one
-/// pixel can show apart.
+/// limits the length of the answer to the editor. A drawing of one pixel cannot show 65 536 points
+/// separately, so nobody misses further ones.
 pub const MOST_SAMPLES: u64 = 1 << 16;
 
 /// Maximum number of samples of a pixel for which [`samples`] renders the pixel. If the pixel has

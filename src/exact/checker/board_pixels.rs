@@ -15,9 +15,9 @@ use super::{
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
 /// Maximum number of lines between a board's columns, or between its rows, that may cross a pixel
-/// of a batch. A pixel that more lines cross is computed alone. There is a batch for each pair of
-/// the two numbers of lines, and few pixels have more lines. Not critical: with 8 or 128, the
-/// measured running time changes by at most about 10 %.
+/// of a batch. A pixel that more lines cross is computed alone. There is one batch for each pair of
+/// a number of column lines and a number of row lines, and few pixels have more lines. Not
+/// critical: with 8 or 128, the measured running time changes by at most about 10 %.
 const MAX_LINES: usize = 32;
 
 /// A pixel that shows only a checkerboard.
@@ -97,8 +97,8 @@ impl BoardBatches {
 
 impl Batch {
     /// Computes the queued pixels, calls `emit` with each and its integral, and empties the queue.
-    /// `crossing` has the number of lines between columns of the board that cross each pixel, and
-    /// the number of those between rows, the smaller number first.
+    /// `crossing` holds how many lines between columns of the board cross each pixel, and how many
+    /// lines between rows do, the smaller number first.
     fn compute(
         &mut self,
         crossing: [usize; 2],
@@ -184,8 +184,8 @@ mod tests {
         fn it_is_what_clipping_square_by_square_gives(
             place in prop::array::uniform2(-9.0..9.0_f64),
             offset in prop::sample::select(vec![0.0, 1e6, -1e12]),
-            // The camera's height and the side of a square are powers of ten, and `height` and
-            // `square` are the exponents.
+            // The test draws the camera's height and the side of a square as powers of ten.
+            // `height` and `square` are the exponents.
             height in -1.0..2.0_f64,
             square in -1.0..3.0_f64,
             yaw in 0.0..360.0_f64,

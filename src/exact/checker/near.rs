@@ -19,10 +19,11 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// Maximum number of corners that cutting may add to the rest of a polygon, the part from which no
-/// squares are cut yet. With more corners, the area of the rest is added to the error bound, and
-/// cutting ends. Exact cuts add at most two corners, both on the last line. Many more show that the
-/// lines are closer to each other than rounding errors, so that cutting is useless.
+/// Maximum number of corners that cutting may add to a polygon. Squares are cut off the polygon one
+/// after another, and each cut changes what is left. If this has more corners, cutting ends, and
+/// its area is added to the error bound. Exact cuts add at most two corners, both on the last line.
+/// Many more show that the lines are closer to each other than rounding errors, so that cutting is
+/// useless.
 const MAX_EXTRA_CORNERS: usize = 32;
 
 /// Maximum absolute value of a board coordinate, in squares, in a polygon that is cut into squares.
@@ -31,8 +32,9 @@ const MAX_EXTRA_CORNERS: usize = 32;
 const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
-/// pixels. Returns 0 with the polygon's area as the bound if the budget does not afford the rows or
-/// the picture is cancelled. A row whose squares the budget does not afford contributes 0 to the
+/// pixels. The polygon is cut into the rows (or columns) of the board, and each row into squares.
+/// Returns 0 with the polygon's area as the bound if the budget does not afford the rows or the
+/// picture is cancelled. If the budget does not afford the squares of a row, the row adds 0 to the
 /// value and its area to the bound.
 pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
     let mut tally = CompensatedSum::default();

@@ -186,7 +186,8 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
 }
 
 /// Order s of the exponential integral F_s ([`integrals`]) that is computed first. F_4 and F_5
-/// follow from F_3 by a recurrence; the Fourier modes need only these three.
+/// follow from F_3 by a recurrence. No other orders are needed, because the sums over an edge's
+/// crossings use only the exponents 3, 4 and 5.
 const ORDER: u32 = 3;
 
 /// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the
@@ -278,22 +279,22 @@ fn at_step(terms: &Expansion, step: f64) -> Complex {
     })
 }
 
-/// Computes the Taylor series of the exponential integral F_3 about points from 3 to 64, and
-/// returns them in ascending order. They are computed in descending order: the value at each point
-/// comes from the series of the next greater point, a `STEP` above. Errors decay on the way down:
-/// they follow the differential equation below without its −1, so that they are proportional to
-/// y^(s−1), whereas F_s grows about like 1/y.
-///
-/// (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) give the differential
-/// equation
-///
-/// y·F_s′ = (s − 1 − iy)·F_s − 1
-///
-/// The coefficients c_k about y therefore satisfy a recurrence, from whose right side 1 is
-/// subtracted if k = 0:
-///
-/// (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1
+/// Computes the Taylor series of the exponential integral F_3 ([`integrals`]) about points from 3
+/// to 64, and returns them in ascending order.
 fn expansions() -> Vec<Expansion> {
+    // The series are computed in descending order: the value at each point comes from the series of
+    // the next greater point, a `STEP` above.
+    //
+    // (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) give the differential
+    // equation
+    //
+    // y·F_s′ = (s − 1 − iy)·F_s − 1.
+    //
+    // Errors satisfy this equation without the −1, so that they are proportional to y^(s−1),
+    // whereas F_s grows about like 1/y. They therefore decay on the way down. The coefficients c_k
+    // about y satisfy a recurrence, from whose right side 1 is subtracted if k = 0:
+    //
+    // (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1.
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
     let mut value = asymptotic(LARGE);
     let about = |middle: u32| {

@@ -60,11 +60,12 @@ pub(super) struct BoardLanes {
     many: FormRows,
     below: FormRows,
     /// Sign for each pixel: 1 if the pixel's first square has the board's first colour, −1 if it
-    /// has the second. The first square is the one with the smallest number in each family of
-    /// lines.
+    /// has the second. The first square is the one in the first of the pixel's columns of squares
+    /// and in the first of its rows.
     sign: Lanes,
-    /// Number of the square at each corner of the pixel, for each pixel. Squares are counted across
-    /// the family of lines with fewer lines, from the smallest number in the pixel.
+    /// Numbers of the squares at the four corners of each pixel. Of the board's two families of
+    /// lines (columns and rows), squares are counted in the direction that crosses the family with
+    /// fewer lines in the pixel. The square with the smallest number has the number 0.
     squares: [Lanes; 4],
 }
 
@@ -123,9 +124,10 @@ impl LaneSums {
 }
 
 impl BoardLanes {
-    /// Sets the board of the pixel in lane `place`, of eight. The board has two families of
-    /// parallel lines, 0 and 1; `families` lists both, the one with fewer lines in the pixel first.
-    /// `first[k]` is the smallest number of a square in the pixel, counted across family k.
+    /// Sets the board of the pixel with the index `place`, from 0 to 7. A board has two families of
+    /// parallel lines, between columns (0) and between rows (1). `families` lists the two, the one
+    /// with fewer lines in the pixel first. `first` has the smallest number of a column, and of a
+    /// row, of squares in the pixel.
     pub fn set(
         &mut self,
         place: usize,

@@ -122,8 +122,8 @@ pub fn length(a: &V) -> N {
     dot(a, a).sqrt()
 }
 
-/// Returns the sum of the absolute values of a vector's components. It is an upper bound of the
-/// vector's length. A number that is far smaller counts as negligible.
+/// Returns the sum of the absolute values of a vector's components, an upper bound of the vector's
+/// length. Results that are far smaller than this size count as rounding errors.
 pub fn size(a: &V) -> N {
     abs(&a[0]) + abs(&a[1]) + abs(&a[2])
 }

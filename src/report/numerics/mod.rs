@@ -66,9 +66,9 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, Thr
         let (block, at) = (index / count, (index % count) as usize);
         let inputs = BLOCK.min(inputs_per_case - block * BLOCK);
         let random = &mut CaseRng::new(cases[at].id, block);
-        // By its count of inputs, a tally decides for which of them errors are measured. Each block
-        // of inputs has its own tally, so that the decision does not depend on how the threads
-        // share the blocks.
+        // A tally measures errors for every 16th of its inputs, by its own count. Each block of
+        // inputs has its own tally, so that the choice does not depend on how the threads share the
+        // blocks.
         let mut tally = CaseTally::default();
         cases[at].ask(random, inputs, &mut tally);
         tallies[at] = tallies[at].plus(tally);

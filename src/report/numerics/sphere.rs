@@ -39,8 +39,9 @@ fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();
     let depth = random.whole(16, 400);
-    // The ray through the upper edge of the row has the slope (32 − row)/64, so it goes through the
-    // point where the sphere touches the plane.
+    // The slope of a ray changes by 1/64 from row to row. The ray through the upper edge of the row
+    // `row` has the slope (32 − row)/64, so it goes through the point where the sphere touches the
+    // plane.
     let y = depth * (f64::from(SIZE) / 2.0 - f64::from(row)) / 64.0;
     let radius = random.whole(1, 80) / 8.0;
     let side = random.sign();

@@ -85,14 +85,14 @@ pub(super) struct Trial {
 }
 
 /// Number of inputs per measurement. For every input, it is tested whether the right object is
-/// seen. For one in 16, the errors of the distance and of the point are also measured, which takes
-/// longer. The value is a choice: it gives many measurements at little cost.
+/// seen. For one in this number, the errors of the distance and of the point are also measured,
+/// which takes longer. With 16, there are many measurements, and they take little of the time.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Average number of searches for a boundary between colours per search with the oracle. The other
-/// searches use Pinhole's answers. The oracle also finds boundaries that Pinhole does not see, but
-/// a search with it takes about six times as long as testing the inputs beside the boundary. With
-/// 8, such searches take less than half of the time.
+/// Boundaries between colours are searched by Pinhole's answers or, once in this number of searches
+/// on average, by the oracle's (the reference). The oracle also finds boundaries that Pinhole does
+/// not see, but its search takes about six times as long as testing the inputs beside the boundary.
+/// With 8, the oracle's searches take less than half of the time.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
@@ -242,9 +242,9 @@ impl Trial {
             // and the next pixel.
             low = high;
         }
-        // The interval is bisected until its ends are neighbouring `f64`s. Near 0, these are
-        // extremely dense, so there are at most 130 bisections, after which the interval is shorter
-        // than any useful distance.
+        // The interval is bisected until its ends are neighbouring `f64`s. Near 0, `f64`s are
+        // extremely dense, so there are at most 130 bisections. The interval is then shorter than
+        // any useful distance.
         for _ in 0..130 {
             let middle = low + (high - low) / 2.0;
             if middle == low || middle == high {

@@ -24,8 +24,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns whether this method may be as fast as the `fastest` one. This is so if the time of
-    /// one of them is within the range of the other's single runs.
+    /// Returns whether this method may be as fast as the `fastest` one, since the measurements do
+    /// not distinguish them: the time of one lies within the range of the other's single runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
@@ -117,7 +117,7 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // At the index `enough` and after it, all measured errors are small enough.
+        // Index of the first number of samples from which on all measured errors are small enough.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
@@ -161,9 +161,9 @@ impl MethodSeries {
 }
 
 /// Returns the least number n·n or n·(n + 1) that is at least `per_pixel`, for an integer n.
-/// Multi-jittered sampling divides the pixel into a grid of as many cells as samples. For other
-/// numbers, the grid may be far from square (for a prime number, it is one row), and the error
-/// larger than interpolated.
+/// Multi-jittered sampling divides the pixel into a grid of as many cells as samples. For such a
+/// number, the grid is nearly square; for others, it may be far from square (for a prime number, it
+/// is one row), and the error may then exceed the interpolated one.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
     let next = root + 1.0;

@@ -1,5 +1,5 @@
 //! Line styles of the sampling methods in a chart: colours, markers and dashes. Methods whose lines
-//! are usually close to each other differ in each of these.
+//! usually lie close to each other differ in all three.
 
 use std::io;
 

@@ -8,8 +8,9 @@ use crate::{
 };
 
 /// Maximum work of counting the pixels with several colours, in units of about 50 ns, i.e. about
-/// two seconds in all. When it is used up, the remaining pixels count as having a single colour.
-/// The value is a choice: two seconds are little beside the usual time of a report, 45 s.
+/// two seconds in all. When it is used up, the remaining pixels count as having a single colour. A
+/// usual report takes 45 s, so the user hardly notices two more; with less work, more pixels would
+/// remain uncounted.
 const MAX_WORK: u64 = 40_000_000;
 
 /// Shares, from 0 to 1, of the pixels that show more than one colour. Only in these pixels can a

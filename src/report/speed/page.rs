@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// Maximum width and height of the whole picture on the page, in pixels. A larger picture is
-/// reduced, so that the file stays small. The value is a choice.
+/// reduced, so that the file stays small. This size still shows the objects clearly.
 const WHOLE: [u32; 2] = [640, 480];
 
 /// Returns the HTML page. It has a section for each scene.

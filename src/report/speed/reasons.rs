@@ -58,8 +58,8 @@ fn compared(measured: &Measurement, error: f64) -> Option<String> {
     })
 }
 
-/// Compares the exact method with the fastest sampling method: how many samples per pixel this one
-/// takes in the same CPU time.
+/// Compares the exact method with the fastest sampling method: says how many samples per pixel the
+/// sampling method takes in the CPU time of the exact method.
 fn in_exact_time(measured: &Measurement) -> Option<String> {
     let exact = measured.exact_estimate(1.0)?;
     let most = measured.series.iter().filter_map(|series| {

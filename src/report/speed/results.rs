@@ -99,8 +99,8 @@ pub struct EndSlope {
 
 impl EndSlope {
     /// Minimum steepness of the slope, i.e. value of −`slope`, for the report to say that more
-    /// samples help. A smaller value may come from noise in the measurement. The value is a choice,
-    /// far below the steepness of independent samples, 0.5.
+    /// samples help. A smaller value may come from noise in the measurement. The steepness for
+    /// independent samples, 0.5, is far above the minimum.
     const LEAST: f64 = 0.05;
 
     /// Returns the factor by which the error falls if there are four times as many samples,
@@ -117,8 +117,9 @@ impl EndSlope {
 }
 
 /// Returns the last three elements of a method's results, or all if there are fewer. The first
-/// results would distort the slope: with few samples, errors fall differently for some methods. For
-/// example, `scatter` leaves pixels empty, and `n_rooks` falls more steeply than later.
+/// results would distort the slope, because with few samples, the errors of some methods fall
+/// differently. For example, `scatter` leaves pixels without samples, and the error of `n_rooks`
+/// falls faster at first than later.
 pub fn end<T>(points: &[T]) -> &[T] {
     &points[points.len().saturating_sub(3)..]
 }
@@ -192,8 +193,8 @@ impl MethodSeries {
     }
 
     /// Returns the number of samples per pixel that takes the CPU time `cpu`. It is interpolated
-    /// linearly between the measured numbers, and not less than the least or more than the greatest
-    /// of them. Returns `None` if nothing was measured.
+    /// linearly between the measured numbers. Below the least measured number, that number is
+    /// returned; above the greatest, the greatest. Returns `None` if nothing was measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
         let slower = |pair: &&[SeriesPoint]| pair[1].typical().cpu > cpu;

@@ -32,18 +32,19 @@ use crate::{
 
 /// Minimum and maximum length of the series 1, 4, 16, … of samples per pixel, if the user does not
 /// choose the numbers. Slopes are taken from the last three numbers. With at least four, they leave
-/// out one sample per pixel, whose error is untypical. The maximum, up to 4^9 samples, is a choice;
-/// the time usually ends the series earlier.
+/// out one sample per pixel, whose error is untypical. The maximum allows up to 4^9 samples per
+/// pixel, but the time limit usually ends the series earlier.
 const RUNGS: (usize, usize) = (4, 10);
 
 /// Usual and maximum number of runs of each render, if the user does not choose it. The series of
 /// samples is continued only if there is time for the usual number. With three runs, the median
-/// ignores one that other load on the machine delayed. The maximum is a choice.
+/// ignores one that other load on the machine delayed. With more than nine, the report would take
+/// longer for hardly better medians.
 const RUNS: (u64, u64) = (3, 9);
 
 /// Number of samples per pixel of the slowest method in the pictures by which the page compares
-/// methods. The other methods get the same CPU time. The value is a choice: with 16, the methods
-/// differ visibly, and noise is still visible.
+/// methods. The other methods get the same CPU time. With 16, noise is still visible, and so are
+/// the differences between the methods.
 const SHOWN: u64 = 16;
 
 /// Makes the measurement that the request describes. Calls `progress` after each timed render with
@@ -180,10 +181,10 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Returns whether to continue with four times as many samples, for which all methods together
-    /// will take about the time `next`. This is always so for the first numbers (the minimum in
-    /// [`RUNGS`]). After them, there must be time for all runs, and a method whose error is still
-    /// above the least requested one.
+    /// Returns whether to continue with four times as many samples. `next` is the estimated time of
+    /// all methods together with this number. The first numbers, as many as the minimum in
+    /// [`RUNGS`], are always measured. More are measured only if there is time for all runs, and if
+    /// a method's error is still above the smallest requested error.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
         let error = |series: &MethodSeries| Some(series.points.last()?.typical().error);
@@ -222,7 +223,7 @@ impl Benchmark<'_> {
 
     /// Renders the pictures by which the page compares the sampling methods. All take about the
     /// same CPU time, which is that of the slowest method with about [`SHOWN`] samples per pixel.
-    /// The same area is kept of each picture.
+    /// Of each picture, the same small area is stored.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
@@ -305,13 +306,13 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// Maximum width and height, in pixels, of the area by which the page compares the methods. It is
-/// so small that several magnified pictures fit beside each other. The values are a choice.
+/// Maximum width and height, in pixels, of the area by which the page compares the methods. Several
+/// areas, magnified, must fit beside each other on the page; a smaller area would show fewer edges.
 const PART: (u32, u32) = (48, 27);
 
 /// Minimum share of the pixels of an area that show another object than its most frequent one. With
-/// less, the area counts as having no edge, and another one is preferred for comparing the methods.
-/// The value is a choice.
+/// less, the area counts as having no edge, and another area is preferred for comparing the
+/// methods. The value is a guess at how much of an edge must be visible.
 const OTHER_OBJECT: f64 = 0.1;
 
 /// Returns the area in which the page compares the methods. Areas without background that show an

@@ -7,8 +7,8 @@ use super::{
     summary::{self, heading, notes, printable, verdict},
 };
 
-/// Maximum length of a line of text, in characters. Longer lines are wrapped. The value is a
-/// choice.
+/// Maximum length of a line of text, in characters. Longer lines are wrapped, because they are hard
+/// to read.
 const WIDTH: usize = 100;
 
 /// Returns the measurement as text: a line about the scene and the machine; a table and a

@@ -132,9 +132,10 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Returns a third coordinate for an example of a vector, of which `x` and `y` are given. The
-/// greater of the two is chosen, because a triangle with sides of these three lengths exists. If
-/// both are 0, the result is 1, because a zero vector has no direction.
+/// Returns an example of the missing third coordinate of a vector whose other coordinates are `x`
+/// and `y`. Chooses the greater of the two, because the vector may hold the sides of a triangle,
+/// and a triangle with these three sides exists. If both are 0, returns 1, because a zero vector
+/// has no direction.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {
@@ -144,9 +145,9 @@ fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     })
 }
 
-/// Returns the vector that four numbers mean if two of them are one number with a decimal comma, as
-/// in `(1,5, 2, 3)`: that comma is the only one without a space behind it. Returns `None` if there
-/// is no such comma, or more than one.
+/// Interprets four numbers as a vector in which one number was written with a decimal comma, as in
+/// `(1,5, 2, 3)`. The decimal comma is the only one without a space after it. Returns `None` if
+/// there is no such comma, or more than one.
 fn with_decimal_comma(elements: &[Element<'_>], texts: &[&str]) -> Option<String> {
     let is_tight = |pair: &[Element<'_>]| match pair {
         [one, other] => one.value.span.end + 1 == other.value.span.start,

@@ -310,8 +310,8 @@ fn and_here(problem: &mut Diagnostic, span: Span) {
         return;
     }
     /// Maximum number of further uses of an undefined name that get a label. Each label shows a
-    /// line of the text, so many labels would hide the first use. The number is a choice; a
-    /// somewhat larger or smaller one would do.
+    /// line of the text, so a much larger number would hide the first use. Any similar number would
+    /// do.
     const MOST: usize = 20;
     if problem.labels.len() <= MOST {
         let message = "and here".to_owned();

@@ -38,7 +38,8 @@ pub struct Names<'s> {
     /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
     /// `for i < 8`.
     pub(super) indices: HashSet<&'s str>,
-    /// Number of comparisons of names that are left for all searches for the nearest name.
+    /// Remaining number of name comparisons, shared by all searches for the defined name most
+    /// similar to an undefined one.
     budget: ComparisonBudget,
     /// Problems of undefined names. They are kept apart because some of the other problems are
     /// discarded when a value is evaluated again.
@@ -180,11 +181,12 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, for a search for the nearest one. Subtracts the
-    /// search from the budget of comparisons, and returns `None` if the budget is spent.
+    /// Returns the names that are defined so far, among which the one most similar to an undefined
+    /// name is searched for. Subtracts the comparisons of this search from their remaining number.
+    /// Returns `None` if fewer remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants, with which every search also
-        // compares. An estimate is enough, because it is only subtracted from a budget.
+        // compares. An estimate is enough, because it only limits the number of searches.
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)
@@ -197,7 +199,8 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the budget of comparisons in searches for the nearest name.
+    /// Returns the remaining number of name comparisons, shared by all searches for the defined
+    /// name most similar to an undefined one.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }

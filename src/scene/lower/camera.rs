@@ -54,8 +54,8 @@ impl<'s> Lowering<'s> {
                     .at(eye_place, "the eye")
                     .help("move one of them, or give a `direction` instead of `lookat`")
                     .report(&mut self.problems);
-                // An editor shows the correct parts of a scene with errors. Without a view, it
-                // shows no camera.
+                // An editor shows those parts of a scene that have no errors. The camera has no
+                // view direction, so it is left out.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -115,9 +115,11 @@ impl<'s> Lowering<'s> {
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // For a camera that looks along up, `level_direction` returns a direction whose component
-        // perpendicular to up is the top of the picture, or the opposite of the top. Only the
-        // direction of `up` matters; it is scaled so that its square does not overflow.
+        // If the camera looks along up, only the direction `level_direction(up)` decides what is at
+        // the top of the picture. `across` is the component of this direction that is perpendicular
+        // to up. The picture's top is `-across` if the camera looks along up, and `across` if it
+        // looks against up. Only the direction of `up` matters; it is scaled so that its square
+        // does not overflow.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);

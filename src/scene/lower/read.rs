@@ -18,8 +18,8 @@ use crate::{
 };
 
 /// Number of bytes at the start of a file that are searched for zero bytes, which show that the
-/// file is binary rather than text. The number is a choice: a larger one finds zero bytes further
-/// down, but takes longer.
+/// file is binary rather than text. A larger number would find zero bytes further down in a file,
+/// but the search would take longer. Binary files usually have some near their start.
 const BINARY_BYTES: usize = 1 << 14;
 
 /// Reads a scene: parses the file and the `--set` arguments, and converts them to a scene.

@@ -286,7 +286,8 @@ impl<'s> Lowering<'s> {
     /// Evaluates a value, but reports only its undefined names.
     fn evaluate_quietly(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         if let ValueKind::Name(name) = value.kind {
-            // The name may be the word of a method, which only a field for methods accepts.
+            // A name that is neither defined nor a colour may be that of a sampling method. It is
+            // then read as a method, and not reported as undefined.
             let is_known = self.names.place(name).is_some() || css::color(name).is_some();
             if !is_known && matches!(wanted, None | Some(Type::Method)) {
                 return schema::method(name).map(Value::Method);

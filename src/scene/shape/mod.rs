@@ -39,7 +39,8 @@ pub enum Shape {
     Checkerboard(Checkerboard),
 }
 
-/// Evaluates an expression for the struct in a [`Shape`], such as [`Sphere`], whichever kind it is.
+/// Evaluates an expression with the struct that a [`Shape`] contains, such as [`Sphere`]. The same
+/// expression is used for all kinds of shapes.
 macro_rules! for_each_kind {
     ($shape:expr, $own:ident => $result:expr) => {
         match $shape {

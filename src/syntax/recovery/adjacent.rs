@@ -153,7 +153,7 @@ impl<'s> Recovery<'_, 's> {
         let end = self.here().start;
         // Maximum length, in bytes, of the text between `start` and the `)`. In a longer text,
         // nothing is searched or reported. A value is searched again for each of its surplus `)`,
-        // so the limit bounds the time. The number is a choice; values are usually much shorter.
+        // so the limit bounds the time. Usual values are much shorter.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {
             return false;

@@ -16,9 +16,9 @@ use crate::{
     },
 };
 
-/// Maximum number of tokens that are searched for the `?` of a conditional expression, such as
-/// `a > b ? c : d`. An expression whose `?` comes later is not recognized as a condition. The
-/// number is a choice; the limit bounds the time of the search.
+/// Maximum number of tokens that are searched for the `?` of a conditional expression, such as `a >
+/// b ? c : d`. An expression whose `?` comes later is not recognized as a condition. The limit
+/// bounds the time of the search; the text before a `?` is usually shorter.
 const CONDITION_TOKENS: usize = 24;
 
 /// Position where a comment of another language may start. It decides which tokens start one: `#`,
@@ -259,7 +259,8 @@ impl<'s> Recovery<'_, 's> {
     /// rest.
     pub(super) fn nested_comment(&mut self) -> bool {
         // Maximum number of tokens that are searched for the `*/` that was meant to end the
-        // comment. The number is a choice; the limit bounds the time of the search.
+        // comment. If it comes later, the text is not recognized as the rest of a comment. The
+        // limit bounds the time of the search.
         const ENOUGH: usize = 64;
         let start = self.here().start;
         let before = self.text.get(..start).unwrap_or_default();
@@ -285,8 +286,8 @@ impl<'s> Recovery<'_, 's> {
     /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
         // Number of bytes at the start of the file that are searched for the strings by which a
-        // kind of foreign file is known. The number is a choice; the limit bounds the time for a
-        // large file.
+        // kind of foreign file is known. Such strings usually occur near the start. The limit
+        // bounds the time for a large file.
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');

@@ -81,8 +81,8 @@ impl<'s> Recovery<'_, 's> {
     fn open_block(&mut self, mut block: Block<'s>) {
         // Maximum number of blocks within one another that are read; blocks further inside are
         // skipped. The language has no blocks within blocks, but reading them allows reports about
-        // mistakes in the inner ones. The number is a choice; a limit is needed because each level
-        // takes stack.
+        // mistakes in the inner ones. A limit is needed because each level takes stack; a somewhat
+        // larger one would do, too.
         const DEEPEST: usize = 3;
         block.open = Some(self.bump());
         if self.blocks == DEEPEST {
@@ -314,7 +314,8 @@ impl<'s> Recovery<'_, 's> {
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        // If no item follows, another token than `}` may have been meant.
+        // If no item follows, another token than `}` may have been meant, so the fix would not be
+        // certain.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
         // If a block without its `{` was reported shortly before, the `}` may close that block, so
         // there is no fix.

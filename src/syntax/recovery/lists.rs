@@ -16,7 +16,7 @@ use crate::{
     },
 };
 
-/// The numbers of values that are allowed in a list.
+/// Range of the number of values that a list may have.
 type PartCount = RangeInclusive<usize>;
 
 /// A list as it was written.

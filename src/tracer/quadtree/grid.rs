@@ -44,12 +44,13 @@ pub struct BoundedObject {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Nearness(u32);
 
-/// The conversion from X and Y to units of the grid.
+/// Conversion from the components X and Y of a ray's direction to units of the grid.
 #[derive(Clone, Copy, Debug)]
 pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// First unit of the camera's window on each axis; no point outside of the window is looked up.
+    /// First grid unit of the camera's window on each axis. No point outside of the window is
+    /// looked up in the quadtree.
     low: [u32; 2],
     high: [u32; 2],
 }
@@ -143,8 +144,8 @@ impl CellGrid {
         (((x - self.least) * self.per_unit) as u32).min(LAST)
     }
 
-    /// Returns the units of a direction's X and Y. Returns `None` if the direction is outside of
-    /// the window.
+    /// Returns the grid units of the components X and Y of a ray's direction. Returns `None` if the
+    /// direction is outside of the window.
     #[inline]
     pub(super) fn units(&self, r: &Direction<f64>) -> Option<[u32; 2]> {
         let at = [self.unit(r.x), self.unit(r.y)];
@@ -152,8 +153,9 @@ impl CellGrid {
         (is_within(0) && is_within(1)).then_some(at)
     }
 
-    /// Converts ranges of X and Y to a rectangle of the grid, widened by one unit on each side and
-    /// clipped to the window. Returns `None` if the rectangle lies outside of the window.
+    /// Converts ranges of the components X and Y of a ray's direction to a rectangle of the grid,
+    /// widened by one unit on each side and clipped to the window. Returns `None` if the rectangle
+    /// lies outside of the window.
     fn ends(&self, ranges: [Interval; 2]) -> Option<Rectangle> {
         let low = [0, 1].map(|i| {
             let low = self.unit(ranges[i].low).saturating_sub(1);

@@ -41,8 +41,8 @@ impl Quadtree {
     }
 
     /// Calls `visit` with the objects that a ray may hit, from the largest cell down, until `visit`
-    /// fails. `visit` returns a rounded inverse depth; objects that are nowhere nearer are hidden
-    /// and are skipped. Returns `None` if the direction is outside of the window.
+    /// fails. `visit` returns the rounded inverse depth of the nearest crossing so far; objects
+    /// entirely behind it are skipped. Returns `None` if the direction is outside of the window.
     #[inline]
     pub fn visit<E>(
         &self,
@@ -53,9 +53,9 @@ impl Quadtree {
     }
 
     /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, in
-    /// file order. `behind` is called with an object that fills the rectangle, and returns a
-    /// rounded inverse depth; objects that are nowhere nearer are hidden and are left out. Returns
-    /// `None` if too many objects are found, certainly more than `most`.
+    /// file order. `behind` is called with an object that fills the rectangle, and returns the
+    /// rounded inverse depth that the object reaches everywhere; objects entirely behind it are
+    /// left out. Returns `None` if too many objects are found, certainly more than `most`.
     pub fn within(
         &self,
         patch: &Patch,

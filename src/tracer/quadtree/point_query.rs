@@ -10,8 +10,8 @@ use super::{
 
 impl Cells {
     /// Calls `visit` with the objects that the ray through a point may hit, until `visit` fails.
-    /// `visit` returns a rounded inverse depth; objects that are nowhere nearer are hidden and are
-    /// skipped.
+    /// `visit` returns the rounded inverse depth of the nearest crossing so far; objects entirely
+    /// behind it are skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -38,8 +38,8 @@ impl Cells {
 }
 
 /// Calls `visit` with the objects of one list that the ray through a point may hit, the nearest
-/// first. Stores in `hidden` the rounded inverse depth that `visit` returns, and stops at the first
-/// object that is nowhere nearer.
+/// first. `visit` returns the rounded inverse depth of the nearest crossing so far, which is stored
+/// in `hidden`. Stops at the first object that is entirely behind it.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[BoundedObject],

@@ -18,11 +18,12 @@ pub(super) struct Search<'a, F> {
     rectangle: &'a Rectangle,
     /// Maximum number of entries in `found`. An object has an entry for each cell that lists it.
     most: usize,
-    /// Function that is called with an object that fills the rectangle. It returns a rounded
-    /// inverse depth; objects that are nowhere nearer are hidden.
+    /// Function that is called with an object that fills the rectangle. It returns the rounded
+    /// inverse depth that the object reaches everywhere in the rectangle. Objects entirely behind
+    /// this depth are hidden.
     behind: F,
     /// Rounded inverse depth that an object found so far reaches everywhere in the rectangle.
-    /// Objects that are nowhere nearer are hidden.
+    /// Objects entirely behind this depth are hidden.
     hidden: Nearness,
     found: Vec<BoundedObject>,
 }

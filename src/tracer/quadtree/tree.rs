@@ -51,7 +51,7 @@ impl Cells {
         tree
     }
 
-    /// Lists the objects of `stack` from the index `start` on in a cell and in all cells below it.
+    /// Adds the objects in `stack[start..]` to the lists of a cell and of all cells below it.
     fn divide(
         &mut self,
         cell: usize,

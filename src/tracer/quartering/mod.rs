@@ -26,7 +26,8 @@ use super::{
 use crate::area::Area;
 
 /// Side of the squares of pixels with which quartering of a picture begins, in pixels. It is a
-/// power of two, so that quarters of a square are squares; the value itself is a choice.
+/// power of two, so that quarters of a square are squares. It equals the maximum side of a block of
+/// pixels whose checkerboard is computed at once.
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
 /// Minimum number of samples per candidate object in an area of pixels that is quartered further.

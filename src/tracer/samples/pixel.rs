@@ -95,7 +95,8 @@ pub(super) enum Depth {
     /// The greatest of the inverse depths of several planes, given by the start and the end of
     /// their range in [`PreparedPixel::planes`].
     Greatest([usize; 2]),
-    /// The near side of a sphere, with the inverse depth (b + √q) · `factor`.
+    /// The near side of a sphere. Its inverse depth is (b + √q) · `factor`, where b and q are the
+    /// values of the forms `b` and `q`.
     Sphere {
         q: LocalQuadratic,
         b: LocalForm,

@@ -28,7 +28,8 @@ const MAX_ERROR: f64 = 1e250;
 
 /// Maximum number of lines between squares through a pixel at which the signs of the lines' forms
 /// give the colours. With more lines, a division finds the square of each sample. Measured: from 3
-/// to 12, the render time does not change; with division alone, figure 9.9 takes 11 % longer.
+/// to 12, the render time does not change; with division alone, figure 9.9, the picture of the
+/// assignment, takes 11 % longer.
 const MAX_LINES: usize = 6;
 
 /// Error of a preparation that fails, so that the pixel's samples must be traced one by one.
@@ -174,9 +175,9 @@ impl PreparedPixel {
         Ok(met)
     }
 
-    /// Returns the colour pattern of a checkerboard in a pixel: by lines if the squares in the
-    /// pixel are known and few, otherwise by division. Fails if an error bound exceeds
-    /// [`MAX_ERROR`].
+    /// Returns how the colour of a checkerboard is found at the samples of a pixel. If the squares
+    /// in the pixel are known and few, it is found from the signs of the lines between them,
+    /// otherwise by a division for each sample. Fails if an error bound exceeds [`MAX_ERROR`].
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
@@ -195,9 +196,10 @@ impl PreparedPixel {
         }
     }
 
-    /// Adds the lines between a board's squares that may cross the pixel to the pixel's lines, and
-    /// returns the colour pattern. `x0` to `x1` and `z0` to `z1` are the ranges of the squares in
-    /// the pixel. With more than [`MAX_LINES`] lines, adds none and returns a pattern by division.
+    /// Adds those lines between a board's squares that may cross the pixel to the pixel's lines.
+    /// Returns how the colours are found: from the signs of these lines. If there are more than
+    /// [`MAX_LINES`] lines, adds none, and the colours are found by a division for each sample.
+    /// `x0` to `x1` and `z0` to `z1` are the ranges of the squares in the pixel.
     fn lines(
         &mut self,
         squares: &CheckerForms,
@@ -213,9 +215,9 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // The form of line k has the sign of x/square − k, or of z/square − k for lines of
-                // constant z. If it is positive in the whole pixel, the pixel lies beyond the line,
-                // where the parity changes.
+                // `line` is the form of the line with the number k between squares: a positive
+                // multiple of x/square − k, or of z/square − k. If it is positive in the whole
+                // pixel, the pixel lies beyond the line, where the parity changes.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}

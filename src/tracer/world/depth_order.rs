@@ -48,9 +48,9 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // The depth of a surface in one of the two clip planes is certainly different from that of the
-    // other plane, unless the two planes are equal. It is therefore enough to test whether the
-    // surface lies in either plane.
+    // A surface in one of the two clip planes certainly has another depth than the other clip
+    // plane, unless the two planes are equal. It is therefore enough to test whether the surface
+    // lies in either plane.
     let at = (index, crossing.part);
     // Planes may differ only after hundreds of bits. Only the highest precision finds this out, but
     // preparing objects in it takes long, so that it is tried last.

@@ -274,7 +274,7 @@ impl World {
     ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // Rounded inverse depth of the nearest crossing so far. Objects that are nowhere nearer are
+        // Rounded inverse depth of the nearest crossing so far. Objects entirely behind it are
         // hidden.
         let mut hidden = Nearness::NONE;
         let visit = |index| {

@@ -23,9 +23,9 @@ type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
 
 /** Pauses before attempts to reconnect, in ms. They grow to spare the machine; the last repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
-/** Time without a message before a test request, and longest wait for its reply, in ms. */
+/** Silence of the server, in ms, after which the page sends a test request. */
 const QUIET = 700;
-const HANGING = 1200;
+const HANGING = 1200; // wait for the reply, in ms, after which it is reported as late
 
 /** Prefix of the ids of the page's own requests. Those of the language client have none. */
 const OWN = "page-";
@@ -52,7 +52,7 @@ class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Number of the latest attempt to connect. Events of earlier attempts are ignored. */
   private current = 0;
-  /** Times of the last message and the open test request; (`hangs`) whether its reply is late. */
+  /** Times of the last message and (`asked`, else 0) of a test request without a reply yet. */
   private heard = 0;
   private asked = 0;
   private hangs = false;

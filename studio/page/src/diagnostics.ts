@@ -55,7 +55,7 @@ const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message,
 function fix(action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit?.changes?.[editor.uri] ?? [];
-  // Range of a made-up value within the text of the first edit.
+  // A fix may insert a made-up value. This is its range within the text of the first edit.
   const [value]: [number, number][] = action.data?.values ?? [];
   return {
     name: visible(action.title),

@@ -25,7 +25,7 @@ const freshId = () => `${Date.now()} ${Math.random()}`;
 let id = freshId();
 /** Whether a draft is stored under the key of this page. */
 let isKept = false;
-/** Drafts that must still be stored, by key. For null, the stored draft must be deleted. */
+/** Drafts that must still be stored, by key. If it is null, the stored draft must be deleted. */
 const due = new Map<string, Draft | null>();
 /** Draft restored last. It stays stored until it is saved, so that Undo does not lose it. */
 let restored: Draft | null = null;

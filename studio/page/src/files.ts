@@ -32,7 +32,7 @@ class Scene {
   /** Initial text of a new scene, which need not be saved; null if the scene comes from a file. */
   untouched: string | null = null;
 
-  /** `of` is the scene that this one, its copy, replaces as soon as the copy is saved. */
+  /** `of` is the scene that this one is a copy of. The copy replaces it as soon as it is saved. */
   constructor(public name = "scene.scn", readonly of: Scene | null = null) {}
 
   /** Last known content of the file, or the initial text if there is no file. */
@@ -50,7 +50,7 @@ const SLOW = 800;
 const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 
-/** Maximum number of differing lines that are looked for; beyond it, two texts differ wholly. */
+/** Maximum number of differing lines to search for; with more, all lines count as differing. */
 const MOST_CHANGES = 3000;
 
 /** The host's file and local files. A page without a host has only local files. */
@@ -60,9 +60,9 @@ class Files {
   onLeave: () => void = () => {};
   /** Whether the host has sent its scene to this page. */
   isTold = false;
-  /** Text, with the content it is based on, that was restored before the host sent its scene. */
+  /** Text that was restored before the host sent its scene, and the file content it began from. */
   private early: { base: string | null | undefined; text: string } | null = null;
-  /** The scene of the host's file, and (`at`) the scene that the page shows. */
+  /** The scene of the host's file; `at` is the scene that the page shows, which may be another. */
   private hosts = new Scene();
   at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
@@ -342,7 +342,7 @@ export function withEndsOf(file: string, text: string): string {
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
-/** Compares two texts. Returns the lines from the first difference to the last, plus two around. */
+/** Compares two texts. Returns the lines from the first to the last difference, with two around. */
 export function difference(one: string, other: string): DifferenceLine[] {
   const lines = compared(one.split("\n"), other.split("\n"));
   const differs = ({ sign }: DifferenceLine) => sign !== " ";

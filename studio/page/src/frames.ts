@@ -25,7 +25,7 @@ const COARSE_PIXELS = 320 * 180;
 const MOST = { pixels: 16_000_000, side: 8192 };
 /** Pause in a drag, in ms, before finer pictures are requested: a little over a screen refresh. */
 const HAND_RESTS = 20;
-/** Time of a final picture, in ms, so short that no sharp picture is requested before it. */
+/** If the last final picture took at most this time, in ms, no sharp one precedes the next. */
 const SOON = 200;
 
 /** A requested picture: its text, and the number of the request. */
@@ -33,7 +33,7 @@ interface Asked { doc: Text | null; generation: number }
 
 class Frames {
   onShow: (shown: Shown) => void = () => {};
-  /** Called with `good` or `broken` (has errors) for the newest text, or a request's error. */
+  /** Called with the state of the newest text (`broken`: it has errors), or a request's error. */
   onState: (state: "good" | "broken" | Error) => void = () => {};
   /** Called when a drag ends. */
   onRest: () => void = () => {};

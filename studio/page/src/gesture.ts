@@ -35,7 +35,7 @@ function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // With this long delay, all changes are joined, except isolated ones, whose time counts as 0.
+      // The delay is so long that only isolated changes and `joinToEvent` divide changes for Undo.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -61,7 +61,7 @@ export function rewrite(view: EditorView, change: TransactionSpec, past: Extensi
 /** Changes of the text by a drag or slider. The result depends only on the text at the start and on
  * the last change. If something else changes the text, no further change is made. */
 export class Gesture {
-  /** Text at the start, current text, and (`written`) the changes from the first to the second. */
+  /** Text at the start; `current` is the text now, and `written` the changes between the two. */
   readonly base: Text;
   private current: Text;
   private written: ChangeSet;

@@ -107,7 +107,7 @@ async function pick(offset: number, picked: string, gesture: Gesture): Promise<v
   const range = editor.range(offset, offset + length);
   const ways = await editor.askCurrent<ColorPresentation[]>(
     "textDocument/colorPresentation", { color, range });
-  // The server lists the form of the written colour first.
+  // Of the new colour's possible forms, the server lists the form of the old colour first.
   const way = ways?.[0];
   if (way !== undefined) gesture.write({ from: offset, to: offset + written.length,
     insert: way.label });

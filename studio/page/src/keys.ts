@@ -9,7 +9,7 @@ import { selection } from "./selection";
 import { say } from "./status";
 import { tools, type Tool } from "./tools";
 
-/** Step of an arrow key, in pixels of the picture; a mere choice. Control makes it a tenth. */
+/** Step of an arrow key, in pixels of the picture; with Control, a tenth for fine movements. */
 const KEY_STEP = 10;
 /** Pause, in ms, that ends a drag by keys or wheel; longer than between repeats of a held key. */
 const KEY_PAUSE = 500;

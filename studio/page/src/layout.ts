@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** Least and greatest share of the text in the page's width or height, in %; no side vanishes. */
+/** Least share of the text, and of the picture, in the page, in %, so that neither vanishes. */
 const LEAST = 20;
 const MOST = 80;
 

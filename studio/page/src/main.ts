@@ -26,7 +26,7 @@ import { mapSliders, refreshSliders, stop } from "./sliders";
 import * as status from "./status";
 import { setText } from "./visible";
 
-/** Delay, in ms, before hints, sliders and objects are requested, so not at each typed letter. */
+/** Delay after a change, in ms, before hints, sliders and objects are requested: a typing pause. */
 const REST = 150;
 
 editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls,
@@ -123,7 +123,7 @@ let waiting: HostedFile | null = null;
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
   const first = !files.isTold;
-  // A slider that is playing counts as a drag, so it would delay the file for ever.
+  // Playing stops: a playing slider counts as a drag, so it would delay the file for ever.
   stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;

@@ -7,7 +7,7 @@ import type { Point } from "./protocol";
 /** Minimum zoom, in screen pixels per pixel, at which pixels are sharp squares; chosen by eye. */
 const SQUARES = 3;
 const MOST_ZOOM = 64;
-/** Margin between the whole picture and its area's border, in screen pixels; a mere choice. */
+/** Margin around the whole picture in its area, in screen pixels, so that its edge is visible. */
 const MARGIN = 12;
 
 class Picture {

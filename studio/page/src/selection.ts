@@ -30,7 +30,7 @@ class Selection {
   /** Number of selections made so far. It shows if a newer one was made before an answer came. */
   choices = 0;
   private placed: Placed[] = [];
-  /** Object that was chosen among those of its block. If null, nothing is selected for now. */
+  /** Object chosen in a repeated block; null if the user chose to select nothing. */
   private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");

@@ -172,7 +172,7 @@ fn standard_input_is_a_picture_or_a_scene() {
 fn different_sizes_are_reported_with_a_remedy() {
     let folder = folder();
     save(&folder, "b.png", image::RgbImage::new(48, 32));
-    // The crop belongs to a render that is larger than the scene's picture.
+    // The crop comes from a picture that is rendered larger than the scene says.
     render(&folder, "-o c.png --set image.width=200 --crop 150,5,40,30");
     compare(
         &folder,

@@ -107,7 +107,8 @@ fn jpeg_compression_is_not_reported_as_wrong() {
 
 #[test]
 fn a_mistake_is_found_in_front_of_pixel_sized_squares() {
-    // Behind the box, the squares of the board are about as large as a pixel.
+    // Behind the box, the squares of the board are about as large as a pixel, so their colours
+    // change from pixel to pixel. The wrong size of the box must be found nevertheless.
     let scene = "image { width 96 height 64 }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sampler { method exact }
@@ -132,7 +133,7 @@ fn objects_are_judged_by_their_own_pixels() {
     let found = json(&folder, "b.png a.scn");
     assert_eq!(found["mistakes"][0]["id"], "mirrored", "{found:#}");
     all_are(&found, false);
-    // A few pixels of the background are changed.
+    // Four pixels of the background are changed.
     let mut picture = open(&folder, "a.png").to_rgb8();
     for (x, y) in [(3, 3), (5, 3), (9, 4), (4, 7)] {
         picture.put_pixel(x, y, Rgb([(20 * x) as u8, 255, 7]));

@@ -69,10 +69,10 @@ fn camera_of(scene: &Scene) -> CameraFacts {
     inspect(scene, &sources("").file).camera
 }
 
-/// Returns the position in space of a handle of the first object. If the handle's position depends
-/// on the camera, returns that of the object itself. The handle of a checkerboard is on the
-/// vertical line through the point where the view axis meets the board before the drag, which the
-/// scene `held` contains.
+/// Returns the position in space of a handle of the first object. For a handle without a fixed
+/// position, such as one that depends on the camera, returns the object's centre. The handle of a
+/// checkerboard is above or below the point where the camera's view axis met the board before the
+/// drag; `held` is the scene before the drag.
 fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -144,7 +144,7 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
 
 /// Returns whether the apex of a triangle appears in the direction of the point `to`, as seen from
 /// the centroid. Also returns `true` if the apex or `to` is less than a pixel from the centroid,
-/// since the direction is then uncertain.
+/// because rounding then affects the direction too much.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let middle = project(scene, triangle.centroid);
     let shown = overlays(scene, &ShownObjects::First(None));
@@ -189,8 +189,8 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The drag may also have changed the camera, if the camera uses the name of the moved
-        // value.
+        // If the camera uses the name of the moved value, the drag has also changed the camera. The
+        // handle is compared with the pointer in the old camera, for which the drag was computed.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);
@@ -229,7 +229,8 @@ proptest! {
         }
     }
 
-    /// A drag of the camera never makes a text invalid.
+    /// A drag of the camera never makes a text invalid. It keeps the objects and the image, and an
+    /// orbit also keeps the distance from the `lookat` point.
     #[test]
     fn a_camera_drag_keeps_objects_and_image_and_an_orbit_its_distance(
         text in any_scene(), from in any_point(), to in any_point(),
@@ -280,7 +281,8 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
             along: None,
             step,
         };
-        // A drag is refused if a face would pass the opposite face. The text then stays as it is.
+        // A drag that would move a face past the opposite face is refused, and the text stays as it
+        // is.
         text = dragged(&text, &moved).unwrap_or(text);
         shapes.push(read(&text).objects[0].shape);
     }
@@ -305,7 +307,8 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
             .iter()
             .flat_map(move |face| steps.map(|step| (text, face, step)))
     }) {
-        // In this text, the centre and the size use the same name, so a drag along y changes both.
+        // In a text that begins with `let`, the centre and the size use the same name, so a drag
+        // along y changes both.
         if text.starts_with("let") && handle.ends_with('y') {
             continue;
         }

@@ -86,9 +86,9 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Queries each beginning of an example at its end, and the whole example at every offset. Also
-/// queries the example without one byte or one part, as while a user rewrites a line. Examples have
-/// much in common, so that only every second offset of each is queried.
+/// Queries beginnings of an example at their ends, and the whole example at the same offsets: every
+/// second one, because the examples are similar. Also reads the example without one byte, and
+/// queries it without eight characters in a row, as it is while a user rewrites a line.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);

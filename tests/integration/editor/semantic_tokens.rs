@@ -72,8 +72,8 @@ fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span,
     }
 }
 
-/// The editor derives semantic tokens from the positions of words. They agree with the syntax tree
-/// wherever it has no doubtful parts.
+/// The editor derives the kinds of words from the positions of the words. In every text without
+/// syntax errors, the kinds must be those of the tree.
 #[test]
 fn semantic_tokens_agree_with_the_syntax_tree() {
     let mut files = 0;

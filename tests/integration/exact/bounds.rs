@@ -22,7 +22,7 @@ fn bounds_stay_below_1e_9_and_certify_nearly_all_bytes() {
     }
 }
 
-/// Within one pixel, the spheres intersect one another, and most of their silhouettes are hidden.
+/// The spheres intersect one another within one pixel, and most of their silhouettes are hidden.
 /// The error bound must still be at most 1e-9.
 #[test]
 fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {
@@ -119,9 +119,10 @@ fn memory(scene: &str, crop: &str) -> u64 {
     most >> 10
 }
 
-/// In the first scene, nearly everything is seen at one point of a pixel, so that the program
-/// subdivides this pixel very often. Without a limit, this took 20 GB. The 65 536 objects of the
-/// second scene need memory themselves, so a neighbouring pixel shows how much.
+/// Compares the memory for a hard pixel with that for an easy one; the hard pixel may take at most
+/// 128 MiB more. In the first scene, nearly everything is seen at one point of the hard pixel, so
+/// that the program subdivides the pixel very often; without a limit, this took 20 GB. In the
+/// second scene, the hard pixel shows 65 536 objects, and the easy pixel beside it shows none.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pixel_takes_bounded_memory() {

@@ -19,7 +19,7 @@ fn generated_scenes_add_up_by_quarters_and_agree_with_samples() {
 }
 
 /// Rows of tilted triangles lie in one pixel. The planes of the triangles intersect everywhere in
-/// the pixel, but no triangle hides another.
+/// the pixel, but the triangles themselves are side by side and do not hide one another.
 #[test]
 fn quarters_add_up_for_tilted_triangles_side_by_side() {
     let mut random = Random::new(71);
@@ -40,7 +40,8 @@ fn quarters_add_up_for_tilted_triangles_side_by_side() {
     }
 }
 
-/// Boxes and triangles intersect in segments. Each segment ends where one of the two objects ends.
+/// Boxes and triangles intersect in segments. Each segment ends at an edge of one of the two
+/// objects, because the objects intersect only partly.
 #[test]
 fn quarters_add_up_for_partly_piercing_objects() {
     let mut random = Random::new(72);

@@ -69,8 +69,8 @@ fn sphere_coverage_matches_the_area_of_an_ellipse() {
 
 #[test]
 fn board_coverage_from_above_matches_the_closed_form() {
-    // From the height 1, the pixel shows the area [−1, 1]² of the board. This is 2 × 2 squares of
-    // side 1, or more squares if they are smaller.
+    // From the height 1, the pixel shows the area [−1, 1]² of the board: 2 × 2 squares of side 1,
+    // or more squares if they are smaller.
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),

@@ -203,8 +203,8 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
                 "link to a folder outside" => symlink(outside.path("deep"), &path).unwrap(),
                 _ => create_special_file(what, name, &folder),
             }
-            // A missing path is never in the way. A folder is in the way only if the path must name
-            // a file.
+            // In two cases, there is nothing in the way of the command: nothing exists at the path,
+            // or the path is `out/b`, where `report` needs a folder, and there is one.
             if what == "nothing" || (what, name) == ("folder", "out/b") {
                 continue;
             }
@@ -338,7 +338,8 @@ fn render_never_overwrites_its_own_input() {
     }
 }
 
-/// The program checks the output path first. Only then, the test creates a link to the input there.
+/// The test creates a link to the input at the output path only after the program has checked this
+/// path.
 #[test]
 fn a_link_created_while_rendering_cannot_redirect_output_onto_an_input() {
     for (line, input, target, about) in [

@@ -224,8 +224,8 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
     assert!(left > 0, "no try was in time");
 }
 
-/// A user may be allowed to write to a file but not to restore the file's group. The new group must
-/// then not get the rights of the old one.
+/// A user may be allowed to write to a file of a group to which the user does not belong. The
+/// rewritten file then gets another group, which must not get the rights of the old one.
 #[test]
 fn rewriting_a_file_grants_no_rights_to_another_group() {
     use std::os::unix::fs::MetadataExt;

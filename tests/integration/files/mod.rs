@@ -27,7 +27,7 @@ fn folder() -> Folder {
     folder
 }
 
-/// Writes `content` to a path in the way of a command whose user has named this path.
+/// Writes `content` to a path that the user of a command has named. An existing file is replaced.
 fn write(path: &Path, content: &[u8]) -> io::Result<()> {
     files::write(path, Purpose::Named, &AtomicBool::new(false), |out| {
         out.write_all(content)

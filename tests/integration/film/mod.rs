@@ -159,8 +159,9 @@ fn a_damaged_png_never_yields_a_changed_recipe() {
     for length in 0..idat {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
-    // No wrong bit causes a panic. In the header, the checksum reveals a wrong bit. A wrong bit
-    // after the scene has no effect, since nothing is read there.
+    // No flipped bit may cause a panic. A flipped bit in the header must be detected by the
+    // checksum. A flipped bit after the scene has no effect, because the rest of the file is not
+    // read.
     for bit in 0..8 * png.len() {
         let mut flipped = png.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);

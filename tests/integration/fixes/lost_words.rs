@@ -34,9 +34,9 @@ struct Words {
 }
 
 impl Words {
-    /// Reads the words of `text`. With `is_two`, a field's name that is joined with its value is
-    /// read as two words: `radius2`, or `centerball` if the whole text `all` contains the word
-    /// `ball`.
+    /// Reads the words of `text`. With `is_two`, a field's name that is written together with its
+    /// value, such as `radius2`, is read as two words. So is `centerball`, but only if `ball` is
+    /// also a word in the whole text `all`.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
         // A zero-width character is not part of a number.
@@ -202,9 +202,10 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // Two words in a row, such as `look at`, may form a known word when they are joined. The words
-    // alone do not show whether a fix has joined them. For the last four such pairs of the text,
-    // both possibilities are tried. The combination with the fewest lost and added names counts.
+    // Two words in a row, such as `look at`, may form a known word, `lookat`, if they are joined.
+    // The words alone do not show whether a fix has joined them. For the last four pairs of this
+    // kind in the text, both possibilities are tried. Of all combinations, the one with the fewest
+    // lost and added names counts.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -240,9 +241,9 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
 }
 
 /// Returns the names of `before` that are not in `after`, and the names of `after` that are not in
-/// `before`. A fix may have joined two words in a row to a known word. Bit k of `joins` says
-/// whether this is assumed for the pair number k, counted from the end of the text; the sign bit
-/// applies to all further pairs.
+/// `before`. Pairs of words in `before` that would form a known word, such as `look at`, are
+/// numbered from the end of the text. Bit k of `joins` says whether a fix is assumed to have joined
+/// pair k; the sign bit applies to all further pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],

@@ -37,8 +37,8 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
                 params[key] = random.one_of(&any).clone();
             }
         }
-        // No message contains the current content of the file as the content that its page knows.
-        // So no save is allowed to overwrite the file.
+        // A save overwrites the file only if `base`, the content that the page knows, is the file's
+        // current content. No message has this content as `base`, so none may overwrite the file.
         assert_ne!(params["base"], json!(before));
         let method = *random.one_of(&METHODS);
         let message = json!({ "jsonrpc": "2.0", "id": "fuzz", "method": method, "params": params });

@@ -285,8 +285,8 @@ fn an_export_of_moodle_is_a_class() {
     );
     let numbers: Vec<_> = found.iter().map(|line| &line["number"]).collect();
     assert_eq!(numbers, ["14", "11", "12", "13", "15"]);
-    // In a terminal, control characters in a name are escaped. In a table, formulas in a name are,
-    // too.
+    // In a terminal, control characters in a name are escaped. In a table, a name that begins like
+    // a formula is also preceded by a `'`.
     let table = folder.told("grade a.scn 'handed in' -o out", 1);
     assert!(table.contains("=1+1\\u{202e}  "), "{table}");
     assert!(folder.text("out/grade.csv").contains("\"'=1+1\\u{202e}\""));
@@ -341,8 +341,8 @@ fn a_picture_in_every_folder_is_a_template_only_beside_others() {
             ("ben", "class/ben/render.png", "wrong", &[]),
         ],
     );
-    // If one student has a second picture, a picture that all students have counts as a template,
-    // unless `--picture` names it.
+    // One student has a second picture. The picture that all students have then counts as part of
+    // the assignment's template, unless `--picture` names it.
     put(&folder, &[("class/ben/test.png", "size.png")]);
     let given = ["render.png (equal in every folder: --picture chooses it)"];
     let others: &[(&str, &str, &str, &[&str])] = &[

@@ -5,11 +5,11 @@ use glam::DVec3;
 use super::textbook::{Behind, Object, Program, Roots, Shape, Squares, Visible};
 
 impl Program {
-    /// Returns the colour that a ray sees, and by which fraction shading multiplies its light. The
-    /// ray starts at `from`; `view` is the view direction.
+    /// Returns the colour of the surface that a ray sees, and the factor by which shading
+    /// multiplies the colour's light. The ray starts at `from`; `view` is the view direction.
     pub fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> ([u8; 3], f64) {
-        // A program may have a mistake: it takes surfaces behind the eye for the nearest ones, or
-        // compares them by their distance.
+        // The program may treat surfaces behind the eye wrongly: as nearer than all others, or like
+        // surfaces in front, by their distance.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t

@@ -346,7 +346,8 @@ fn scaled(color: [u8; 3], by: f64) -> [u8; 3] {
     color.map(|byte| (by * f64::from(byte)).round() as u8)
 }
 
-/// Returns the fraction of a distant light that a surface gets.
+/// Returns the fraction of a distant lamp's light that a surface gets: the cosine of the angle
+/// between its normal and the light's direction, or 0 if the lamp is behind the surface.
 fn lit(normal: DVec3, light: DVec3) -> f64 {
     normal.dot(light.normalize()).max(0.0)
 }

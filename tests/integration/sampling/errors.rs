@@ -47,7 +47,7 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
 type Edge = (DVec2, f64, f64);
 
 /// Returns the error at each edge: the fraction of points on the edge's inner side, minus the area
-/// on this side. Each edge is tested in another pixel.
+/// on this side. For each edge, the points of another pixel are used.
 fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     let sampling = sampling(method, n, n);
     let error = |(i, &(normal, distance, area)): (u32, &Edge)| {
@@ -70,9 +70,9 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// Returns the area of the part of the pixel in which normal · p < distance. Each corner of the
-/// pixel is the tip of a quadrant. The areas that the edge cuts off these four quadrants are added
-/// with alternating signs.
+/// Returns the area of the part of the pixel in which normal · p < distance. From each quadrant
+/// whose tip is a corner of the pixel, the edge cuts off an area. The result is the sum of these
+/// four areas with alternating signs.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);

@@ -362,10 +362,11 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
         let (mut idle, _socket) = (studio.stream(), studio.socket());
         idle.write_all(b"GET / HT").unwrap();
         if is_pipe {
-            // If a pipe took the place of the file, opening it would wait for another program.
+            // A pipe takes the place of the file. If the host opened the pipe, it would wait for
+            // another program to write to it.
             fs::remove_file(folder.path("a.scn")).unwrap();
             folder.make_pipe("a.scn");
-            // The time is long enough for the host to look at the file.
+            // In this time, the host checks the file at least once.
             thread::sleep(Duration::from_millis(2500));
         }
         let begun = Instant::now();

@@ -174,7 +174,8 @@ fn fans_of_triangles_agree_with_the_oracle() {
     assert!(found > 200, "{found}");
 }
 
-/// The compared distances are equal, or close to the smallest or the largest `f64`.
+/// The distances of surfaces from the eye are equal, or close to the smallest or the largest `f64`.
+/// The tracer and the oracle must nevertheless see the same surface.
 #[test]
 fn objects_at_the_limits_of_f64_agree_with_the_oracle() {
     for [scene, values, boundaries] in rows(

@@ -1,6 +1,7 @@
-//! The sum of an edge's terms of a board's integral over the lines that the edge crosses, by
-//! Fourier modes, if the depth m at least doubles along the edge. The sum starts at a depth from
-//! which the expansion of the Lerch series is accurate.
+//! The sum over the lines that an edge crosses, by Fourier modes, for an edge along which the depth
+//! at least doubles. Green's theorem turns a board's integral into such sums
+//! ([`green`](super::super::green)). The sum starts at a depth from which the expansion of the
+//! Lerch series is accurate.
 
 use std::{f64::consts::PI, ops::RangeInclusive};
 
@@ -21,16 +22,16 @@ const MODE_COST: f64 = 4.0;
 /// faster.
 const FIRST_MODES: f64 = 31.0;
 /// Fraction of an edge's tolerance for the error of leaving out all Fourier modes beyond the last
-/// computed one. It is the largest of the fractions for different kinds of errors, which must add
-/// up to less than 1, because a smaller one would need more modes.
+/// computed one. The tolerance is divided among several kinds of errors. This kind gets the largest
+/// fraction, because a smaller one would need more modes.
 const BEYOND_LAST_SHARE: f64 = 0.6;
 /// Fraction of an edge's tolerance for the truncation error of the Lerch series ([`lerch`]) in the
-/// first term of the series X ([`EdgeSeries`]). Not critical: with 0.005 or 0.08, the measured
+/// first term of the edge's series ([`EdgeSeries`]). Not critical: with 0.005 or 0.08, the measured
 /// running time changes by less than 10 %.
 const LERCH_SHARE: f64 = 0.02;
-/// Minimum of w, the depth m divided by its step from crossing to crossing, at which the Lerch
-/// series of exponents s = 3 to 5 ([`lerch`]) is expanded in 1/w. Each term of the expansion is
-/// then at most about s/w, a third, of the previous term.
+/// Minimum of w, the depth divided by its step from crossing to crossing, at which the Lerch series
+/// of exponents s = 3 to 5 ([`lerch`]) is expanded in 1/w. Each term of the expansion is then at
+/// most about s/w, less than a third, of the previous term.
 const MIN_W: f64 = 16.0;
 /// Angle |θ| of a Fourier mode, in radians, below which |1 − e^iθ|² = 2 − 2·cos θ is replaced by a
 /// lower bound in θ², because the subtraction cancels most digits there.
@@ -39,8 +40,8 @@ const SMALL_ANGLE: f64 = 0.2;
 /// ratio differs from 1 by at most θ²/12, a third of a percent.
 const MIN_SQUARE_RATIO: f64 = 0.99;
 
-/// Returns the depth m from which on Fourier modes compute the sum over an edge's crossings;
-/// crossings at a smaller depth are added one by one.
+/// Returns the depth at which the sum over an edge's crossings changes its method: crossings at a
+/// smaller depth are added one by one, and Fourier modes give the sum over the others.
 pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) -> f64 {
     let g = all.rise;
     let factor = series.factors[1].abs();
@@ -64,10 +65,9 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
 }
 
 /// Computes the alternating sum Σ (−1)^j·X over all crossings j from `crossing` to the horizon,
-/// where j is 0 at `crossing`. X is the edge's term of a board's integral at a crossed line
-/// ([`EdgeSeries`]). `tolerance` limits the truncation error. Returns 0 with a bound on the sum's
-/// absolute value if the sum is negligible, or if the Fourier modes give no better bound or exceed
-/// the budget.
+/// where j is 0 at `crossing`. `series` gives X, the edge's contribution at a crossing. `tolerance`
+/// limits the truncation error. Returns 0 with a bound on the sum's absolute value if the sum is
+/// negligible, or if the Fourier modes give no better bound or exceed the budget.
 pub(super) fn sum_from(
     all: &LineCrossings,
     crossing: &Double,
@@ -86,15 +86,14 @@ pub(super) fn sum_from(
         return BoundedSum::zero_within(trivial);
     }
     let w = depth / g;
-    // The amplitude of term k does not contain the factor w^(−2−k), because the Lerch series has
-    // it.
+    // A term of the series falls with the depth as w^(−2−k). The amplitudes do not contain this
+    // factor, because the sums over crossings have it.
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) / (g * g * g), |a| a / (PI * g));
     let [first, second, third] = amplitudes.map(f64::abs);
     let u = 1.0 / w;
     let u2 = u * u;
     let u3 = u2 * u;
-    // Ratio of the truncation error of all terms of the series X ([`EdgeSeries`]) to that of its
-    // first term.
+    // Ratio of the truncation error of all terms of the edge's series to that of the first term.
     let all_terms = if first > 0.0 {
         1.0 + (second * u + third * u2) / first
     } else {
@@ -149,9 +148,9 @@ pub(super) fn sum_from(
     }
 }
 
-/// Returns an upper bound of the sum of the absolute values of term `k` of the series X
-/// ([`EdgeSeries`]) over all crossings from the depth `depth` on. `rise` is the step of the depth
-/// from crossing to crossing.
+/// Returns an upper bound of the sum, over all crossings from the depth `depth` on, of the absolute
+/// values of term `k` of an edge's series ([`EdgeSeries`]). `rise` is the step of the depth from
+/// crossing to crossing.
 fn absolute(series: &EdgeSeries, k: usize, depth: f64, rise: f64) -> f64 {
     series.size(k, depth) * (1.0 + depth / (rise * (k + 1) as f64))
 }
