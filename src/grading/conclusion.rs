@@ -163,7 +163,12 @@ fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> V
         return Vec::new();
     };
     let rows = mistakes::ROWS.iter().chain(mistakes::OBJECT_ROWS);
-    let others = rows.filter(|other| other.id == row.id && other.message != row.message);
+    // A JPEG does not tell whether light or bytes are multiplied.
+    let [gain, of_bytes] = ["not_divided", "bytes_scaled"];
+    let is_alike = |id: &str| {
+        id == row.id || [gain, of_bytes].contains(&id) && [gain, of_bytes].contains(&row.id)
+    };
+    let others = rows.filter(|other| is_alike(other.id) && **other != **row);
     let others = others.filter(|other| other.shows == Shows::InAreas);
     let others = others.map(|other| Mistake::Row(other, *object));
     let explains = |other: &Mistake| {

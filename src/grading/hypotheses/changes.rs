@@ -41,6 +41,15 @@ pub fn multiply(c: &mut Candidate, functions: [fn(f64) -> f64; 2]) {
     }
 }
 
+/// Reverses the normal of a triangle that is given by it.
+pub fn reverse_normal(c: &mut Candidate, object: usize) {
+    if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object)
+        && let TriangleOutline::Centered(centered) = &mut triangle.outline
+    {
+        centered.normal = -centered.normal;
+    }
+}
+
 /// Returns whether a checkerboard is drawn.
 pub fn has_board(c: &Candidate) -> bool {
     let mut drawn = c.scene.objects.iter().zip(&c.is_drawn);

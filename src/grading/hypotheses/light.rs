@@ -137,11 +137,14 @@ impl Tabulated {
     }
 }
 
+/// Index that stands for no colour channel.
+pub const NONE: usize = 3;
+
 /// An effect of a program on the light of its picture.
 #[derive(Clone, Copy, Debug)]
 pub enum Effect {
     /// The colour channels are in another order. The numbers are the channels that appear as red,
-    /// green and blue.
+    /// green and blue; [`NONE`] appears as 0.
     Channels([usize; 3]),
     /// Each channel shows the mean of all channels with these weights.
     Gray([f64; 3]),

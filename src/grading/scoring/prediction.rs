@@ -182,7 +182,9 @@ impl<'a> Prediction<'a> {
             match *effect {
                 Effect::Channels(order) => {
                     for one in mean.iter_mut().chain(variance.iter_mut()) {
-                        *one = order.map(|i| one[i]).into();
+                        let light = one.to_array();
+                        let at = |i: usize| light.get(i).copied().unwrap_or(0.0);
+                        *one = order.map(at).into();
                     }
                 }
                 Effect::Gray(weights) => {

@@ -39,6 +39,10 @@ const SHIFT_IDS: [&str; 2] = ["half_pixel", "window_one_less"];
 /// after encoding.
 const CODED_ID: &str = "averaged_encoded";
 
+/// Greatest fraction of the squared difference beyond noise that another width of pixels may leave,
+/// to be named. Otherwise a slight blur could be named that hides what another mistake changed.
+const LEFT_BY_FILTER: f64 = 0.5;
+
 /// Factors by which the estimated width of pixels that are too wide is multiplied. The most likely
 /// of the results is taken. The values are a choice.
 const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
@@ -161,11 +165,14 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
             WIDTHS.map(|by| (width * by).max(LEAST_WIDE)).to_vec()
         };
         let widths = widths.into_iter().filter_map(|width| {
-            let with = candidate.with(Mistake::Filter(width))?;
-            Some((judge.judged(&with, edges)?.cost, with))
+            let with = judge.judged(&candidate.with(Mistake::Filter(width))?, edges)?;
+            Some((with.cost, with))
         });
         let (_, with) = least(widths, 1).pop()?;
-        fitted_with(judge, with)
+        let noise = with.score.noise;
+        let [before, after] = [&null, &with].map(|one| one.score.squares - noise);
+        let is_clear = after < LEFT_BY_FILTER * before;
+        is_clear.then(|| fitted_with(judge, with.candidate().clone()))?
     };
     best.or_else(filtered)
         .or_else(|| residual.is_noise().then(|| candidate.clone()))
@@ -236,7 +243,9 @@ pub fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
         pairs.flat_map(|(at, &one)| objects[at + 1..].iter().map(move |&other| (one, other)));
     let exchanged =
         pairs.map(|(one, other)| Mistake::ColorsExchanged(one.min(other), one.max(other)));
-    rows.map(|row| Mistake::Row(row, None))
-        .chain(of_objects)
+    // Of rows that change a picture in the same way, the first is kept: that an object is missing is
+    // more usual than a formula by which it is not hit.
+    of_objects
         .chain(exchanged)
+        .chain(rows.map(|row| Mistake::Row(row, None)))
 }

@@ -143,14 +143,14 @@ impl Search<'_> {
     fn run(&mut self, most: usize) {
         let judge = self.judge;
         let mut beam = Vec::from_iter(self.examine(&Candidate::correct(judge.scene)));
-        for _ in 0..most {
+        for size in 1..=most {
             let mut examined: Vec<Judged> = Vec::new();
             let mut next: Vec<(f64, Candidate)> = Vec::new();
             for extension in beam.iter().map_while(|from| Extension::from(judge, from)) {
                 let enough =
                     PROMISING * penalised(extension.difference, extension.from.candidate());
                 for kind in Extension::KINDS {
-                    if self.explained.is_some() || !judge.work.may_go_on() {
+                    if self.is_explained_by(size) || !judge.work.may_go_on() {
                         break;
                     }
                     for (less, one) in extension.improvements(kind) {
@@ -205,6 +205,13 @@ impl Search<'_> {
             // that one were fitted to few samples.
             examined.extend(self.examine(&one));
         }
+    }
+
+    /// Returns whether a set of at most `size` mistakes explains the picture. A single wrong number
+    /// may explain what a row does only together with one at edges.
+    fn is_explained_by(&self, size: usize) -> bool {
+        let explained = self.explained.as_ref();
+        explained.is_some_and(|(_, explained)| explained.mistakes.len() <= size)
     }
 
     /// Returns whether a hypothesis was found that explains the picture with fewer parameters, or
