@@ -97,8 +97,9 @@ impl NormalEquations {
     }
 
     /// Solves for the displacement. `off_middle` is subtracted: the displacement, in pixels, that
-    /// few samples may cause. Returns `None` if the displacement may be chance.
-    fn displacement(&self, off_middle: f64) -> Option<Displacement> {
+    /// few samples may cause. `noise` is the variance of errors relative to the assumed one. Returns
+    /// `None` if the displacement may be chance.
+    fn displacement(&self, off_middle: f64, noise: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let full = |matrix: &Symmetric| -> Vec<Vec<f64>> {
             let row = |i: usize| (0..TERMS).map(move |j| matrix[i.max(j)][i.min(j)]);
@@ -121,7 +122,7 @@ impl NormalEquations {
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
         // Only the part of a displacement along the gradient is visible.
         let length = (product / (normal[0][0] + normal[3][3])).sqrt();
-        (square > CHANCE).then_some(Displacement { length, by, square })
+        (square > CHANCE * noise).then_some(Displacement { length, by, square })
     }
 }
 
@@ -213,12 +214,13 @@ impl Prediction<'_> {
 
     /// Returns the displacement of each group of pixels, or `None` if it may be chance. `groups`
     /// has the group of each pixel. `share` is the variance of a pixel's error relative to that of
-    /// one sample: 1/n for n samples per pixel.
+    /// one sample: 1/n for n samples per pixel. `is_coded` says that the picture is a JPEG.
     pub fn displacements(
         &self,
         deviations: &[f64],
         share: f64,
         groups: &[usize],
+        is_coded: bool,
     ) -> Vec<Option<Displacement>> {
         let off_middle = (OFF_MIDDLE * share).min(MOST_OFF_MIDDLE);
         let (width, count) = (self.width, self.observed.len());
@@ -234,6 +236,7 @@ impl Prediction<'_> {
             *own = [own[0].min(x), own[1].max(x), own[2].min(y), own[3].max(y)];
         }
         let mut sums = vec![NormalEquations::default(); all];
+        let (mut observed, mut expected) = (0.0, 0.0);
         for (at, group) in groups.iter().enumerate() {
             let (x, y) = (at % width, at / width);
             let is_inside = x > 0 && y > 0 && x + 1 < width && y + 1 < height;
@@ -256,10 +259,20 @@ impl Prediction<'_> {
                 let deviation = deviations[3 * at + i];
                 let weight = 1.0 / (deviation * deviation);
                 sums[*group].add(&row, difference[i], weight, error[i]);
+                let weight = weight * (right * right + down * down);
+                observed += weight * difference[i] * difference[i];
+                expected += weight * error[i];
             }
         }
+        // What coding may do to a pixel is overestimated, so the errors of the whole picture tell
+        // what it does.
+        let noise = if is_coded {
+            f64::min(observed / f64::max(expected, 1e-300), 1.0)
+        } else {
+            1.0
+        };
         sums.iter()
-            .map(|sums| sums.displacement(off_middle))
+            .map(|sums| sums.displacement(off_middle, noise))
             .collect()
     }
 }

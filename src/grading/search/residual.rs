@@ -152,7 +152,7 @@ fn displacement_and_width(
     let deviations = prediction.deviations();
     let beyond = |groups: &[usize], is_beyond: &dyn Fn(&Displacement) -> bool| {
         let all = prediction
-            .displacements(&deviations, share, groups)
+            .displacements(&deviations, share, groups, level.jpeg.is_some())
             .into_iter();
         let all = all.flatten().filter(is_beyond);
         all.max_by(|one, other| one.length.total_cmp(&other.length))
