@@ -15,6 +15,10 @@ use crate::{
     scene::Scene,
 };
 
+/// Fraction of the squared difference below which a mistake explains nothing. Then it is not
+/// reported beside others.
+const NOTHING: f64 = 5e-4;
+
 /// Returns the verdict, given what the search found: the best hypothesis about the program that
 /// made the picture, and whether it explains the picture.
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
@@ -134,7 +138,12 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     let correct = Candidate::correct(scene);
     let rest = (!is_explained).then(|| square(last) / square(&correct));
     let rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
-    mistakes.retain(|mistake| is_explained || mistake.explains > 0.0);
+    let least = if is_explained && mistakes.iter().all(|one| one.explains < NOTHING) {
+        0.0
+    } else {
+        NOTHING
+    };
+    mistakes.retain(|mistake| mistake.explains >= least);
     let is_named = !is_cut && !mistakes.is_empty() && is_explained;
     let (kind, mistakes, guesses) = if is_named {
         (Kind::Wrong, mistakes, Vec::new())

@@ -12,7 +12,7 @@ use super::{
     plain_numbers::shortened,
 };
 use crate::grading::{
-    hypotheses::{Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows},
+    hypotheses::{Behaviour, Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows},
     scoring::Level,
 };
 
@@ -183,10 +183,13 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
 fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     let rows = ROWS.iter().filter(|row| SHIFT_IDS.contains(&row.id));
     let by = candidate.layout.source_direction(by);
+    let sides = [candidate.scene.image.width, candidate.scene.image.height].map(f64::from);
     let off = |row: &'static MistakeRow| {
         let mistake = Mistake::Row(row, None);
-        let shift = candidate.with(mistake.clone())?.behaviour.offset;
-        let off = |i: usize| (by[i] - shift[i]).abs() / shift[i].abs().max(1.0);
+        let Behaviour { offset, spread, .. } = candidate.with(mistake.clone())?.behaviour;
+        // In the middle of the picture.
+        let shift = |i: usize| offset[i] + (spread[i] - 1.0) * sides[i] / 2.0;
+        let off = |i: usize| (by[i] - shift(i)).abs() / shift(i).abs().max(1.0);
         Some((off(0).max(off(1)), mistake))
     };
     let near = rows.filter_map(off).filter(|one| one.0 <= MAX_SHIFT_ERROR);

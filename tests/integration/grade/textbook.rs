@@ -151,6 +151,8 @@ pub enum Axes {
     LongRays,
     /// All rays have the same direction, −w, i.e. the view direction.
     Parallel,
+    /// All rays are parallel, and the window is as large as what the camera sees at `lookat`.
+    ParallelFromLookat,
 }
 
 /// The way in which a student's program places the samples of a pixel.
@@ -199,6 +201,8 @@ pub struct Program {
     pub is_wide: bool,
     /// Whether the program's window is as wide as it is high.
     pub is_squeezed: bool,
+    /// Whether the centres of the outermost pixels lie on the window's border.
+    pub reaches_borders: bool,
     /// Ratio of the window's width in the program to its correct width.
     pub aspect: f64,
     pub axes: Axes,
@@ -285,6 +289,12 @@ impl Program {
         } else {
             self.aspect * pixel
         };
+        let [wide, pixel] = if self.reaches_borders {
+            let wider = |side: u32| f64::from(side) / f64::from(side - 1);
+            [wide * wider(width), pixel * wider(height)]
+        } else {
+            [wide, pixel]
+        };
         let light: [f64; 256] = array::from_fn(|byte| match byte as f64 / 255.0 {
             part if self.averages_encoded => part,
             part => self.decode(part),
@@ -308,6 +318,10 @@ impl Program {
                 };
                 let (from, ray) = match self.axes {
                     Axes::Parallel => (self.eye + across, -w),
+                    Axes::ParallelFromLookat => {
+                        let larger = self.eye.distance(self.lookat) / self.distance;
+                        (self.eye + larger * across, -w)
+                    }
                     _ => (self.eye, ray),
                 };
                 let (color, share) = self.trace(from, ray, -w.normalize());
