@@ -63,9 +63,9 @@ pub(super) struct BoardLanes {
     /// has the second. The first square is the one in the first of the pixel's columns of squares
     /// and in the first of its rows.
     sign: Lanes,
-    /// Numbers of the squares at the four corners of each pixel. Of the board's two families of
-    /// lines (columns and rows), squares are counted in the direction that crosses the family with
-    /// fewer lines in the pixel. The square with the smallest number has the number 0.
+    /// Number of the square at each of the four corners of each pixel. Of the board's two families
+    /// of lines (those between columns, and those between rows), one has fewer lines in the pixel.
+    /// The squares are counted in the direction that crosses this family, from 0.
     squares: [Lanes; 4],
 }
 
