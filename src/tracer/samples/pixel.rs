@@ -87,7 +87,7 @@ pub(super) enum ColorPattern {
 /// Formula for the inverse depth of a surface.
 #[derive(Debug)]
 pub(super) enum Depth {
-    /// The inverse depth is not needed.
+    /// No formula, because the surfaces' depths are not compared.
     Unknown,
     /// The least of the inverse depths of several planes, given by the start and the end of their
     /// range in [`PreparedPixel::planes`].
