@@ -276,7 +276,8 @@ fn over_one_square(area: f64, sign: f64) -> BoundedSum {
 struct Chords {
     points: Vec<DVec2>,
     sum: BoundedSum,
-    /// Maximum area between a piece of the arc and its chord that is neglected, in square pixels.
+    /// Area, in square pixels, up to which the segment between a piece of the arc and its chord is
+    /// neglected.
     neglected: f64,
 }
 

@@ -334,7 +334,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue is copied to twice the memory; during the copy, both exist.
+                // A full queue is copied to twice its memory; old and new memory then both exist.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY

@@ -1,9 +1,10 @@
 //! The integral of the board's sign over eight pixels at once, in lanes that the compiler
 //! vectorises.
 //!
-//! In: eight pixels that show only a checkerboard. The board has two families of lines, and the
-//! same number of lines of each family cross every pixel. Out: the integral over each pixel, with a
-//! bound on the rounding errors of areas and on the displacement of lines by rounding.
+//! In: eight pixels that show only a checkerboard. The board has two families of lines, those
+//! between columns and those between rows of squares. The pixels agree in the number of lines of
+//! each family that cross them. Out: the integral over each pixel, with a bound on the rounding
+//! errors of areas and on the displacement of lines by rounding.
 //!
 //! The lines of the family with fewer lines cut the pixel into strips. The sign σ_i = (−1)^i
 //! alternates from strip to strip. Let H_k be the side of line k of the other family on which

@@ -323,10 +323,9 @@ fn the_end_is_the_limit() {
     }
 }
 
-/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, in which a
-/// pixel far to the side sees a single straight line on the floor. Returns the integral up to the
-/// distance `most` along this line, and the area of the polygon's part that shows the rest of the
-/// line.
+/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, where a pixel
+/// far to the side sees one straight line on the floor. Returns the integral up to the distance
+/// `most` along the line, and the area of the part that shows the line's rest.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
     // The distance is q = height·x/y at the point (x, y) relative to the middle of the horizon. The
     // board's coordinates are linear in q. Each q at which one is an integer cuts the polygon.
