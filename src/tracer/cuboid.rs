@@ -55,8 +55,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         return Convex::new(edges, fronts, backs);
     };
     // A ray enters the box through the farthest of the front planes, and leaves it through the
-    // nearest of the back planes. The face is therefore bounded by comparisons of its plane with
-    // the others on its side of the box.
+    // nearest of the back planes. A front face is therefore bounded by comparisons of its plane
+    // with the other front planes, and a back face by comparisons with the other back planes.
     for (mut faces, is_nearest) in [(fronts, false), (backs, true)] {
         let Some(at) = faces.iter().position(|(number, _)| *number == only) else {
             continue;
