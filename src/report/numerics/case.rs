@@ -17,8 +17,9 @@ pub struct Case {
     pub id: &'static str,
     /// Description of what is difficult in the case, for tables.
     pub title: &'static str,
-    /// Maximum error of a number that Pinhole guarantees, in the unit that [`unit`](Self::unit)
-    /// returns. Errors in decisions, such as which object is seen, are never allowed.
+    /// Guaranteed upper bound of the errors of Pinhole's numbers, in the unit that
+    /// [`unit`](Self::unit) returns. Errors in decisions, such as which object is seen, are never
+    /// allowed.
     pub bound: f64,
     pub(super) subject: Question,
 }
