@@ -172,7 +172,7 @@ mod tests {
         let world = world(camera, 0.7);
         let known = sums(&world).into_iter().filter_map(|(_, sum)| sum);
         let sharp = known.filter(|sum| sum.bound < 1e-9).count();
-        // Of the picture's 24 × 18 = 432 pixels, more than half are below the horizon.
+        // The picture has 24 × 18 = 432 pixels, of which more than half are below the horizon.
         assert!(sharp > 100, "{sharp}");
     }
 
