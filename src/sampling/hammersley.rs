@@ -2,9 +2,9 @@
 //! (Cranley and Patterson 1976).
 //!
 //! φ₂(i) mirrors the binary digits of i at the binary point. A shifted point that leaves the pixel
-//! enters it again on the other side. The shift in y is arbitrary. In x, it moves points by whole
-//! columns of width 1/n and then places them within their columns, so that each of the n columns
-//! still contains exactly one point.
+//! enters it again on the other side. The shift along y is arbitrary. The shift along x moves
+//! points by whole columns of width 1/n and then places them within their columns, so that each of
+//! the n columns still contains exactly one point.
 
 use std::ops::Range;
 

@@ -15,8 +15,8 @@ use glam::DVec3;
 use super::prediction::{FLAT, Prediction};
 use crate::grading::hypotheses::Curve;
 
-/// Number of degrees of freedom of Student's t distribution, by which errors are modelled. It is
-/// small, so that a few large errors hardly change a fit. The value is a choice.
+/// Number of degrees of freedom of Student's t distribution, by which errors are modelled. With a
+/// larger number, a few large errors would change a fit more.
 const FREEDOM: f64 = 2.0;
 
 /// Number of rounds of fitting 1/n, where n is the number of samples per pixel. Each round leaves

@@ -36,8 +36,8 @@ const LEFT_IN_CODED: f64 = 0.25;
 /// Identifiers of the mistakes that move samples by a few pixels at most.
 const SHIFT_IDS: [&str; 2] = ["half_pixel", "window_one_less"];
 
-/// Identifier of the only mistake at edges that can be recognised in a JPEG: samples are averaged
-/// after encoding.
+/// Identifier of the only mistake at edges that can be recognised in a JPEG. A program with this
+/// mistake encodes samples before it averages them.
 const CODED_ID: &str = "averaged_encoded";
 
 /// Maximum fraction of the squared difference beyond noise that may be left after another pixel

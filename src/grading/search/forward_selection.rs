@@ -1,9 +1,9 @@
 //! Forward selection with a beam: extends the few best sets of mistakes by one mistake at a time,
 //! until a set explains the picture.
 //!
-//! The tiny grid, which is the coarsest, selects the sets that are worth examining. Their numbers
-//! are fitted to the coarse grid, and also to the middle grid if little error remains. Sets are
-//! judged on the middle grid. Mistakes that are visible only at edges are judged on single pixels.
+//! The coarsest grid (`tiny`) selects the sets that are worth examining. Their numbers are fitted
+//! to the grid `coarse`, and also to the grid `middle` if little error remains. Sets are judged on
+//! the grid `middle`. Mistakes that are visible only at edges are judged on single pixels.
 
 use std::collections::BTreeSet;
 
@@ -373,8 +373,8 @@ struct Extension<'a> {
 }
 
 impl<'a> Extension<'a> {
-    /// Functions that extend a set, each by another kind of mistakes, cheapest first. Each returns
-    /// hypotheses with their differences from the picture on the coarsest grid.
+    /// Functions that extend a set of mistakes, each by mistakes of another kind, the cheapest
+    /// first. Each returns hypotheses with their differences from the picture on the coarsest grid.
     const KINDS: [fn(&Self) -> Rated; 3] = [Self::rows, Self::numbers, Self::joint];
 
     /// Prepares the extension of a set of mistakes. Returns `None` if the budget of work is used
