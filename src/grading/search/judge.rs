@@ -18,26 +18,27 @@ use crate::{
 };
 
 /// Number of cells along the longer side of the coarsest grid, on which mistakes are selected. A
-/// finer grid takes longer for each of hundreds of mistakes. The value is a choice.
+/// finer grid takes longer for each of hundreds of mistakes. A coarser one hides small objects.
 const TINY: u32 = 32;
-/// Number of cells along the longer side of the grid on which numbers are fitted first. The value
-/// is a choice.
+/// Number of cells along the longer side of the grid on which numbers are fitted first. A finer
+/// grid takes longer. A coarser one determines the numbers less well.
 const COARSE: u32 = 48;
-/// Number of cells along the longer side of the grid on which sets of mistakes are judged. The
-/// value is a choice; single pixels decide in the end.
+/// Number of cells along the longer side of the grid on which sets of mistakes are judged. A finer
+/// grid takes longer. A coarser one is enough for most mistakes, because single pixels decide in
+/// the end.
 const MIDDLE: u32 = 96;
 
-/// Change of the picture, in cells, by which a number is varied to find its derivative. The value
-/// is a choice: a smaller change is less visible, and a larger one is less linear.
+/// Change of the picture, in cells, by which a number is varied to find its derivative. A smaller
+/// change is less visible, and a larger one is less linear.
 pub const CELL_STEP: f64 = 0.25;
 
 /// Number of samples per cell of the coarsest grid, on which mistakes are selected. It is a
-/// Fibonacci number, because the samples form a Fibonacci lattice. The value is a choice: more
-/// samples are less noisy, but take longer.
+/// Fibonacci number, because the samples form a Fibonacci lattice. More samples are less noisy, but
+/// take longer.
 const SAMPLES: usize = 5;
 
 /// Number of pixels in the central crop of a picture, on which edges are judged. More pixels
-/// determine edges better, at proportionally more work. The value is a choice.
+/// determine edges better, at proportionally more work.
 const CENTRAL_PIXELS: u64 = 20_000;
 
 /// A picture at several resolutions, to which hypotheses about the program are compared.
@@ -50,10 +51,11 @@ pub struct Judge<'a> {
     /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
     central: Option<Level<'a>>,
     pub work: Work<'a>,
-    /// What the last few hypotheses left unexplained, by their mistakes.
+    /// Mistakes of each of the last few hypotheses, and what the hypothesis left unexplained.
     pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
-    /// Squared error of a correct program on the middle level that sampling cannot explain;
-    /// computed on demand.
+    /// Squared difference between the picture and that of a correct program, at the resolution
+    /// `middle`. Counts only what the noise of sampling cannot explain. Computed on demand; what
+    /// hypotheses leave unexplained is measured as a fraction of it.
     pub square_of_correct: OnceCell<f64>,
 }
 
@@ -62,8 +64,8 @@ pub struct Judge<'a> {
 pub struct Residual {
     /// Number of pixels that should show one colour and show another one.
     pub strays: usize,
-    /// Whether areas of one colour are right, except for a few pixels that samples may miss, and
-    /// errors in pixels that mix several colours look like noise.
+    /// Whether areas of one colour are right, and errors in all other pixels look like noise. In
+    /// the areas, a few wrong pixels are allowed if samples may have missed them.
     pub are_areas_right: bool,
     /// Whether almost all wrong pixels lie near edges.
     pub is_at_edges: bool,
@@ -104,8 +106,8 @@ impl Judged {
 }
 
 impl<'a> Judge<'a> {
-    /// Prepares a picture for judging. `exact` is the rendering of a correct program, in the same
-    /// part.
+    /// Prepares a picture for judging. `exact` is a correct program's rendering of the same part of
+    /// the scene.
     pub fn new(
         scene: &'a Scene,
         exact: &Arc<Rendering>,
@@ -168,9 +170,9 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Returns the coarsest level for comparisons with a hypothesis. If the exact picture of the
-    /// hypothesis is known, the error of sampling it is added to the observed light, so that the
-    /// error cancels.
+    /// Returns the coarsest resolution of the picture, for comparisons with variants of a
+    /// hypothesis. If the hypothesis can be rendered exactly, the error of sampling it is added to
+    /// the observed light. All variants are sampled in the same way, so the error cancels.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
@@ -220,9 +222,10 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Fits the numbers of a hypothesis's mistakes whose indices are `free`. To find derivatives,
-    /// each number is varied so that the picture moves by about `cells` cells. `rounds` are the
-    /// maximum numbers of rounds by least squares, and by a robust loss.
+    /// Fits those numbers of a hypothesis's mistakes that have the indices `free`. To find
+    /// derivatives, each number is varied so that the picture moves by about `cells` cells.
+    /// `rounds` has the maximum number of rounds by least squares, and that of rounds by a robust
+    /// loss.
     pub fn fit(
         &self,
         candidate: &Candidate,
@@ -249,9 +252,9 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Returns the cost of `fitted` parameters: half the logarithm of the number of cells for each. The
-/// cells of the whole picture count even if a part is judged, because almost anything could be
-/// fitted to a few pixels.
+/// Returns the cost of `fitted` parameters. Each costs half the logarithm of the number of cells.
+/// The cells of the whole picture count even if only a part is judged, because almost anything
+/// could be fitted to a few pixels.
 pub fn price(level: &Level, fitted: usize) -> f64 {
     let [width, height] = level.grid.size().map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)

@@ -32,22 +32,24 @@ const IGNORED: f64 = 0.06;
 /// by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
-/// Greatest displacement of the edges of a single object that is ignored, in pixels. The first
-/// number holds without noise. The second is added with one sample per pixel; with n samples, it is
-/// divided by √n. The third takes its place in a JPEG, most of whose noise is from coding. Samples
-/// on a regular grid move an edge parallel to the grid by up to half of their distance.
+/// Greatest displacement of the edges of a single object that is ignored, in pixels. It is the
+/// first number, plus another one divided by √n for n samples per pixel. The other one is the third
+/// in a JPEG, which has noise from coding, and otherwise the second. The reason for √n is that
+/// samples on a regular grid, whose distance is 1/√n, move an edge parallel to the grid by up to
+/// half of it.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
 /// Displacement of all edges of a JPEG, in pixels to the right or down, above which it is reported,
 /// provided that it is significant (see `SURELY_MOVED`). JPEG coding hides most of a displacement.
-/// Three samples at the same places in all pixels lie less than this off the middle.
+/// The value is greater than the 1/6 pixel by which three samples at the same places in all pixels
+/// may lie off the middle.
 const MOVED: f64 = 0.2;
 /// Squared length of a displacement of a JPEG's edges, in squared standard deviations, above which
 /// it is significant enough to be reported. Chosen by trial.
 const SURELY_MOVED: f64 = 150.0;
 
-/// Number of hypotheses whose residuals are remembered: the search asks a few times in turn for the
-/// residual of each.
+/// Number of hypotheses whose residuals are remembered. The search asks several times for the
+/// residual of the same hypothesis, but of few hypotheses in turn.
 const RESIDUALS: usize = 4;
 
 impl Judge<'_> {
@@ -142,7 +144,7 @@ fn displacement_and_width(
     let background = judge.scene.objects.len();
     let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
     let share = match level.jpeg {
-        // In a JPEG, the effect of coding on edges would otherwise be attributed to few samples.
+        // In a JPEG, the score would attribute the effect of coding on edges to few samples.
         Some(_) => prediction.share(),
         None => {
             let score = prediction.score();

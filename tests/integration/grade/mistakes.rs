@@ -13,8 +13,9 @@ use super::{
 
 /// A mistake that the program of a student may have.
 pub struct Mistake {
-    /// Answers of `diff` that are accepted for the mistake, separated by bars. Each is a mistake's
-    /// name, a name with a part of its message, or the target of its `--set` argument.
+    /// Answers of `diff` that are accepted for the mistake, separated by bars. Each answer is a
+    /// mistake's name; or a name and a part of its message; or the target of a `--set` argument,
+    /// such as `camera.roll`.
     pub name: &'static str,
     change: Change,
 }

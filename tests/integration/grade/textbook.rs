@@ -83,10 +83,12 @@ pub enum Squares {
     Floored,
     /// The number of a square is the sum of its two coordinates, each truncated towards zero.
     Truncated,
-    /// The number is the remainder of the coordinates' sum after division by 2. It is −1 for
-    /// negative odd sums.
+    /// The number of a square is the sum of its two coordinates, each rounded down. It counts as
+    /// odd if its remainder after division by 2 is 1. The remainder of negative odd sums is −1, so
+    /// they count as even.
     Remainder,
-    /// The number is odd if the remainders of the two coordinates after division by 2 differ.
+    /// The number of a square counts as odd if the remainders of its two coordinates, each rounded
+    /// down, after division by 2 differ. The remainder of negative odd coordinates is −1.
     Remainders,
     /// The number of a square is the sum of its two coordinates, each rounded to the nearest
     /// integer.
@@ -111,7 +113,8 @@ pub enum Squares {
     Turned,
     /// The number is odd if at least one of the two coordinates, rounded down, is odd.
     BothEven,
-    /// The number is odd if the product of the sines of the two coordinates is negative.
+    /// The number of a square counts as odd if sin(x) · sin(z) is negative, where x and z are its
+    /// coordinates in units of the square's side.
     Sines,
 }
 
