@@ -57,7 +57,7 @@ export class Drag {
   private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
-  /** `hold` returns what is dragged, or a promise if that is known only after the press. */
+  /** `hold` returns what is dragged, or a promise of it if that is known only after the press. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = press;
     frames.dragging = this;
