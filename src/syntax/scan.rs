@@ -101,8 +101,9 @@ impl Scan {
         scan
     }
 
-    /// Records carriage returns that are not followed by a line feed. Those in comments matter,
-    /// too: other programs show a new line after one, but to the parser the comment continues.
+    /// Records carriage returns that are not followed by a line feed. Carriage returns in comments
+    /// matter, too: other programs show a new line after one, but to the parser the comment
+    /// continues.
     fn find_carriage_returns(&mut self, text: &str, id: SourceId, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {
