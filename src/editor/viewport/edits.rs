@@ -38,8 +38,8 @@ impl FieldChange {
         }
     }
 
-    /// Returns a copy of `owner` for each number of the field that changes. In a copy, only this
-    /// number is changed, namely by 10^−`decimals`.
+    /// For each number of the field that changes, such as a coordinate of a point, returns a copy
+    /// of `owner` in which only this number is changed, namely by 10^−`decimals`.
     pub fn with_unit(&self, owner: FieldOwner, decimals: i32) -> Vec<FieldOwner> {
         let unit = libm::pow(10.0, f64::from(-decimals));
         let units = match self.by {

@@ -309,7 +309,7 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports two fields that exclude each other. The first label is at the later one.
+    /// Reports two fields that exclude each other. The first label is at the later field.
     fn conflicts(&mut self, block: &LoweredBlock<'s>) {
         // Each group of fields that exclude each other is reported at most once, even for a box
         // with center, size, min and max.

@@ -352,9 +352,9 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // The methods below skip text after a mistake.
 
-    /// Returns whether every unfinished construct ends before the next token: a brace, `let`, the
-    /// name of a field, the start of a block, or the first token of a line (within a block, only a
-    /// name).
+    /// Returns whether the next token ends every unfinished construct before it. Such a token is a
+    /// brace, `let`, the name of a field, the start of a block, or the first token of a line
+    /// (within a block, only a name).
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")
