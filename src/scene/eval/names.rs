@@ -117,8 +117,8 @@ impl<'s> Names<'s> {
         UnitOrigin::of(value, &|name| Some(self.defined.get(name)?.origin))
     }
 
-    /// Defines an index of the current block, which is the counter of a `for`. The value is `None`
-    /// if it is unknown.
+    /// Defines an index, i.e. the counter of a `for`, of the current block. The value is `None` if
+    /// it is unknown.
     pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
         let index = Defined {
             value,

@@ -143,7 +143,8 @@ impl<'s> Lowering<'s> {
             let text = self.sources.text(*span);
             let mentioned = row.field_names().filter(|name| mentions(text, name));
             lowered.meant.extend(mentioned);
-            // Names in indices that could not be parsed are not reported again where they are used.
+            // If indices could not be parsed, the names in them are not reported again at their
+            // uses.
             if Some(span.start) < open {
                 self.names.know_words(text);
             }

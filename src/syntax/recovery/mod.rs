@@ -248,8 +248,8 @@ impl<'w, 's> Recovery<'w, 's> {
         self.kind(ahead) == TokenKind::Name && !self.is(ahead, "let")
     }
 
-    /// Returns the text before the token `ahead` tokens after the next one: from the end of the
-    /// previous token.
+    /// Returns the text directly before the token `ahead` tokens after the next one. The text
+    /// starts at the end of the previous token.
     fn space_before(&mut self, ahead: usize) -> &'s str {
         let end = match ahead {
             0 => self.last_end,
