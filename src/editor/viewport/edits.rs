@@ -96,15 +96,15 @@ pub struct DecimalRounding {
     /// and so on.
     decimals: i32,
     /// Absolute values of the changes that [`together`] has rounded already. A number that changes
-    /// by one of these amounts keeps all its old decimals and is not rounded to `decimals`. So
-    /// those points of the object stay exactly in place that the pointer does not drag.
+    /// by one of these amounts keeps all its old decimals and is not rounded to `decimals`. So the
+    /// points of the object that are not dragged stay exactly in place.
     exact: Vec<f64>,
 }
 
 /// Rounds changes to `decimals` decimals. If each change on an axis is the largest change on this
 /// axis times one of [`RATIOS`], the largest change is rounded, and the others become the same
-/// multiples of it as before. So those points of the object stay exactly in place that the pointer
-/// does not drag.
+/// multiples of it as before. So the points of the object that are not dragged stay exactly in
+/// place.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();

@@ -22,8 +22,9 @@ fn assert_coverage(camera: &str, object: &str, expected: f64) {
 
 #[test]
 fn half_plane_coverage_matches_the_closed_form() {
-    // The view plane has the distance 1 and shows x from −1 to 1. The right edge of the box appears
-    // at x = edge/4, or at edge/5 if the right face is not visible.
+    // The view plane has the distance 1 and shows x from −1 to 1. The right face of the box reaches
+    // from depth 4 to depth 5. The box ends at x = edge/5 in the picture if this face is visible,
+    // and otherwise at x = edge/4.
     for edge in [-3.5f64, -0.25, 0.0, 1.0, 3.0] {
         let object = format!("box {{ min (-100, -100, -5) max ({edge}, 100, -4) color white }}");
         let expected = 0.5 + edge / if edge < 0.0 { 10.0 } else { 8.0 };
