@@ -111,8 +111,8 @@ impl Document {
     }
 }
 
-/// Returns the byte offset of a position in `text`, whose line index is `lines`. The start of the
-/// line after the last one is the end of the text. Returns `None` for later lines.
+/// Returns the byte offset of a position in `text`. `lines` is the index of the text's lines. The
+/// start of the line after the last one is the end of the text. Returns `None` for later lines.
 fn offset(
     text: &str,
     lines: &LineIndex,
