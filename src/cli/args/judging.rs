@@ -63,7 +63,8 @@ pub struct GradeArgs {
     /// several, the newest [default: every file with a picture's ending]
     #[arg(long, value_name = "GLOB")]
     pub picture: Option<String>,
-    /// The part of the scene's picture that pictures of its size show, unless they say so themselves
+    /// The part of the scene's picture that pictures of its size show, unless they say so
+    /// themselves
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Area>,
     /// A JSON file that says what a right picture gets and what each mistake takes off
