@@ -1,6 +1,7 @@
 //! A description of a scene in numbers: the camera's axes, its field of view, the vanishing points,
 //! the objects.
 
+#[cfg(feature = "json")]
 mod json;
 
 use std::{borrow::Cow, cmp::Ordering, fmt};

@@ -28,6 +28,7 @@ mod picture;
 mod probe;
 mod progress;
 mod render;
+#[cfg(feature = "report")]
 mod report;
 mod sheet;
 #[cfg(feature = "preview")]
@@ -76,6 +77,7 @@ pub fn run() -> ExitCode {
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Grade(args) => grade::run(&args, &interrupt),
+        #[cfg(feature = "report")]
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Sheet(args) => sheet::run(&args, &interrupt),
         Command::Figure(args) => figure::run(&args, &interrupt),

@@ -16,12 +16,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if args.numerics {
         return numerics(args, interrupt);
     }
-    #[cfg(feature = "report")]
-    return super::speed::run(args, interrupt);
-    #[cfg(not(feature = "report"))]
-    Err(trouble(
-        "this pinhole was built without the feature `report`: it can report on the arithmetic only, with `--numerics`",
-    ))
+    super::speed::run(args, interrupt)
 }
 
 /// Tests the arithmetic in the hard cases. After Ctrl-C, the table covers the inputs that were

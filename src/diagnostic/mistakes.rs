@@ -3,7 +3,7 @@
 use std::{error::Error, fmt, slice, sync::Arc};
 
 use super::Diagnostic;
-#[cfg(feature = "cli")]
+#[cfg(feature = "fancy")]
 use super::{Report, Style};
 use crate::source::Sources;
 
@@ -58,7 +58,7 @@ impl<'a> IntoIterator for &'a Mistakes {
 }
 
 /// Writes a report of all mistakes.
-#[cfg(feature = "cli")]
+#[cfg(feature = "fancy")]
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let report = Report::new(&self.sources, Style::default()).human(&self.diagnostics);
@@ -66,8 +66,8 @@ impl fmt::Display for Mistakes {
     }
 }
 
-/// Writes a line for each mistake; without the feature `cli`, nothing is drawn.
-#[cfg(not(feature = "cli"))]
+/// Writes a line for each mistake; without the feature `fancy`, nothing is drawn.
+#[cfg(not(feature = "fancy"))]
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, it) in self.iter().enumerate() {

@@ -13,6 +13,8 @@
 mod conclusion;
 mod empty_pixels;
 mod hypotheses;
+#[cfg(feature = "json")]
+mod json;
 mod objects;
 mod plain_facts;
 mod scoring;

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::{
     diagnostic::Mistakes,
-    film::{SizesDiffer, Unreadable},
+    film::SizesDiffer,
     render::RenderError,
 };
 
@@ -24,8 +24,9 @@ pub enum Error {
     #[error(transparent)]
     SizesDiffer(#[from] SizesDiffer),
     /// Bytes are no picture that can be read.
+    #[cfg(feature = "read")]
     #[error(transparent)]
-    Unreadable(#[from] Unreadable),
+    Unreadable(#[from] crate::film::Unreadable),
     /// A file cannot be read.
     #[error("cannot read {}: {error}", path.display())]
     Read {

@@ -1,13 +1,10 @@
 //! Pictures in memory.
 
-use std::{io, path::Path, sync::Arc};
+use std::sync::Arc;
 
 use super::Error;
 use crate::{
-    area::Area,
-    cancel,
-    files::{self, Purpose},
-    film::{self, AsBytes, Encoder, Film, Jpeg, Recipe},
+    film::{self, AsBytes, Encoder, Film, Rounding},
     source::Sources,
 };
 
@@ -23,33 +20,22 @@ use crate::{
 /// ```
 #[derive(Clone, Debug)]
 pub struct Picture {
-    pub(super) content: Content,
+    /// The pixels, and how a file of them is coded.
+    pub(super) coded: film::Picture,
+    /// The coding of a JPEG file.
+    #[cfg(feature = "read")]
+    pub(super) jpeg: Option<film::Jpeg>,
     /// The scene's text and its settings, if they are known.
     pub(super) sources: Option<Arc<Sources>>,
-}
-
-/// The pixels of a picture.
-#[derive(Clone, Debug)]
-pub(super) enum Content {
-    /// Those of a film that was rendered.
-    Rendered(Film),
-    /// Those of a file.
-    Read(Box<FromFile>),
-}
-
-/// A picture that was read from a file.
-#[derive(Clone, Debug)]
-pub(super) struct FromFile {
-    pub(super) picture: film::Picture,
-    /// The coding of a JPEG file.
-    pub(super) jpeg: Option<Jpeg>,
 }
 
 impl Picture {
     /// Makes a picture of a film that was rendered of a scene.
     pub(super) fn rendered(film: Film, sources: &Arc<Sources>) -> Self {
         Self {
-            content: Content::Rendered(film),
+            coded: film::Picture::new(film, Rounding::Float),
+            #[cfg(feature = "read")]
+            jpeg: None,
             sources: Some(Arc::clone(sources)),
         }
     }
@@ -72,10 +58,7 @@ impl Picture {
 
     /// Returns the same means without copying them.
     pub fn into_pixels(self) -> Vec<[f64; 3]> {
-        match self.content {
-            Content::Rendered(film) => film.into_pixels(),
-            Content::Read(file) => file.picture.film.into_pixels(),
-        }
+        self.coded.film.into_pixels()
     }
 
     /// Returns the bytes of red, green and blue of each pixel, row by row from the top, as sRGB:
@@ -86,12 +69,15 @@ impl Picture {
         bytes
     }
 
+    /// Returns the text and the settings of the scene that the picture shows, if they are known: of
+    /// a picture that was rendered, and of a PNG that carries them.
+    pub fn sources(&self) -> Option<&Sources> {
+        self.sources.as_deref()
+    }
+
     /// Returns the film, which the stages work with.
     pub fn film(&self) -> &Film {
-        match &self.content {
-            Content::Rendered(film) => film,
-            Content::Read(file) => &file.picture.film,
-        }
+        &self.coded.film
     }
 
     /// Returns the root mean square of the differences to another picture over all pixels and
@@ -112,62 +98,6 @@ impl Picture {
     /// The sizes differ.
     pub fn rmse(&self, other: &Self) -> Result<f64, Error> {
         Ok(film::rmse(self.film(), other.film())?)
-    }
-
-    /// Writes the picture to a file, completely or not at all, in the format of its ending:
-    /// `.png`, in 8 bits of sRGB and with the scene's text, or `.exr`, in linear floats. The bytes
-    /// are those that the program writes.
-    ///
-    /// ```
-    /// # let folder = tempfile::tempdir().unwrap();
-    /// # let path = folder.path().join("a.png");
-    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
-    /// #     checkerboard {}  image { width 40  height 30 }")?;
-    /// scene.render()?.save(&path)?;
-    /// # Ok::<(), pinhole::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// The ending is another one, or the file cannot be written.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        let path = path.as_ref();
-        let ending = path.extension().unwrap_or_default();
-        let written = if ending.eq_ignore_ascii_case("png") {
-            files::write(path, Purpose::Named, &cancel::NEVER, |out| {
-                film::write_png(self.film(), self.recipe().as_ref(), out)
-            })
-        } else if ending.eq_ignore_ascii_case("exr") {
-            let whole = Area::whole(self.width(), self.height());
-            files::write(path, Purpose::Named, &cancel::NEVER, |out| {
-                film::write_exr(self.film(), whole, whole, out)
-            })
-        } else {
-            let message = "a picture's file ends in .png or .exr";
-            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
-        };
-        written.map_err(|error| Error::Write {
-            path: path.to_owned(),
-            error,
-        })
-    }
-
-    /// Returns the text and the settings for the file to carry.
-    fn recipe(&self) -> Option<Recipe> {
-        let sources = self.sources.as_ref()?;
-        let crop = match &self.content {
-            Content::Rendered(_) => None,
-            Content::Read(file) => file.picture.crop,
-        };
-        Some(Recipe {
-            scene: sources.file.text().to_owned(),
-            overrides: sources
-                .sets
-                .iter()
-                .map(|set| set.text().to_owned())
-                .collect(),
-            crop,
-        })
     }
 }
 

@@ -2,5 +2,4 @@
 //! methods reach an error.
 
 pub mod numerics;
-#[cfg(feature = "report")]
 pub mod speed;

@@ -58,6 +58,7 @@ pub enum Command {
     #[command(after_help = help::GRADE_EXAMPLES)]
     Grade(GradeArgs),
     /// Report speed against error, method by method, or how right the arithmetic is
+    #[cfg(feature = "report")]
     #[command(after_help = help::REPORT_EXAMPLES)]
     Report(ReportArgs),
     /// Make a contact sheet: the pictures of scenes side by side, each with its name
@@ -104,6 +105,7 @@ impl Command {
             Self::Watch(args) => args.threads.count(),
             Self::Diff(args) => args.threads.count(),
             Self::Grade(args) => args.threads.count(),
+            #[cfg(feature = "report")]
             Self::Report(args) => args.threads.count(),
             Self::Sheet(args) => args.threads.count(),
             _ => None,
@@ -294,6 +296,7 @@ pub struct FigureArgs {
 }
 
 /// Arguments of `report`.
+#[cfg(feature = "report")]
 #[derive(Debug, clap::Args)]
 #[command(override_usage = help::REPORT_USAGE)]
 pub struct ReportArgs {

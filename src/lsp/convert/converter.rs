@@ -1,7 +1,6 @@
 //! Converts answers about a document to the types of the protocol, and positions and changes in the
 //! protocol to byte offsets and spans.
 
-use line_index::WideEncoding;
 use serde_json::{Value, json};
 
 use super::client::{Client, FIX_ALL, QUICK_FIX};
@@ -16,7 +15,7 @@ use crate::{
         params::{Refusal, at},
         protocol::{self, Position, Range, Uri, without_nulls},
     },
-    source::{SourceId, Span},
+    source::{Encoding, SourceId, Span},
 };
 
 /// Converter for a document and the client in which the document is open.
@@ -104,7 +103,7 @@ impl Converter<'_> {
             // Offsets within labels are in UTF-16 units, regardless of the encoding of positions.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
-                count(WideEncoding::Utf16.measure(before))
+                count(Encoding::Utf16.columns(before))
             };
             json!({ "label": [before(range.start), before(range.end)] })
         });

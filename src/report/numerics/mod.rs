@@ -28,7 +28,7 @@ mod triangle;
 
 use std::sync::atomic::Ordering;
 
-use rayon::{ThreadPoolBuildError, prelude::*};
+use rayon::prelude::*;
 
 use self::inputs::CaseRng;
 pub use self::{
@@ -36,7 +36,10 @@ pub use self::{
     table::{CaseResult, NumericsTable},
     trial::CaseTally,
 };
-use crate::{render::Control, threads};
+use crate::{
+    render::Control,
+    threads::{self, NoThreads},
+};
 
 /// Returns all cases of the catalogue, in order.
 pub fn cases() -> impl Iterator<Item = &'static Case> {
@@ -57,7 +60,7 @@ const BLOCK: u64 = 100;
 /// Tests `inputs_per_case` inputs of every case, and reports progress in inputs. If the run is
 /// cancelled, the result contains the inputs tested until then: about equally many of every case,
 /// and at least one. Fails if the threads cannot be started.
-pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, ThreadPoolBuildError> {
+pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, NoThreads> {
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);
     let count = cases.len() as u64;

@@ -43,6 +43,7 @@ impl NumericsTable {
 
     /// Converts the table to JSON. Null stands for an infinite error, such as that of a distance
     /// that is not found at all, and for numbers that were not measured or do not apply to a case.
+    #[doc(hidden)]
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|CaseResult { case, tally }| {
             let side = |i: usize| {
