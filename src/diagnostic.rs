@@ -30,6 +30,7 @@ use crate::source::{SourceId, Span, sort_by_span};
 
 /// Whether a problem prevents the scene from being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Severity {
     /// The scene cannot be read.
     Error,
@@ -49,6 +50,7 @@ impl Severity {
 
 /// A problem of a scene: what is wrong, where, and how to solve it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// Whether the problem is an error or a warning.
     pub severity: Severity,
@@ -72,6 +74,7 @@ pub struct Diagnostic {
 
 /// A place with a short explanation.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Label {
     /// The labelled place.
     pub span: Span,

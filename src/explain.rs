@@ -135,6 +135,7 @@ pub fn headings() -> impl Iterator<Item = &'static str> {
 
 /// Explanation pages about one subject.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Group {
     /// The subject.
     pub name: &'static str,
@@ -144,6 +145,7 @@ pub struct Group {
 
 /// The explanation of a code.
 #[derive(Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Page {
     /// The code, without `pinhole::`.
     pub code: &'static str,

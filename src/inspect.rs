@@ -19,6 +19,7 @@ use glam::DVec3;
 
 /// The output of `pinhole inspect`. Every number is the correctly rounded exact value.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Inspection {
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
@@ -43,6 +44,7 @@ pub struct Inspection {
 
 /// Properties of a camera.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CameraFacts {
     /// Position of the eye.
     pub eye: DVec3,
@@ -70,6 +72,7 @@ pub struct CameraFacts {
 
 /// Properties of an object.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ObjectFacts {
     /// The object's name.
     pub name: Option<String>,

@@ -17,6 +17,7 @@ use crate::{
 /// The output of `pinhole probe`: the ray through a point of the picture, and all its crossings
 /// with surfaces. Every number is the correctly rounded exact value.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Probe {
     /// The point, in pixels from the picture's top left corner; it may lie outside the picture.
     pub pixel: DVec2,

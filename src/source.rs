@@ -73,7 +73,7 @@ fn order(spans: &[Span]) -> Vec<usize> {
 }
 
 /// The source texts of a scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sources {
     /// The scene file.
     pub file: Source,
@@ -148,6 +148,16 @@ pub struct Source {
     invalid: Vec<usize>,
     lines: OnceLock<Lines>,
 }
+
+/// Texts are equal if their names and bytes are.
+impl PartialEq for Source {
+    fn eq(&self, other: &Self) -> bool {
+        let (own, others) = ((&self.text, &self.invalid), (&other.text, &other.invalid));
+        self.name == other.name && own == others
+    }
+}
+
+impl Eq for Source {}
 
 impl Source {
     /// Makes a source from a file's bytes. Each byte that is not valid UTF-8 becomes a `_`, so that

@@ -22,7 +22,7 @@ use crate::source::Sources;
 ///     assert_eq!(mistake.fixes[0].edits[0].text, "lookat");
 /// }
 /// ```
-#[derive(Clone)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct Mistakes {
     sources: Arc<Sources>,
     diagnostics: Vec<Diagnostic>,

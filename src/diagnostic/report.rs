@@ -31,6 +31,7 @@ pub struct Style {
 
 /// How a report is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Drawing {
     /// Box-drawing characters.
     Unicode,

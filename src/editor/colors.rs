@@ -15,6 +15,7 @@ use crate::{
 
 /// A colour that is written in the text and can be replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Swatch {
     /// The span of its name, its code, or the call of `rgb`.
     pub span: Span,

@@ -16,6 +16,7 @@ use crate::{
 
 /// A completion.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Completion {
     /// The label. Editors compare it with the typed word.
     pub label: String,
@@ -35,6 +36,7 @@ pub struct Completion {
 
 /// Kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum CompletionKind {
     /// `let`
     Keyword,

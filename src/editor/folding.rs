@@ -5,6 +5,7 @@ use crate::source::{Span, sort_by_span};
 
 /// Lines that can be folded to their first line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Fold {
     /// Span from the first character of the first line's text to the end of the last line.
     pub span: Span,
@@ -14,6 +15,7 @@ pub struct Fold {
 
 /// Kind of lines that can be folded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FoldKind {
     /// A block.
     Block,

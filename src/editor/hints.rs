@@ -16,6 +16,7 @@ use crate::{
 
 /// A hint at the end of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Hint {
     /// Byte offset of the line's end.
     pub at: usize,

@@ -22,6 +22,7 @@ use crate::{
 
 /// Description of a word or a value.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Hover {
     /// The span of the word or value.
     pub span: Span,

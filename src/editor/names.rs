@@ -14,6 +14,7 @@ use crate::{
 
 /// A definition or a use of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Occurrence {
     /// The span of the name.
     pub span: Span,

@@ -11,6 +11,7 @@ use crate::{
 
 /// A word, number, sign or comment with its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct SemanticToken {
     /// The span; a comment may have several lines.
     pub span: Span,
@@ -22,6 +23,7 @@ pub struct SemanticToken {
 
 /// The kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SemanticKind {
     /// `let`, `for`, or the keyword of a block.
     Keyword,

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 /// The signature of a function.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Signature {
     /// The signature, such as `atan2(y, x) → angle`.
     pub label: String,

@@ -12,6 +12,7 @@ use crate::{
 
 /// An entry of the outline.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Symbol {
     /// The name.
     pub name: String,
@@ -29,6 +30,7 @@ pub struct Symbol {
 
 /// The kind of an entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SymbolKind {
     /// A `let`.
     Definition,

@@ -15,6 +15,7 @@ use crate::{
 
 /// A word or sign with its role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct RoleToken {
     /// The span.
     pub span: Span,
@@ -24,6 +25,7 @@ pub struct RoleToken {
 
 /// The role of a word or sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Role {
     /// `let`
     Let,

@@ -24,6 +24,7 @@ use crate::{
 
 /// Kind of figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
     /// The camera, seen from outside.
     Camera,

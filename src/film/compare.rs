@@ -47,6 +47,7 @@ impl Tolerance<'_> {
 
 /// The result of comparing two pictures.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Comparison {
     /// Number of columns of both pictures.
     pub width: u32,
@@ -65,6 +66,7 @@ pub struct Comparison {
 
 /// The largest difference of a channel, and its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Largest {
     /// Difference between the two values of the channel, in steps of 8-bit sRGB.
     pub steps: f64,

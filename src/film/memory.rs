@@ -13,6 +13,7 @@ use crate::files::read_system_text;
     size(*.needed),
     .available.map_or("more than there is".to_owned(), |there| format!("and {} are available", size(there)))
 )]
+#[non_exhaustive]
 pub struct TooLarge {
     /// Width of the picture, in pixels.
     pub width: u32,
@@ -41,7 +42,10 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
 }
 
 /// Checks the available memory, then tries to allocate the needed bytes, and frees them at once.
-/// Fails if there is too little memory or the system refuses the allocation.
+///
+/// # Errors
+///
+/// There is too little memory, or the system refuses the allocation.
 pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
     let needed = check(width, height, bytes_per_pixel)?;
     let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();

@@ -4,7 +4,8 @@ use super::pixels::Film;
 use crate::area::Area;
 
 /// A picture as a file contains it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Picture {
     /// Mean of each pixel, in linear light.
     pub film: Film,
@@ -32,7 +33,8 @@ impl Picture {
 }
 
 /// The opacity of a picture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Opacity {
     /// Least and greatest opacity of the pixels, from 0 to 1.
     pub range: [f64; 2],
@@ -42,6 +44,7 @@ pub struct Opacity {
 
 /// Format to which a file's values are rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Rounding {
     /// Bytes of sRGB, or numbers of fewer bits.
     Byte,
@@ -72,6 +75,7 @@ impl Rounding {
 
 /// The effect of a file's coding on colours besides rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Coding {
     /// No effect: apart from rounding, the file has the colours that the program computed.
     Exact,

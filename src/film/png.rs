@@ -45,6 +45,7 @@ pub struct Recipe {
 
 /// Why a picture's recipe cannot be read.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum NotOurs {
     /// The file does not follow the PNG format.
     #[error("it begins as a PNG does, but is damaged or no picture")]

@@ -15,6 +15,7 @@ use crate::color::half_byte;
 const PARTS: usize = 4096;
 
 /// Encoder of linear light as bytes of sRGB.
+#[derive(Clone, Debug)]
 pub struct Encoder {
     /// For each byte k below 255, the linear light whose sRGB value is k + 1/2, in 8-bit steps.
     /// From this light on, the byte is k + 1.

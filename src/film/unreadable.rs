@@ -11,6 +11,7 @@ pub const DECODED_LIMIT: u64 = 1 << 28;
 
 /// Why a file cannot be read as a picture.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum Unreadable {
     /// The file is no picture, or its format is not supported.
     #[error(

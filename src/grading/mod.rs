@@ -24,6 +24,7 @@ mod wording;
 
 use std::{
     borrow::Cow,
+    fmt,
     sync::{Arc, Mutex, atomic::AtomicBool},
 };
 
@@ -70,6 +71,14 @@ pub struct Reference {
 /// Bytes per pixel: the exact mean, and twice the moments (mean, its variance, variance), as there
 /// are two while they are computed.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
+
+impl fmt::Debug for Reference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Reference");
+        fields.field("part", &self.part);
+        fields.field("rounding", &self.rounding).finish_non_exhaustive()
+    }
+}
 
 impl Reference {
     /// Computes the exact picture of a part of a scene, for judging pictures with some rounding.

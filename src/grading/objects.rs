@@ -21,6 +21,7 @@ const BESIDE: usize = 2;
 
 /// The verdict on an object.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ObjectVerdict {
     /// Index in the file.
     pub index: usize,

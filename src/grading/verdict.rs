@@ -7,6 +7,7 @@ use crate::{numbers::short, scene::Scene};
 
 /// The result in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
     /// Equal to the exact picture within its tolerance.
     Right,
@@ -32,6 +33,7 @@ impl Kind {
 
 /// A mistake in words.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NamedMistake {
     /// Stable identifier, for programs.
     pub id: &'static str,
@@ -47,6 +49,7 @@ pub struct NamedMistake {
 
 /// The verdict on a picture.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Verdict {
     /// The result in one word.
     pub kind: Kind,

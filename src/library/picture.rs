@@ -18,7 +18,7 @@ use crate::{
 /// assert_eq!(picture.pixels()[0], [0.0; 3]); // black in the top left corner
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// The pixels, and how a file of them is coded.
     pub(super) coded: film::Picture,
@@ -111,7 +111,7 @@ impl Picture {
 /// assert!(exact.bounds.iter().all(|&bound| bound < 1e-9));
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Exact {
     /// The means.

@@ -376,7 +376,11 @@ fn uri(request: &Request) -> Option<Uri> {
 
 /// Returns the answer, or an internal error if computing it panicked. The server continues, since
 /// the next request may succeed, and computing an answer changes no text.
-pub(crate) fn catch_panics<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
+///
+/// # Errors
+///
+/// The request is refused, or computing the answer panicked.
+pub fn catch_panics<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();
         Err(Refusal(ErrorCode::InternalError, message))

@@ -16,6 +16,7 @@ mod tally;
 mod tile;
 
 use std::{
+    fmt,
     num::NonZero,
     sync::{
         Mutex,
@@ -43,6 +44,7 @@ pub use self::{
 };
 
 /// Control of a render: its threads, its progress, and its cancellation.
+#[derive(Clone, Copy)]
 pub struct Control<'a> {
     /// Number of threads; `None` for the default number, which is one per processor or the
     /// process's limit.
@@ -52,6 +54,14 @@ pub struct Control<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
+}
+
+impl fmt::Debug for Control<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Control");
+        fields.field("threads", &self.threads);
+        fields.field("cancel", self.cancel).finish_non_exhaustive()
+    }
 }
 
 /// Default control: the default number of threads, no progress, no cancellation.
@@ -67,6 +77,7 @@ impl Default for Control<'_> {
 
 /// Reason why a render gives no picture.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// There is not enough memory for the picture.
     #[error(transparent)]
@@ -98,6 +109,7 @@ impl From<Cancelled> for RenderError {
 }
 
 /// A rendered part of the picture.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Rendered<P = [f64; 3]> {
     /// A picture with samples.
     Sampled(Film<P>),

@@ -13,6 +13,7 @@ use crate::{
 
 /// An image, a camera or a shape: the owner of fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum FieldOwner {
     /// The picture.
     Image(Image),

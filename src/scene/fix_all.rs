@@ -12,6 +12,7 @@ use crate::{
 /// Result of [`fix_all`]: the corrected text, the applied fixes, and the numbers of errors that
 /// remain.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Fixed {
     /// The text.
     pub text: String,
@@ -30,6 +31,7 @@ pub struct Fixed {
 
 /// A fix that was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Done {
     /// Place of the problem in the text to which the fix was applied.
     pub place: LineColumn,

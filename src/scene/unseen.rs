@@ -71,6 +71,7 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
 
 /// Where an object lies that is wholly outside of the visible space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outside {
     /// Behind the camera.
     Behind,
@@ -116,6 +117,7 @@ pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) ->
 }
 
 /// The space that a camera sees: the pyramid of its window, between the near and the far plane.
+#[derive(Clone, Copy, Debug)]
 pub struct Sight {
     eye: DVec3,
     /// The view direction, of length 1.

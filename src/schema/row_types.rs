@@ -11,6 +11,7 @@ use crate::math::compare_half_turns;
 /// Fields that exclude each other, grouped into ways to express the same thing. A block uses one of
 /// the ways.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct Choice {
     /// The fields of each way. A block that uses a way must have those of its fields whose preset
     /// is [`Preset::Alternative`].
@@ -21,6 +22,7 @@ pub struct Choice {
 
 /// The table's row for a field.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct FieldRow {
     /// The field's name.
     pub name: &'static str,
@@ -91,6 +93,7 @@ pub enum Preset {
 
 /// Condition on a field's value, in addition to its type.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Condition {
     /// A number without a fraction.
     Whole,

@@ -8,6 +8,7 @@ use crate::{math::Angle, source::Span};
 
 /// The tree of a whole file.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Tree<'s> {
     /// The items in their order.
     pub items: Vec<Item<'s>>,
@@ -37,6 +38,7 @@ impl Item<'_> {
 
 /// A name and its place in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Name<'s> {
     /// The name's text.
     pub text: &'s str,
@@ -46,6 +48,7 @@ pub struct Name<'s> {
 
 /// A definition: `let NAME = VALUE`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Definition<'s> {
     /// The place of `let`.
     pub keyword: Span,
@@ -75,6 +78,7 @@ impl Definition<'_> {
 /// A block: `KIND NAME? { FIELD VALUE … }`, or with indices `KIND NAME? for INDEX < COUNT, … {
 /// FIELD VALUE … }`. The part before the `{` is its head.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Block<'s> {
     /// The kind; `None` if it is missing.
     pub kind: Option<Name<'s>>,
@@ -123,6 +127,7 @@ impl<'s> Block<'s> {
 
 /// The indices of a repeated object: `for INDEX < COUNT, …`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Repetition<'s> {
     /// The place of `for`.
     pub keyword: Span,
@@ -141,6 +146,7 @@ impl Repetition<'_> {
 
 /// An index and its count: `INDEX < COUNT`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Index<'s> {
     /// The name of the index.
     pub name: Name<'s>,
@@ -166,6 +172,7 @@ impl<'s> Index<'s> {
 
 /// A field and its value: `FIELD VALUE`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Field<'s> {
     /// The field's name.
     pub name: Name<'s>,
@@ -177,6 +184,7 @@ pub struct Field<'s> {
 
 /// A value with its place.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Value<'s> {
     /// The value's form.
     pub kind: ValueKind<'s>,
@@ -254,6 +262,7 @@ pub enum ValueKind<'s> {
 
 /// A call: `FUNCTION(ARGUMENT, …)`.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Call<'s> {
     /// The function's name.
     pub function: Name<'s>,
@@ -265,6 +274,7 @@ pub struct Call<'s> {
 
 /// An operator and its right operand.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Step<'s> {
     /// The operator.
     pub operator: Operator,
@@ -276,6 +286,7 @@ pub struct Step<'s> {
 
 /// A value in a list of values.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Element<'s> {
     /// The value.
     pub value: Value<'s>,
@@ -285,6 +296,7 @@ pub struct Element<'s> {
 
 /// Unit of an angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Unit {
     /// Degrees: `deg`.
     Degrees,
@@ -312,6 +324,7 @@ impl Unit {
 
 /// A binary operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Operator {
     /// `+`
     Add,

@@ -30,6 +30,7 @@ const STEPS_OF_COUNT: f64 = 10.0;
 
 /// Limits of a number in the text, and its slider, in the unit in which the number is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Limits {
     /// Minimum of the number for which the text has no more errors than now; `None` if it is
     /// unknown.
@@ -49,6 +50,7 @@ pub struct Limits {
 /// The slider of a definition, or a note why the definition has none or why its comment is not used
 /// as written.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Slider<'a> {
     /// The definition's name.
     pub name: &'a str,

@@ -52,6 +52,7 @@ pub struct Drag<'a> {
 /// Changes of a text that follow from a dragged handle. All lists are empty if the picture would
 /// not change visibly.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Dragged {
     /// The edits.
     pub edits: Vec<Edit>,

@@ -33,6 +33,7 @@ pub type Handle = (&'static str, Option<DVec3>);
 /// Axis or plane along which a dragged point moves. If none is given, the point moves in the plane
 /// through it that is parallel to the view plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Along {
     /// The axis x, y or z (0, 1 or 2).
     Axis(usize),

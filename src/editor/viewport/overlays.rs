@@ -33,6 +33,7 @@ pub const MOST_OBJECTS: usize = 1000;
 
 /// Drawings over a picture.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Overlays {
     /// The picture's width and height, in pixels.
     pub size: [u32; 2],
@@ -52,6 +53,7 @@ pub struct Overlays {
 
 /// Vanishing point of a coordinate axis.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Vanishing {
     /// The point; `None` if the axis is parallel to the view plane, and so has none.
     pub point: Option<DVec2>,
@@ -62,6 +64,7 @@ pub struct Vanishing {
 
 /// Outline and handles of an object.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ObjectOverlay {
     /// Index of the object in the scene.
     pub object: usize,
@@ -74,6 +77,7 @@ pub struct ObjectOverlay {
 
 /// Selection of the objects whose outlines are drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ShownObjects {
     /// The objects with these indices.
     Only(Vec<usize>),

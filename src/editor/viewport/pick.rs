@@ -35,6 +35,7 @@ pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, 
 
 /// Samples of a pixel.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PixelSamples {
     /// Positions of the samples in pixels from the pixel's top left corner, and their colours.
     pub samples: Vec<(DVec2, Color)>,

@@ -11,6 +11,7 @@ use crate::{
 
 /// A hard case of the catalogue in [`cases`](super::cases).
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Case {
     /// Name of the case in tables, such as `C3a`.
     pub id: &'static str,

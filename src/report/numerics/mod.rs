@@ -59,7 +59,11 @@ const BLOCK: u64 = 100;
 
 /// Tests `inputs_per_case` inputs of every case, and reports progress in inputs. If the run is
 /// cancelled, the result contains the inputs tested until then: about equally many of every case,
-/// and at least one. Fails if the threads cannot be started.
+/// and at least one.
+///
+/// # Errors
+///
+/// No thread can be started.
 pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, NoThreads> {
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);

@@ -9,6 +9,7 @@ use crate::numbers::grouped;
 
 /// Result of testing a case.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct CaseResult {
     /// The case that was tested.
     pub case: &'static Case,
@@ -18,6 +19,7 @@ pub struct CaseResult {
 
 /// Results of all cases.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct NumericsTable {
     /// The results in the order of the catalogue.
     pub rows: Vec<CaseResult>,

@@ -19,6 +19,7 @@ use crate::{
 
 /// Counts and measurements of a case. In each pair, the textbook comes first and Pinhole second.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct CaseTally {
     /// Number of inputs tested.
     pub inputs: u64,

@@ -9,6 +9,7 @@ use crate::scene::Method;
 
 /// Estimated samples and time that a method needs to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Estimate {
     /// Samples per pixel; `None` for the exact method.
     pub per_pixel: Option<f64>,
@@ -31,6 +32,7 @@ impl Estimate {
 }
 
 /// The methods that reach an error, sorted by CPU time.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
     /// The method with the least CPU time, and the methods that are about as fast.
     pub fastest: Vec<(Method, Estimate)>,

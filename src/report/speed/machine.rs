@@ -6,6 +6,7 @@ use crate::files::read_system_text;
 
 /// Properties of a machine that affect how long renders take.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Machine {
     /// Name of the processor's model as the system reports it, or else the processor's
     /// architecture.

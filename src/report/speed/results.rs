@@ -84,6 +84,7 @@ pub struct SeriesPoint {
 /// Slope of a method's error against the number of samples, both logarithmic, at the `end` of its
 /// series. There, the error is proportional to the power `slope` of the number of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct EndSlope {
     /// Slope of the line of least squares through the logarithms.
     pub slope: f64,
@@ -132,6 +133,7 @@ pub struct Run {
 
 /// A method's picture that a page shows next to those of other methods.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MethodPicture {
     /// Samples per pixel of the picture.
     pub per_pixel: u64,

@@ -49,6 +49,11 @@ const SHOWN: u64 = 16;
 /// as interrupted, or an error if the exact picture is not done yet. Calls `progress` after each
 /// timed render with the share of the whole that is done. Does not call the progress callback of
 /// `control`.
+///
+/// # Errors
+///
+/// It is cancelled before the exact picture is done, there is not enough memory, or no thread can be
+/// started.
 pub fn measure(
     subject: &MeasuredScene,
     scene: &Scene,

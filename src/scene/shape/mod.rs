@@ -30,6 +30,7 @@ use crate::{
 
 /// A shape with its colours. Lengths are in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Shape {
     /// A sphere.
     Sphere(Sphere),
