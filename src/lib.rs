@@ -42,7 +42,7 @@
 //! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp` |
 //! | `preview` | notices that a scene's file was changed |
 //! | `studio` | the host of the page on which scenes are edited |
-//! | `cli` | the program |
+//! | `cli` | the program, which has `fancy`, `preview`, `read` and `report` |
 //! | `files`, `pages` | parts of the others, of no use alone |
 //!
 //! # Stages
@@ -166,6 +166,9 @@ pub mod studio;
 #[doc(hidden)]
 pub mod cli;
 
+#[cfg(feature = "read")]
+#[doc(inline)]
+pub use crate::grading::Verdict;
 #[doc(inline)]
 pub use crate::{
     color::Color,
@@ -174,7 +177,4 @@ pub use crate::{
     math::Angle,
     scene::{Method, Scene as SceneData},
 };
-#[cfg(feature = "read")]
-#[doc(inline)]
-pub use crate::grading::Verdict;
 pub use glam;

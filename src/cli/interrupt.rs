@@ -59,7 +59,6 @@ impl Interrupt {
 
     /// Registers `what`, which is called when Ctrl-C is pressed, or at once if it already was.
     /// `what` must make the command end.
-    #[cfg(feature = "preview")]
     pub fn then(&self, what: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.then.set(Box::new(what));
         // Ctrl-C may have been pressed before `what` was registered, so `what` is called here.

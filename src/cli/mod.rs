@@ -28,18 +28,14 @@ mod picture;
 mod probe;
 mod progress;
 mod render;
-#[cfg(feature = "report")]
 mod report;
 mod sheet;
-#[cfg(feature = "preview")]
 mod show;
-#[cfg(feature = "report")]
 mod speed;
 #[cfg(feature = "studio")]
 mod studio;
 mod sweep;
 mod unified_diff;
-#[cfg(feature = "preview")]
 mod watch;
 
 use std::{
@@ -71,13 +67,11 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args, &interrupt),
         Command::New(args) => new::run(&args, &interrupt),
-        #[cfg(feature = "preview")]
         Command::Watch(args) => watch::run(&args, &interrupt),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),
         Command::Diff(args) => diff::run(&args, &interrupt),
         Command::Grade(args) => grade::run(&args, &interrupt),
-        #[cfg(feature = "report")]
         Command::Report(args) => report::run(&args, &interrupt),
         Command::Sheet(args) => sheet::run(&args, &interrupt),
         Command::Figure(args) => figure::run(&args, &interrupt),

@@ -34,7 +34,6 @@ pub enum RenderedPicture {
 
 impl RenderedPicture {
     /// Returns the film of 64-bit means; `None` if the means were rounded.
-    #[cfg(feature = "preview")]
     pub fn into_film(self) -> Option<film::Film> {
         match self {
             Self::Light(light) => Some(light.into_film()),

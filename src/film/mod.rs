@@ -35,11 +35,11 @@ mod unreadable;
 #[cfg(feature = "pages")]
 #[doc(hidden)]
 pub use self::embed::{data_uri, reduced};
+#[cfg(feature = "exr")]
+pub use self::exr::{LinearFilm, write_exr};
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub use self::part::place_of_part;
-#[cfg(feature = "exr")]
-pub use self::exr::{LinearFilm, write_exr};
 #[cfg(feature = "png")]
 pub use self::png::{
     NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png,

@@ -76,7 +76,9 @@ impl fmt::Debug for Reference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut fields = f.debug_struct("Reference");
         fields.field("part", &self.part);
-        fields.field("rounding", &self.rounding).finish_non_exhaustive()
+        fields
+            .field("rounding", &self.rounding)
+            .finish_non_exhaustive()
     }
 }
 

@@ -4,11 +4,7 @@ use std::{io, path::PathBuf};
 
 use thiserror::Error;
 
-use crate::{
-    diagnostic::Mistakes,
-    film::SizesDiffer,
-    render::RenderError,
-};
+use crate::{diagnostic::Mistakes, film::SizesDiffer, render::RenderError};
 
 /// Why something cannot be done with a scene or a picture.
 #[derive(Debug, Error)]

@@ -89,12 +89,7 @@ impl Document {
 
 /// Returns the byte offset of a position in the text whose line index is `lines`. The start of the
 /// line after the last one is the end of the text. Returns `None` for later lines.
-fn offset(
-    text: &str,
-    lines: &Lines,
-    encoding: Encoding,
-    (line, col): LineColumn,
-) -> Option<usize> {
+fn offset(text: &str, lines: &Lines, encoding: Encoding, (line, col): LineColumn) -> Option<usize> {
     let (line, col) = (line as usize, col as usize);
     let Some(range) = lines.range(line) else {
         return (line == lines.line(text.len()) + 1).then_some(text.len());
@@ -114,11 +109,7 @@ fn offset(
 mod tests {
     use super::*;
 
-    const ENCODINGS: [Encoding; 3] = [
-        Encoding::Utf8,
-        Encoding::Utf16,
-        Encoding::Utf32,
-    ];
+    const ENCODINGS: [Encoding; 3] = [Encoding::Utf8, Encoding::Utf16, Encoding::Utf32];
 
     #[test]
     fn columns_are_counted_as_the_editor_does() {

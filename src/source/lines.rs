@@ -91,7 +91,9 @@ impl Lines {
         };
         let columns = |offset| {
             let before = self.wide.partition_point(|wide| wide.end <= offset);
-            let last = before.checked_sub(1).map_or(Wide::START, |at| self.wide[at]);
+            let last = before
+                .checked_sub(1)
+                .map_or(Wide::START, |at| self.wide[at]);
             last.columns[unit] + offset - last.end
         };
         columns(offset) - columns(start)

@@ -42,7 +42,6 @@ pub enum Command {
     #[command(after_help = help::NEW_EXAMPLES)]
     New(NewArgs),
     /// Render a scene whenever its file is saved
-    #[cfg(feature = "preview")]
     #[command(after_help = help::WATCH_EXAMPLES)]
     Watch(WatchArgs),
     /// Show what a scene means: camera, field of view, vanishing points, objects
@@ -58,7 +57,6 @@ pub enum Command {
     #[command(after_help = help::GRADE_EXAMPLES)]
     Grade(GradeArgs),
     /// Report speed against error, method by method, or how right the arithmetic is
-    #[cfg(feature = "report")]
     #[command(after_help = help::REPORT_EXAMPLES)]
     Report(ReportArgs),
     /// Make a contact sheet: the pictures of scenes side by side, each with its name
@@ -101,11 +99,9 @@ impl Command {
     pub fn threads(&self) -> Option<NonZero<usize>> {
         match self {
             Self::Render(args) => args.threads.count(),
-            #[cfg(feature = "preview")]
             Self::Watch(args) => args.threads.count(),
             Self::Diff(args) => args.threads.count(),
             Self::Grade(args) => args.threads.count(),
-            #[cfg(feature = "report")]
             Self::Report(args) => args.threads.count(),
             Self::Sheet(args) => args.threads.count(),
             _ => None,
@@ -186,7 +182,6 @@ pub struct NewArgs {
 }
 
 /// Arguments of `watch`.
-#[cfg(feature = "preview")]
 #[derive(Debug, clap::Args)]
 pub struct WatchArgs {
     /// The scene: a .scn file
@@ -296,7 +291,6 @@ pub struct FigureArgs {
 }
 
 /// Arguments of `report`.
-#[cfg(feature = "report")]
 #[derive(Debug, clap::Args)]
 #[command(override_usage = help::REPORT_USAGE)]
 pub struct ReportArgs {

@@ -136,7 +136,6 @@ fn a_killed_new_command_leaves_a_complete_file_or_none() {
 }
 
 /// The process is killed at various times, from before it writes until it has answered.
-#[cfg(feature = "studio")]
 #[test]
 fn a_killed_first_save_leaves_a_complete_file_or_none() {
     use crate::studio::client::Studio;
