@@ -1,5 +1,5 @@
-//! Measures how much time culling saves: `cargo bench --bench culling`. See README.md beside this
-//! file.
+//! Measures how much time culling saves, i.e. testing samples only against the objects that may be
+//! seen in a pixel: `cargo bench --bench culling`. See README.md beside this file.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -25,23 +25,24 @@ use pinhole::{
 use self::one_by_one::one_by_one;
 
 /// Number of times that each picture is rendered in each way. The shortest CPU time counts, since
-/// other work on the machine only makes a render slower.
+/// other work on the machine only makes a render slower. With fewer rounds, the results would
+/// scatter more; more rounds would take longer.
 const ROUNDS: usize = 3;
 
-/// How the samples of a picture are traced.
+/// Way in which the samples of a picture are traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
-    /// Each sample by itself, with the quadtree finding the objects that its ray may hit.
+    /// Each sample is traced alone. The quadtree finds the objects that its ray may hit.
     OneByOne,
-    /// As by `render`, with culling: the samples of a pixel together, against the objects that may
-    /// be seen there.
+    /// The samples of a pixel are traced together, against only the objects that may be seen in the
+    /// pixel. The command `render` uses this way.
     Culled,
 }
 
 const WAYS: [Way; 2] = [Way::OneByOne, Way::Culled];
 
-/// Names of the examples that are rendered in both ways ([`Way`]). In some of them, culling saves
-/// much more time than in others.
+/// Names of the examples that are rendered in both ways ([`Way`]). In some of these scenes, culling
+/// saves much time; in others, little.
 const SCENES: [&str; 5] = [
     "scatter",
     "near_and_far",
@@ -51,7 +52,7 @@ const SCENES: [&str; 5] = [
 ];
 
 fn main() {
-    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
     if !env::args().any(|argument| argument == "--bench") {
         return;
     }
@@ -112,7 +113,7 @@ fn main() {
     exact();
 }
 
-/// Scene with a checkerboard of small squares, so that nearly every pixel sees many of them.
+/// Scene with a checkerboard whose squares are so small that nearly every pixel sees many of them.
 const DENSE: &str = "camera { eye (0.3, 2, 5) lookat (7, 1.8, -30) } checkerboard { square 0.001 }";
 
 /// Returns an element of a Weyl sequence: the fractional part of `index`·`step`, for an irrational
@@ -121,8 +122,8 @@ fn place(index: u32, step: f64, size: f64) -> f64 {
     ((f64::from(index) * step).fract() - 0.5) * size
 }
 
-/// Returns the centre of the object with the index `index`. The centres are spread over the whole
-/// picture.
+/// Returns the centre of the object with the index `index`. The centres of successive objects
+/// spread evenly over the whole picture.
 fn center(index: u32) -> [f64; 3] {
     [
         place(index, 0.618_033_988_749_895, 12.0),
@@ -131,7 +132,8 @@ fn center(index: u32) -> [f64; 3] {
     ]
 }
 
-/// Returns a scene of `count` spheres, each about a pixel in size, spread over the whole picture.
+/// Returns a scene of `count` spheres that spread over the whole picture. Each is about a pixel in
+/// size.
 fn tiny(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -142,8 +144,8 @@ fn tiny(count: u32) -> String {
 }
 
 /// Returns a scene of `count` overlapping triangles in all directions, each two hundred times as
-/// long as wide. Even in a small part of the picture, very many of them may be seen, so culling may
-/// be up to three times as slow as tracing one by one.
+/// long as wide. Even a small part of the picture may show very many of them. Culling may therefore
+/// be up to three times as slow as tracing each sample alone.
 fn slivers(count: u32) -> String {
     let mut text = String::from("camera { eye (0, 0, 9) lookat (0, 0, 0) }\n");
     for i in 0..count {
@@ -172,8 +174,8 @@ fn example(name: &str) -> Scene {
     read(&fs::read_to_string(path).expect("the example is there"))
 }
 
-/// Returns the scene with a picture that is `width` pixels wide, with an aspect ratio of 16:9, and
-/// with `per_pixel` samples per pixel.
+/// Returns the scene with a picture of `width` pixels in a row, an aspect ratio of 16:9, and
+/// `per_pixel` samples per pixel.
 fn sized(scene: &Scene, width: u32, method: Method, per_pixel: u64) -> Scene {
     let mut scene = scene.clone();
     (scene.image.width, scene.image.height) = (width, width * 9 / 16);
@@ -190,7 +192,7 @@ fn control(threads: Option<NonZero<usize>>) -> Control<'static> {
     }
 }
 
-/// Returns a function that renders the scene in the given way on one thread.
+/// Returns a function that renders the scene in the way `way` on one thread.
 fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     let [width, height] = [scene.image.width, scene.image.height];
     let (world, sampling) = (
@@ -207,9 +209,9 @@ fn picture(scene: &Scene, way: Way) -> impl Fn() + use<> {
     }
 }
 
-/// Measures what correct decisions cost. Compares the rays per CPU second of three ways, in turns:
-/// the formulas of a textbook, which are wrong in hard cases; tracing one by one; and `render`. The
-/// time to generate the sample points is included in all three.
+/// Measures what it costs to decide correctly which surface a ray hits. Compares the rays per CPU
+/// second of three ways: the formulas of a textbook, which are wrong in hard cases; tracing each
+/// sample alone; and `render`. All three include the time to generate the sample points.
 fn price() {
     const SECONDS: f64 = 2.0;
     let scene = sized(&example("figure_9_9"), 640, Method::MultiJittered, 64);
@@ -264,7 +266,8 @@ fn textbook(scene: &Scene) -> impl Fn() {
 }
 
 /// Measures what the exact picture of figure 9.9 costs, with and without a far plane. Compares its
-/// time with that of tracing 1, 2 and 4 samples per pixel one by one. All are measured in turns.
+/// time with the time to trace 1, 2 and 4 samples per pixel, each sample alone. The measurements
+/// alternate, so that other work on the machine affects all of them.
 fn exact() {
     const FEW: [u64; 3] = [1, 2, 4];
     println!("one thread; exact by the time of so many samples a pixel one by one, random");
@@ -310,9 +313,9 @@ fn exact() {
 }
 
 /// Renders figure 9.9 on one thread and returns, so that the whole process can be measured.
-/// `arguments` are the way, the method, the picture's width, samples per pixel, and the number of
-/// pictures. The way `None` prepares everything and renders nothing. Prints the CPU time of the
-/// pictures alone.
+/// `arguments` are the way of tracing, the sampling method, the picture's width, the samples per
+/// pixel, and the number of pictures. The way `None` prepares everything but renders nothing.
+/// Prints the CPU time of rendering the pictures.
 fn once(arguments: &[String]) {
     let [way, method, numbers @ ..] = arguments else {
         panic!("--once WAY METHOD WIDTH SAMPLES TIMES");
@@ -342,8 +345,8 @@ fn once(arguments: &[String]) {
     );
 }
 
-/// Measures both ways in turns, so that other work on the machine slows down both, and prints how
-/// many times as fast culling is.
+/// Measures both ways of tracing a scene, and prints how many times as fast culling is. The
+/// measurements alternate, so that other work on the machine slows down both ways.
 fn ratios(name: &str, scene: &Scene) {
     let pictures = WAYS.map(|way| picture(scene, way));
     let mut best = [f64::MAX; WAYS.len()];

@@ -19,16 +19,18 @@ mod spheres;
 
 const OBJECTS: usize = 1000;
 
-/// Number of times that each request is repeated. The median and the longest time are printed.
+/// Number of times that each request is repeated. The median and the longest time are printed. With
+/// 200 repetitions, a rare delay shows in the longest time, and the benchmark still ends soon.
 const ROUNDS: u32 = 200;
 
-/// As [`ROUNDS`], for the slow requests about a line of a million tokens.
+/// Number of times that each request about a line of a million tokens is repeated. It is smaller
+/// than [`ROUNDS`], because these requests are slow.
 const FEW: u32 = 10;
 
 const URI: &str = "file:///spheres.scn";
 
 fn main() {
-    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
     if !env::args().any(|argument| argument == "--bench") {
         return;
     }
@@ -100,8 +102,8 @@ fn main() {
 }
 
 /// Measures the formatting of a text with one block per line, and the diagnostics after the editor
-/// has applied the edits. The edits are sent back as changes, from the last to the first, so that
-/// no change moves the positions of the remaining ones.
+/// has applied the edits. The client sends the edits back as changes. It begins with the last one,
+/// so that no change moves the positions of the others.
 fn formatted() {
     let text = spheres(OBJECTS, Layout::Lines);
     let mut server = Server::start(&text);
@@ -139,14 +141,14 @@ fn formatted() {
 /// Measures the server's answers in a text with all objects in one line.
 fn objects_in_one_line() {
     let text = spheres(OBJECTS, Layout::Lines);
-    // Comments are left out, since a line comment would comment out the rest of the line.
+    // Comments are left out, since a line comment would hide the rest of the line.
     let lines = text.lines().filter(|line| !line.contains("//"));
     let line = lines.collect::<Vec<_>>().join(" ");
     println!("all of it in one line of {} bytes", line.len());
     in_one_line(&line, ROUNDS);
 }
 
-/// Measures the server's answers in a text whose only line is a sum of a million tokens.
+/// Measures the server's answers in a text of one line, which is a sum of a million tokens.
 fn tokens_in_one_line() {
     const TOKENS: usize = 1_000_000;
     let line = format!("let a = 1{}", " + 1".repeat((TOKENS - 4) / 2));
@@ -157,7 +159,7 @@ fn tokens_in_one_line() {
     in_one_line(&line, FEW);
 }
 
-/// Measures the answers that an editor waits for in a text of one line.
+/// Measures the answers for which an editor waits, in a text of one line.
 fn in_one_line(line: &str, rounds: u32) {
     let mut server = Server::start(line);
     let mut letters = Letters::at(0, 0);
@@ -183,7 +185,7 @@ fn in_one_line(line: &str, rounds: u32) {
     }
 }
 
-/// Alternately types and deletes a letter at one position of the text.
+/// Edits that alternately type and delete a letter at one position of the text.
 struct Letters {
     line: u32,
     column: u32,
@@ -216,7 +218,7 @@ impl Letters {
     }
 }
 
-/// Runs `done` `rounds` times, and prints the median and the longest time.
+/// Calls `done` `rounds` times, and prints the median and the longest time of a call.
 fn show(name: &str, rounds: u32, mut done: impl FnMut()) {
     let times = (0..rounds).map(|_| {
         let start = Instant::now();
@@ -242,7 +244,7 @@ struct Server {
 }
 
 impl Server {
-    /// Starts the server and opens a text in it.
+    /// Starts the language server and opens a text in it.
     fn start(text: &str) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_pinhole"))
             .arg("lsp")
@@ -274,8 +276,8 @@ impl Server {
         message.write(&mut self.input).expect("the server reads");
     }
 
-    /// Reads the bytes of the next message. They are not parsed, so that the client's own time is
-    /// not measured.
+    /// Reads the bytes of the server's next message. The bytes are not parsed, so that the client's
+    /// own work is not measured.
     fn read(&mut self) -> Vec<u8> {
         let mut header = String::new();
         while !header.ends_with("\r\n\r\n") {
@@ -310,7 +312,7 @@ impl Server {
 
 impl Drop for Server {
     fn drop(&mut self) {
-        // The server has nothing to save, so it is killed without `exit`.
+        // The server has nothing to save, so it is killed rather than asked to exit.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,5 +1,5 @@
-//! Measures how well `diff` names mistakes: runs the program on the corpus of
-//! `tests/integration/grade`.
+//! Measures how well `diff` names the mistakes in wrong pictures. Runs the program on pictures with
+//! known mistakes, which `tests/integration/grade` makes.
 //!
 //! `cargo bench --bench grade` judges pictures of 320 × 180 pixels; with `-- --all`, pictures of
 //! all sizes and ways of sampling. `-- --write FOLDER` writes the pictures, their scenes and
@@ -32,8 +32,9 @@ use mistakes::{GROUPS, Mistake, OF_THE_OBJECTS};
 use serde_json::{Value, json};
 use textbook::{SAMPLINGS, Sampling};
 
-/// Widths and heights of the pictures that are judged, in pixels. Without `--all`, only those of
-/// the middle size are.
+/// Widths and heights of the pictures that are judged, in pixels: a small, a usual and a large
+/// picture. Without the option `--all`, only pictures of the second size are judged, which saves
+/// time.
 const SIZES: [[u32; 2]; 3] = [[96, 64], [320, 180], [640, 360]];
 
 fn main() {
@@ -62,7 +63,8 @@ fn main() {
     for count in 0..4 {
         for &size in &sizes {
             for &sampling in &samplings {
-                // Pairs and triples of mistakes are tested only in pictures of the middle size.
+                // Pairs and triples of mistakes are tested only in pictures of the usual size, to
+                // save time.
                 if count > 1 && size != SIZES[1] {
                     continue;
                 }
@@ -85,8 +87,9 @@ fn main() {
     }
 }
 
-/// Returns sets of `count` mistakes. For a `count` of 1, these are single mistakes and the empty
-/// set; for 2 and 3, mistakes from different groups.
+/// Returns sets of `count` mistakes. For 0, this is only the empty set; for 1, each mistake alone.
+/// For 2 and 3, each mistake of an object is combined with mistakes of the camera, the board, the
+/// picture or another object.
 fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     let objects = OF_THE_OBJECTS.iter().enumerate();
     let sets = objects.flat_map(|(index, object)| {
@@ -106,9 +109,9 @@ fn sets(count: usize) -> Vec<Vec<&'static Mistake>> {
     }
 }
 
-/// Returns the cases with sets of `count` mistakes, all of one size and sampling. A case is left
-/// out if one of its mistakes is not visible: if the picture without this mistake differs only by
-/// the 8-bit step that rounding may explain.
+/// Returns the test pictures with sets of `count` mistakes, all of one size and sampling. A picture
+/// is left out if one of its mistakes is not visible, i.e. if the picture without this mistake
+/// differs by at most one 8-bit step, which rounding may explain.
 fn cases(
     count: usize,
     [width, height]: [u32; 2],
@@ -128,8 +131,8 @@ fn cases(
         let names: Vec<_> = set.iter().map(|one| one.title()).collect();
         let whole = case(scene, &names);
         let picture = whole.picture();
-        // The mistake `cut_off` truncates bytes instead of rounding them, so a single step is a
-        // visible difference.
+        // The mistake `cut_off` truncates bytes instead of rounding them. It changes bytes by a
+        // single step, so a single step counts as a visible difference.
         let least = u8::from(!names.contains(&"cut_off"));
         let is_seen = |left_out: usize| {
             let mut others = names.clone();
@@ -138,7 +141,7 @@ fn cases(
             let mut bytes = picture.as_raw().iter().zip(other.as_raw());
             bytes.any(|(a, b)| a.abs_diff(*b) > least)
         };
-        // A transposed picture may have another size than the scene; then it is left out.
+        // A transposed picture may have another size than the scene. It is then left out.
         let is_whole = picture.dimensions() == (width, height);
         (is_whole && (0..names.len()).all(is_seen)).then_some(whole)
     };
@@ -147,8 +150,7 @@ fn cases(
     sets.filter_map(|(scene, set)| seen(scene, set)).collect()
 }
 
-/// Judges the cases and prints a row of the table, with the number of cases that are judged
-/// correctly.
+/// Judges the pictures `cases` and prints a row of the table with the number of correct judgements.
 fn judge(program: &str, of: &str, cases: &[Case]) {
     let folder = tempfile::tempdir().expect("a folder for pictures");
     let (mut right, mut time) = (0, Duration::ZERO);
@@ -165,7 +167,7 @@ fn judge(program: &str, of: &str, cases: &[Case]) {
     println!("| {of} | {right} of {count} | {seconds:.2} |");
 }
 
-/// Returns the program's answer about a case, and the time that it took.
+/// Returns the program's answer about a test picture, and the time that the program took.
 fn ask(program: &str, case: &Case, folder: &Path) -> (Value, Duration) {
     let (picture, scene) = (folder.join("a.png"), folder.join("a.scn"));
     case.picture().save(&picture).expect("a picture");
@@ -193,8 +195,8 @@ fn named_mistakes(answer: &Value) -> String {
     format!("{} {}", answer["verdict"], named.join("; "))
 }
 
-/// Writes a case's picture and scene into `folder`. Returns a JSON object with the mistakes in the
-/// picture.
+/// Writes a test picture and its scene into `folder`. Returns a JSON object that lists the mistakes
+/// in the picture.
 fn write(case: &Case, folder: &Path) -> Value {
     let name: String = case
         .title

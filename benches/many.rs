@@ -1,9 +1,9 @@
-//! Measures how preparation and rendering times grow with the number of objects: `cargo bench
-//! --bench many`. See README.md beside this file.
+//! Measures how the times of preparation and rendering grow with the number of objects:
+//! `cargo bench --bench many`. See README.md beside this file.
 //!
-//! `-- --write COUNT` writes a scene of COUNT small spheres to standard output instead. `--
-//! --phases COUNT…` prints the CPU seconds of each phase once, and the memory that the world takes.
-//! With `--cube`, the spheres are in a cube instead of all over the picture.
+//! `-- --write COUNT` writes a scene of COUNT small spheres to standard output instead.
+//! `-- --phases COUNT…` prints the CPU seconds of each phase once, and the memory of the prepared
+//! scene. With `--cube`, the spheres are in a cube instead of all over the picture.
 #![allow(
     clippy::disallowed_methods,
     reason = "a benchmark reads and writes files of its own"
@@ -56,7 +56,7 @@ fn main() {
             .for_each(|count| phases(&read(text(count))));
         return;
     }
-    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }
@@ -78,7 +78,8 @@ fn picture(world: &World, scene: &Scene) {
     black_box(film).expect("there is memory for it");
 }
 
-/// Prints the CPU seconds of each phase, and the bytes that the world takes per object.
+/// Prints the CPU seconds of preparing and of rendering a scene, and the memory that the prepared
+/// scene takes, in bytes per object.
 fn phases(scene: &Scene) {
     const RENDERS: u32 = 4;
     let count = scene.objects.len();
@@ -88,7 +89,7 @@ fn phases(scene: &Scene) {
     (0..RENDERS).for_each(|_| picture(&world, scene));
     let rendered = (cpu_seconds() - after.0) / f64::from(RENDERS);
     let start = cpu_seconds();
-    // Without culling, each sample is traced by itself through the quadtree.
+    // Without culling, each sample is traced alone. The quadtree finds the objects that it may hit.
     let sampling = Sampling::new(&scene.sampler, scene.image.width, scene.image.height);
     let whole = Area::whole(scene.image.width, scene.image.height);
     black_box(one_by_one(&world, &sampling, whole));
@@ -108,7 +109,8 @@ fn phases(scene: &Scene) {
     );
 }
 
-/// Returns the resident memory of the process, in bytes; 0 on systems without `/proc`.
+/// Returns the memory that the process occupies (its resident set), in bytes. Returns 0 on systems
+/// without `/proc`.
 fn resident_bytes() -> f64 {
     let statm = fs::read_to_string("/proc/self/statm").unwrap_or_default();
     let pages = statm.split_whitespace().nth(1);

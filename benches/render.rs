@@ -1,6 +1,6 @@
-//! Compares, for each method, the time of generating sample points, of rendering on one or more
-//! threads, and of writing files with the time of tracing sample by sample: `cargo bench --bench
-//! render`. See README.md beside this file.
+//! Compares times for each method: of generating sample points, of rendering on one or more
+//! threads, of writing files, and of tracing each sample alone. Run it with
+//! `cargo bench --bench render`. See README.md beside this file.
 
 use std::{env, hint::black_box, io::Cursor, num::NonZero, thread, time::Instant};
 
@@ -25,11 +25,12 @@ const HEIGHT: u32 = 720;
 const PER_PIXEL: u64 = 16;
 
 /// Number of times that each measured function is run. The shortest time is printed, since other
-/// work on the machine only makes a run slower.
+/// work on the machine only makes a run slower. With fewer runs, the results would scatter more;
+/// more runs would take longer.
 const RUNS: usize = 5;
 
 fn main() {
-    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
     if !env::args().any(|argument| argument == "--bench") {
         return;
     }
@@ -91,7 +92,8 @@ fn main() {
     );
 }
 
-/// Returns the shortest time of each function, in seconds. The functions run in turns.
+/// Returns the shortest time of each function, in seconds. The functions run alternately, so that
+/// other work on the machine affects all of them.
 fn least<const N: usize>(mut what: [&mut dyn FnMut(); N]) -> [f64; N] {
     let mut least = [f64::INFINITY; N];
     for _ in 0..RUNS {

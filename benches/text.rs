@@ -1,5 +1,5 @@
-//! Measures the stages from a text to the tracer's input: `cargo bench --bench text`. See README.md
-//! beside this file.
+//! Measures the stages from the text of a scene to the input of the tracer:
+//! `cargo bench --bench text`. See README.md beside this file.
 //!
 //! `cargo bench --bench text -- --write COUNT blocks|lines` writes a scene of many spheres to
 //! standard output instead.
@@ -25,8 +25,8 @@ use self::{
 
 mod spheres;
 
-/// pest's parser of the same grammar, for comparison. All times are printed as multiples of its
-/// time.
+/// Parser that the crate pest generates from the same grammar, for comparison. All times are
+/// printed as multiples of this parser's time.
 mod grammar {
     #[derive(pest_derive::Parser)]
     #[grammar = "grammar/scn.pest"]
@@ -36,7 +36,8 @@ mod grammar {
 const OBJECTS: usize = 10_000;
 
 /// Number of times that each stage is run. The shortest time is printed, since other work on the
-/// machine only makes a run slower.
+/// machine only makes a run slower. With fewer runs, the results would scatter more; more runs
+/// would take longer.
 const ROUNDS: usize = 20;
 
 fn main() {
@@ -50,7 +51,7 @@ fn main() {
         print!("{}", spheres(count.unwrap_or(OBJECTS), layout));
         return;
     }
-    // `cargo test` builds and runs benchmarks too; there is nothing to test here.
+    // `cargo test` also builds and runs benchmarks, but they contain nothing to test.
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }
@@ -80,8 +81,8 @@ fn main() {
     }
 }
 
-/// Parses about 4096 bytes at a time with pest, as Pinhole's parser does. Returns the number of
-/// items.
+/// Parses a text with pest in parts of about 4096 bytes, as Pinhole's own parser does. Returns the
+/// number of items.
 fn chunks(text: &str) -> usize {
     const CHUNK: usize = 4096;
     let (mut at, mut items) = (0, 0);
@@ -95,8 +96,8 @@ fn chunks(text: &str) -> usize {
     items
 }
 
-/// Measures the stages in turns, so that other work on the machine slows down all of them. Prints
-/// the time of each stage as a multiple of the first stage's.
+/// Measures the stages alternately, so that other work on the machine slows down all of them.
+/// Prints the time of each stage as a multiple of the first stage's time.
 fn ratios(layout: Layout, stages: &[(&str, &dyn Fn())]) {
     let mut best = vec![Duration::MAX; stages.len()];
     for _ in 0..ROUNDS {

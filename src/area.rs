@@ -122,8 +122,8 @@ impl Area {
         }
     }
 
-    /// Returns the area's quarters, which have nearly equal sizes. An area of one row or one column
-    /// has two parts, and a pixel one.
+    /// Divides the area into quarters of nearly equal size. An area of one row or one column is
+    /// divided into two parts, and a single pixel is not divided.
     pub fn quarters(self) -> impl Iterator<Item = Self> {
         let halves = |length: u32| [(0, length / 2), (length / 2, length - length / 2)];
         let (columns, rows) = (halves(self.width), halves(self.height));
@@ -144,7 +144,8 @@ impl Area {
         Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
     }
 
-    // The ends of the range are `u64`, so that an area from user input cannot overflow.
+    // The ends of the range are `u64`, because their sum may exceed `u32` for an area that a user
+    // has typed.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)
     }

@@ -22,7 +22,7 @@ pub(crate) fn is_set(cancel: &AtomicBool) -> bool {
     cancel.load(Ordering::Relaxed)
 }
 
-/// Returns `made`, unless the flag `cancel` is set.
+/// Returns `made`, the result of some work, unless the flag `cancel` is set.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! Colours: sRGB, as in the scene language, and linear light, as the film averages it.
+//! Colours: sRGB, as in the scene language, and linear light, in which samples are averaged.
 
 use std::fmt;
 
@@ -34,8 +34,10 @@ impl Color {
     pub fn to_linear(self) -> [f64; 3] {
         self.srgb.map(|channel| {
             if channel.fract() == 0.5 {
-                // A channel halfway between two bytes must stay halfway after encoding, to be
-                // rounded up.
+                // Rounding errors of `srgb_to_linear` could make the light slightly too dark. A
+                // channel of 127.5 would then become the byte 127 in the picture, although
+                // `to_bytes` rounds it up to 128. `half_byte(127)` returns the least light that
+                // becomes the byte 128.
                 half_byte(channel as u8)
             } else {
                 srgb_to_linear(channel / 255.0)
@@ -64,8 +66,9 @@ pub fn srgb_to_linear(encoded: f64) -> f64 {
 /// Returns the least linear light that is rounded to the byte `k` + 1 of sRGB, for `k` < 255. It is
 /// the least `f64` that is not below the light whose sRGB value is `k` + 1/2, in 8-bit steps.
 ///
-/// The exponents of the sRGB curve are rational, so integers can decide: L − x^2.4 has the same
-/// sign as L^5 − x^12.
+/// Whether a light is below it can be decided with integers: the curve of sRGB raises a rational
+/// number x to the power 2.4, and a positive light L is less than x^2.4 exactly if L^5 is less than
+/// x^12.
 pub fn half_byte(k: u8) -> f64 {
     let mut light = srgb_to_linear((f64::from(k) + 0.5) / 255.0);
     while !is_below_half(light.next_down(), k) {
@@ -80,10 +83,11 @@ pub fn half_byte(k: u8) -> f64 {
 /// Returns whether `light`, in linear light, is darker than the light whose sRGB value is `k` +
 /// 1/2, in 8-bit steps. `light` must be positive and not subnormal.
 fn is_below_half(light: f64, k: u8) -> bool {
-    // Bound on the relative rounding error of `difference` below. Double-doubles decide most cases;
-    // integers alone would take half the time of rendering a small picture. In units of the
-    // double-double rounding, the relative errors are at most 4 for light^5, 11 for scale^12, 1 for
-    // the product of these, 11 for x^12, and 1 for the difference, in sum less than 32.
+    // Bound on the relative rounding error of `difference` below. The difference is computed in
+    // double-doubles (sums of two `f64`), which decide most cases. Integers alone would take half
+    // the time of rendering a small picture. As multiples of the unit roundoff of a double-double,
+    // the relative errors are at most 4 for light^5, 11 for scale^12, 1 for the product of these,
+    // 11 for x^12, and 1 for the difference, in sum less than 32.
     const ERROR: f64 = 32.0 * Double::UNIT;
     let squared = |x: Double| x.times(&x);
     let power_12 = |x: Double| squared(squared(squared(x).times(&x)));
@@ -101,21 +105,23 @@ fn is_below_half(light: f64, k: u8) -> bool {
     }
 }
 
-/// As [`is_below_half`], computed with integers.
+/// Returns the result of [`is_below_half`], computed with integers and therefore without rounding
+/// errors.
 fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let exponent = (light.to_bits() >> 52) as usize;
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
     // Here, light = significand / 2^shift.
     let shift = 1075 - exponent;
-    // The value 2k + 1 counts half steps of 8-bit sRGB, of which white has 510.
+    // The sRGB value in half steps of 8 bits: black is 0, and white is 510.
     let halves = 2 * u32::from(k) + 1;
     // The straight piece of the curve ends at 0.04045, slightly more than 20 half steps.
     if halves <= 20 {
-        // On the straight piece, the test is L < c/12.92 with c = halves/510.
+        // On the straight piece, the test is L < c/12.92. Here L is the light and c = halves/510
+        // the sRGB value.
         significand * 65_892u32 < UBig::from(10 * halves) << shift
     } else {
-        // On the curved piece, the test is L < x^2.4, with x = (c + 0.055)/1.055 = (1000·halves +
-        // 28050)/538050 and c = halves/510.
+        // On the curved piece, the test is L < x^2.4 for the light L. Here x = (c + 0.055)/1.055 =
+        // (1000·halves + 28050)/538050, and c = halves/510 is the sRGB value.
         let x = UBig::from(1000 * halves + 28_050);
         significand.pow(5) * UBig::from(538_050u32).pow(12) < x.pow(12) << (5 * shift)
     }
@@ -132,13 +138,13 @@ pub fn linear_to_srgb(light: f64) -> f64 {
     }
 }
 
-/// Converts a channel from 0 to 1 to a whole number from 0 to 255, and formats it.
+/// Converts a channel in the range 0–1 to a whole number in the range 0–255, and formats it.
 pub fn in_bytes(part: f64) -> String {
     (part * 255.0).round().to_string()
 }
 
-/// Converts the channels of `written`, a colour in a scene's text, from 0 to 1 to 0 to 255 if all
-/// are at most 1. Otherwise returns `written` unchanged.
+/// Converts the channels of `written`, a colour in a scene's text, from the range 0–1 to the range
+/// 0–255. Returns `written` unchanged if a channel is greater than 1 or not a number.
 pub fn whole_parts(written: &str) -> String {
     if !are_shares(&[written]) {
         return written.to_owned();
@@ -151,8 +157,9 @@ pub fn whole_parts(written: &str) -> String {
     bytes
 }
 
-/// Returns whether all channels in `parts`, texts of a colour in a scene, are numbers up to 1.
-/// Channels of the language are from 0 to 255, but the author may have meant 0 to 1.
+/// Returns whether all channels in `parts`, texts of a colour in a scene, are numbers up to 1. The
+/// language's channels go from 0 to 255. If all are at most 1, the author may have meant the range
+/// 0–1.
 pub fn are_shares(parts: &[&str]) -> bool {
     let separates = |c: char| c == ',' || c.is_whitespace();
     let parts = parts.iter().flat_map(|part| part.split(separates));

@@ -16,9 +16,10 @@ pub const SAMPLING: &str = include_str!("../grammar/sampling.md");
 /// upwards.
 pub const LEFT_HANDED: &str = include_str!("../grammar/left_handed.md");
 
-/// Words of other programs. A row holds such words, and a heading of the reference or a word of
-/// the language that explains them. A heading may be followed by `: ` and the first words of an
-/// item or paragraph in that section.
+/// Words that other programs use, and where Pinhole explains what they mean. A row holds several
+/// such words, separated by commas. Then it holds either a word of the language or a heading of the
+/// language's reference. A heading may be followed by `: ` and the first words of an item or
+/// paragraph in its section.
 const OTHER_NAMES: &[(&str, &str)] = &[
     ("loop, repeat, array, index, for loop", "repetition"),
     ("group, move, translate, scale", "limits: A group"),
@@ -79,8 +80,8 @@ pub fn other_names() -> impl Iterator<Item = (&'static str, &'static str)> {
     OTHER_NAMES.iter().flat_map(named)
 }
 
-/// Returns the section with a heading, ignoring case, from the reference or from the words of
-/// sampling; `None` if there is none.
+/// Returns the section of the language's reference, or of the glossary of sampling, that has the
+/// heading `heading`, in any capitalization. Returns `None` if there is none.
 pub fn section(heading: &str) -> Option<&'static str> {
     section_of(LANGUAGE, heading).or_else(|| section_of(SAMPLING, heading))
 }
@@ -143,7 +144,7 @@ pub struct Group {
     pub pages: &'static [Page],
 }
 
-/// The explanation of a code.
+/// Explanation page of a diagnostic code.
 #[derive(Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Page {
@@ -153,7 +154,8 @@ pub struct Page {
     pub text: &'static str,
 }
 
-/// Returns the page of a code, in any form that [`short`] accepts; `None` if there is no such code.
+/// Returns the page of a code, such as `bare_angle`, `pinhole::bare_angle` or
+/// `error[pinhole::bare_angle]`. Returns `None` if there is no such code.
 pub fn page(code: &str) -> Option<&'static Page> {
     let code = short(code);
     pages().find(|page| page.code == code)

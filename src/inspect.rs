@@ -1,4 +1,4 @@
-//! A description of a scene in numbers: the camera's axes, its field of view, the vanishing points,
+//! Describes a scene in numbers: the camera's axes, its field of view, the vanishing points, and
 //! the objects.
 
 #[cfg(feature = "json")]
@@ -17,13 +17,13 @@ use crate::{
 };
 use glam::DVec3;
 
-/// The output of `pinhole inspect`. Every number is the correctly rounded exact value.
+/// The output of `pinhole inspect`. Every number is the exact value, correctly rounded.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Inspection {
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
-    /// The camera.
+    /// Properties of the camera.
     pub camera: CameraFacts,
     /// The sampling method.
     pub method: Method,
@@ -31,14 +31,14 @@ pub struct Inspection {
     pub per_pixel: Option<u64>,
     /// Number of samples of the whole picture.
     pub total: u64,
-    /// Seed of the samples.
+    /// Seed of the random numbers for the samples.
     pub seed: u64,
-    /// Vanishing point of the lines parallel to each of the world's axes, in pixels from the
-    /// picture's top left corner; `None` if the axis is parallel to the view plane.
+    /// Vanishing point of the lines parallel to the world's x, y and z axes, in pixels from the
+    /// picture's top left corner. `None` for an axis that is parallel to the view plane.
     pub vanishing_points: [Option<[f64; 2]>; 3],
-    /// The objects in file order.
+    /// Properties of the objects, in file order.
     pub objects: Vec<ObjectFacts>,
-    /// Whether the areas of [`ObjectFacts::seen`] are exact.
+    /// Whether the visible areas of the objects ([`ObjectFacts::seen`]) are exact.
     pub is_exact: bool,
 }
 
@@ -48,15 +48,15 @@ pub struct Inspection {
 pub struct CameraFacts {
     /// Position of the eye.
     pub eye: DVec3,
-    /// Unit vector to the picture's right.
+    /// Unit vector that points to the right in the picture.
     pub u: DVec3,
-    /// Unit vector to the picture's top.
+    /// Unit vector that points to the top of the picture.
     pub v: DVec3,
-    /// Unit vector against the view direction.
+    /// Unit vector opposite to the view direction.
     pub w: DVec3,
     /// Distance from the eye to the view plane, in metres.
     pub d: f64,
-    /// Height of the window, in metres.
+    /// Height of the window, i.e. of the part of the view plane that the picture shows, in metres.
     pub view_height: f64,
     /// Vertical field of view, in degrees.
     pub fov_deg: f64,
@@ -66,7 +66,8 @@ pub struct CameraFacts {
     pub near: f64,
     /// Depth of the far plane, in metres; `None` if there is no far plane.
     pub far: Option<f64>,
-    /// "up", "down" or "level", by the exact sign of the view direction's y coordinate.
+    /// Whether the camera looks "up", "down" or "level". This is decided by the exact sign of the
+    /// view direction's y coordinate.
     pub looks: &'static str,
 }
 
@@ -76,19 +77,20 @@ pub struct CameraFacts {
 pub struct ObjectFacts {
     /// The object's name.
     pub name: Option<String>,
-    /// Indices of the object within the block that generates it; empty for a single object.
+    /// Indices that distinguish the object from others that the same block of the file generates.
+    /// Empty if the block generates a single object.
     pub indices: Box<[u32]>,
     /// The line in which the object begins, counted from 1.
     pub line: usize,
     /// The object's shape.
     pub shape: Shape,
-    /// What is seen of the object.
+    /// The part of the picture in which the object is visible, or the reason why it is not.
     pub seen: Visibility,
 }
 
 impl ObjectFacts {
-    /// Returns the object's name. If it has none, returns its indices, which distinguish the
-    /// objects of a repeated block, or `-`.
+    /// Returns the object's name. If it has none, returns the indices that distinguish it from
+    /// other objects of the same block, or `-`.
     fn shown_name(&self) -> Cow<'_, str> {
         match (&self.name, &*self.indices) {
             (Some(name), _) => Cow::Borrowed(name),
@@ -98,12 +100,13 @@ impl ObjectFacts {
     }
 }
 
-/// Describes a scene. `source` is the text that it was read from, in which lines are counted.
+/// Describes a scene. `source` is the text from which it was read; it is used to find the objects'
+/// lines.
 ///
 /// # Panics
 ///
-/// The scene was not read, but made in code, and breaks a condition of the language;
-/// [`Scene::check`] tells.
+/// Panics if the scene was made in code instead of read from a file, and breaks a condition of the
+/// language. [`Scene::check`] finds such scenes.
 pub fn inspect(scene: &Scene, source: &Source) -> Inspection {
     let per_pixel = match scene.sampler.count {
         Count::PerPixel(count) => Some(count),
@@ -145,8 +148,8 @@ pub fn total_samples(count: Count, image: &Image) -> u64 {
     }
 }
 
-/// Computes a camera's properties and the vanishing points of the x, y and z axes, without the rest
-/// of a scene.
+/// Computes the properties of a camera, and the vanishing points of the x, y and z axes. No other
+/// part of the scene is needed.
 pub fn inspect_camera(camera: &Camera, image: &Image) -> (CameraFacts, [Option<[f64; 2]>; 3]) {
     let basis = Basis::new(camera, image);
     let points = [0, 1, 2].map(|axis| vanishing_point(image, &basis, axis));
@@ -181,12 +184,12 @@ fn camera_facts(camera: &Camera, image: &Image, basis: &Basis) -> CameraFacts {
 
 /// Returns the vanishing point of the lines parallel to an axis, in pixels from the picture's top
 /// left corner. Returns `None` if the axis is parallel to the view plane.
-///
-/// The ray along the axis a has the direction (a·u, a·v, −a·w) in the camera's axes. Scaled to
-/// depth 1, it ends in the view plane.
 fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]> {
-    // With the view direction f, w = −f/|f|. Therefore, this component of w is zero exactly if the
-    // axis is parallel to the view plane.
+    // The camera's axis w is opposite to the view direction. Its component along the given axis is
+    // 0 exactly if the given axis is parallel to the view plane. Otherwise, a ray along the given
+    // axis a has the direction (a·u, a·v, −a·w) in the camera's axes u, v and −w. Scaled to depth 1
+    // and divided by a pixel's side at this depth, its first two coordinates are the distances of
+    // the vanishing point from the picture's middle.
     if basis.w[axis].is_zero() {
         return None;
     }
@@ -197,18 +200,18 @@ fn vanishing_point(image: &Image, basis: &Basis, axis: usize) -> Option<[f64; 2]
     Some([rounded(&x), rounded(&y)])
 }
 
-/// Rounds to a finite `f64`, without a negative zero.
+/// Rounds to a finite `f64`. Zero is returned without a sign.
 fn rounded(x: &Big) -> f64 {
     x.to_finite() + 0.0
 }
 
-/// Totals of the objects beyond the first [`LISTED`], which the readable output (`Display`) does
-/// not list one by one.
+/// Totals of the objects that the readable output does not list one by one, which are those after
+/// the first [`LISTED`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Rest {
     objects: u64,
     seen: u64,
-    /// Area that shows these objects, in pixels.
+    /// Area of the picture that shows objects that are not listed one by one, in pixels.
     pixels: f64,
     outside: u64,
 }
@@ -258,9 +261,10 @@ impl fmt::Display for Inspection {
     }
 }
 
-/// Formatting of what is seen of the objects.
+/// Output about what is visible of the objects.
 impl Inspection {
-    /// Returns the totals of the objects beyond the first [`LISTED`], or `None` if there are none.
+    /// Returns the totals of the objects after the first [`LISTED`], which are not listed one by
+    /// one. Returns `None` if there are no such objects.
     fn rest(&self) -> Option<Rest> {
         let rest = self.objects.get(LISTED..).filter(|rest| !rest.is_empty())?;
         let mut sum = Rest {
@@ -329,7 +333,7 @@ impl Inspection {
     }
 }
 
-/// Formats a camera as readable text: its axes, its field of view, and the axes' vanishing points.
+/// Formats a camera as readable text: its axes, its field of view, and the vanishing points.
 pub fn camera_summary(camera: &CameraFacts, vanishing_points: &[Option<[f64; 2]>; 3]) -> String {
     let mut text = format!("camera    looks {}\n", camera.looks);
     let vectors = [

@@ -1,5 +1,5 @@
-//! Pinhole reads a small declarative scene language and renders what it describes through a virtual
-//! pinhole camera, with every sample decided exactly.
+//! Pinhole reads a small declarative scene language and renders scenes through a virtual pinhole
+//! camera. Which object a sample shows is decided exactly, without rounding errors.
 //!
 //! A text becomes a [`Scene`], and a scene a [`Picture`] in memory:
 //!
@@ -50,7 +50,8 @@
 //! The modules below are for those who need a part of a picture, its progress, or an end to it
 //! before it is done; answers about a scene; or a text that is being typed. They stand in groups,
 //! roughly in the order in which a scene becomes a picture. A group imports only groups before it,
-//! and modules of one group import each other one way; a test holds this. The whole pipeline:
+//! and modules of one group never import each other in a circle; a test checks this. The whole
+//! pipeline:
 //!
 //! ```
 //! use pinhole::{area::Area, film, render, sampling::Sampling, scene, source::*, tracer::World};
@@ -73,10 +74,10 @@
 //! - [`schema`] has the facts of the language: blocks, fields and names. [`syntax`] parses a text
 //!   into a tree, and cannot fail. [`scene`] lowers the tree to plain data with everything
 //!   resolved.
-//! - [`tracer`] finds what is seen at a point of the picture, without a wrong decision; its
-//!   documentation says how. [`sampling`] places the sample points of pixels, [`render`] averages
-//!   what they see, or computes means without samples, and [`refine`] shows coarse pictures until
-//!   the final one is done.
+//! - [`tracer`] finds exactly what is seen at a point of the picture; its documentation says how.
+//!   [`sampling`] places the sample points of pixels, [`render`] averages what is seen at them, or
+//!   computes means without samples, and [`refine`] shows coarse pictures until the final one is
+//!   done.
 //! - [`cancel`]: a flag ends any of these computations early.
 //! - [`film`] converts means to bytes, and encodes and decodes files.
 //! - [`mod@format`] lays a text out canonically.

@@ -1,4 +1,4 @@
-//! The binary: arguments in, exit status out.
+//! The command-line program. The library's module `cli` does all of its work.
 
 use std::process::ExitCode;
 

@@ -44,8 +44,8 @@ pub fn at_most(bound: f64) -> String {
     let text = format!("{bound:.1e}");
     let is_less = text.parse().is_ok_and(|read: f64| read < bound);
     match text.split_once('e') {
-        // The text is below the bound: adds 1 to its last digit. The sum of two numbers with one
-        // decimal each is correct after formatting with one decimal.
+        // If the rounded text is below the bound, 1 is added to its last digit. The sum of two
+        // numbers with one decimal each is correct after formatting with one decimal.
         Some((digits, exponent)) if is_less => {
             let next = digits.parse().map_or(bound, |digits: f64| digits + 0.1);
             let carried: f64 = format!("{next:.1}e{exponent}").parse().unwrap_or(bound);

@@ -5,7 +5,7 @@ use std::num::NonZero;
 
 use thiserror::Error;
 
-/// Error of starting threads, which does not occur on these targets.
+/// Error of starting threads. It does not occur on targets without threads.
 #[derive(Debug, Error)]
 pub enum NoThreads {}
 

@@ -38,8 +38,8 @@ pub struct Probe {
 ///
 /// # Panics
 ///
-/// The scene was not read, but made in code, and breaks a condition of the language;
-/// [`Scene::check`] tells.
+/// Panics if the scene was made in code rather than read from a text, and breaks a condition of the
+/// language. [`Scene::check`] finds this out.
 pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
     let half = DVec2::new(f64::from(scene.image.width), f64::from(scene.image.height)) / 2.0;
     let world = World::for_rays(scene, (pixel - half).abs());

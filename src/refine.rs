@@ -18,7 +18,8 @@ use glam::DVec2;
 
 /// Sides of the blocks of a coarse picture in successive steps, in pixels. Each step takes four
 /// times as long as the step before. All steps together take less time than a picture with one
-/// sample per pixel.
+/// sample per pixel. With a larger first side, a picture would appear sooner, but show less of the
+/// scene.
 pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
 /// A picture in square blocks, each of one colour.
@@ -32,13 +33,13 @@ pub struct Coarse {
 }
 
 /// Renders a part of the picture in blocks that become finer from step to step, down to a side of
-/// `finest` pixels, and calls `show` after each step. If the render is cancelled, it ends within a
-/// row of blocks.
+/// `finest` pixels, and calls `show` after each step. A cancelled render ends after at most one
+/// more row of blocks.
 ///
 /// # Errors
 ///
-/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
-/// the render was cancelled.
+/// Returns an error if the part does not lie in the picture, if there is not enough memory, if no
+/// thread can be started, or if the render was cancelled.
 pub fn coarse_to_fine(
     world: &World,
     part: Area,
@@ -58,12 +59,12 @@ pub fn coarse_to_fine(
 ///
 /// # Errors
 ///
-/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
-/// the render was cancelled.
+/// Returns an error if the part does not lie in the picture, if there is not enough memory, if no
+/// thread can be started, or if the render was cancelled.
 ///
 /// # Panics
 ///
-/// The side is 0.
+/// Panics if `side` is 0.
 pub fn coarse(
     world: &World,
     part: Area,
@@ -106,7 +107,7 @@ pub fn coarse(
     Ok(Coarse { side, film })
 }
 
-/// Returns the palette slot that is seen at the centre of a block.
+/// Returns the colour that is seen at the centre of a block, by its index in the scene's palette.
 fn at_center(world: &World, block: Area) -> usize {
     // A block with an odd number of pixels along a side has its centre in a pixel. With an even
     // number, the centre is on the edge between two pixels, and is given as the left or top edge of

@@ -17,12 +17,14 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Maximum work on a whole picture, in units of about 50 ns. Each tile has an equal share. After a
-/// tile's share is used up, a pixel counts as showing only what is seen at its centre.
+/// Maximum work on a whole picture, in units of about 50 ns, i.e. about 5 s in all. Each tile has
+/// an equal share. After a tile's share is used up, a pixel counts as showing only what is seen at
+/// its centre. With a larger maximum, the areas would be exact for more scenes, but the answer
+/// could take longer.
 const MAX_WORK: u64 = 100_000_000;
 
-/// Minimum area that counts as seen, in pixels; with less, the object counts as not seen. It is
-/// also the precision of printed areas.
+/// Minimum area, in pixels, for which an object counts as seen. Printed areas have the same
+/// precision, so a smaller area would be printed as 0.
 pub const MIN_AREA: f64 = 1e-6;
 
 /// What is seen of an object.
@@ -37,16 +39,17 @@ pub enum Visibility {
     /// At the object's centre, another object is seen, given by its index in the file.
     HiddenBy(usize),
     /// Nothing of the object is seen for another reason. It may be hidden by several others, too
-    /// thin, or outside of the picture although its bounds are not.
+    /// thin, or outside of the picture although its bounding sphere is not.
     Nothing,
 }
 
-/// Finds what is seen of each object. Returns this in file order, and whether all areas are exact.
+/// Finds what is seen of each object. Returns the results in file order, and whether all areas are
+/// exact.
 ///
 /// # Panics
 ///
-/// The scene was not read, but made in code, and breaks a condition of the language;
-/// [`Scene::check`] tells.
+/// Panics if the scene was made in code rather than read from a text, and breaks a condition of the
+/// language. [`Scene::check`] finds this out.
 pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
     let world = World::by_object(scene);
     let tiles: Vec<Area> = world.picture().tiles(2 * GRID).collect();
@@ -81,7 +84,8 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
             let shape = &scene.objects[index].shape;
             match sight.as_ref().and_then(|sight| sight.outside(shape)) {
                 Some(place) => Visibility::Outside(place),
-                // Only for listed objects, the object in front is searched for.
+                // The search for the object in front takes time, so it is made only for objects
+                // that the readable output lists.
                 None if index >= LISTED => Visibility::Nothing,
                 None => hidden_by(scene, &asked, index)
                     .map_or(Visibility::Nothing, Visibility::HiddenBy),
@@ -92,11 +96,12 @@ pub fn seen(scene: &Scene) -> (Vec<Visibility>, bool) {
 }
 
 /// Maximum number of objects that the readable output of `inspect` lists. For each listed object
-/// that is hidden, it also names the object in front.
+/// that is hidden, it also names the object in front. A list of many more objects would hardly be
+/// read by a person; the JSON output contains all objects.
 pub const LISTED: usize = 100;
 
-/// For each object, by its index: the bounding rectangle of its pixels, and the area that shows it,
-/// in pixels.
+/// Map from an object's index to the bounding rectangle of its pixels and to the area that shows
+/// it, in pixels.
 type SeenAreas = BTreeMap<usize, (Area, f64)>;
 
 fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {
@@ -105,7 +110,7 @@ fn add(areas: &mut SeenAreas, object: usize, (pixels, area): (Area, f64)) {
     *sum += area;
 }
 
-/// Returns the object that is seen at the projection of an object's centre. Returns `None` if that
+/// Returns the object that is seen at the projection of an object's centre. Returns `None` if this
 /// is the object itself or the background, or if the centre is not in the picture.
 fn hidden_by(scene: &Scene, world: &OnceCell<World>, index: usize) -> Option<usize> {
     let middle = scene.objects[index].shape.center()?;

@@ -7,8 +7,9 @@ use std::cell::Cell;
 
 use strsim::osa_distance;
 
-/// Number of comparisons of names that are left. When it is 0, no further names are suggested.
-/// Without a limit, each mistake in a text would be compared with each name in it.
+/// Remaining number of comparisons between misspelt names and known ones. When it is used up, no
+/// further names are suggested. Without a limit, each mistake in a text would be compared with each
+/// name in it, and the time would grow with the square of the text's length.
 #[derive(Debug)]
 pub struct ComparisonBudget(Cell<usize>);
 
@@ -19,8 +20,8 @@ impl Default for ComparisonBudget {
 }
 
 impl ComparisonBudget {
-    /// Subtracts comparisons with `names` names from the budget. Returns `false`, and subtracts
-    /// nothing, if fewer are left.
+    /// Subtracts `names` comparisons from the remaining number. Returns `false`, and subtracts
+    /// nothing, if fewer remain.
     pub fn spend(&self, names: usize) -> bool {
         let left = self.0.get().checked_sub(names);
         self.0.set(left.unwrap_or(self.0.get()));
@@ -28,9 +29,10 @@ impl ComparisonBudget {
     }
 }
 
-/// Returns the candidate that is most similar to `written`. It must be equal except for case, or
-/// have at most about one typing error (OSA distance) per three letters; otherwise, returns `None`.
-/// Of equally similar candidates, returns the first.
+/// Returns the candidate that is most similar to `written`, or the first of several equally similar
+/// ones. A candidate counts as similar if it is equal except for case, or differs by at most about
+/// one typing error per three letters (optimal string alignment distance). Returns `None` if no
+/// candidate is similar.
 pub fn nearest<'c>(
     written: &str,
     candidates: impl IntoIterator<Item = &'c str>,
@@ -56,7 +58,7 @@ pub fn nearest_name<'c>(
 ///
 /// - the digits of the two names differ, since the name is then a different one;
 /// - `written` has several words whose letters are not exactly those of `near`;
-/// - at least three letters follow `near` in `written`.
+/// - `written` is `near` followed by three or more letters.
 pub fn is_only_near<'c>(
     written: &str,
     near: &str,

@@ -1,5 +1,4 @@
-//! The number of threads, and pools of threads. Work that is started within other work runs on the
-//! other work's threads.
+//! The number of threads, and pools of threads. Nested work runs on the threads of the outer work.
 
 use std::{
     num::NonZero,
@@ -20,7 +19,7 @@ use thiserror::Error;
 pub struct NoThreads(#[from] ThreadPoolBuildError);
 
 /// Maximum number of threads that a user can request; a greater request is reduced to it. Few
-/// machines have more processors.
+/// machines have more processors, and threads beyond the number of processors gain nothing.
 const MAX_THREADS: usize = 1024;
 
 /// Maximum number of threads of the process; 0 if there is no limit. This limit and the number of
@@ -51,8 +50,8 @@ pub(crate) fn available() -> usize {
 pub(crate) enum Threads {
     /// A pool that was started for the work.
     Started(ThreadPool),
-    /// The current threads. Work that consists of hundreds of pictures thus renders all pictures on
-    /// the same threads.
+    /// The threads on which the caller already runs. When hundreds of pictures are rendered in one
+    /// pool, each of them uses the threads of this pool instead of starting others.
     Current,
 }
 
@@ -62,7 +61,7 @@ impl Threads {
     ///
     /// # Errors
     ///
-    /// Not even the calling thread can be used.
+    /// Returns an error if not even the calling thread can be used.
     pub(crate) fn new(threads: Option<NonZero<usize>>) -> Result<Self, NoThreads> {
         let wanted = threads.map_or_else(available, |threads| threads.get().min(MAX_THREADS));
         match rayon::current_thread_index() {
@@ -100,7 +99,7 @@ impl Threads {
 ///
 /// # Errors
 ///
-/// Not even the calling thread can be used.
+/// Returns an error if not even the calling thread can be used.
 pub(crate) fn install<R: Send>(
     threads: Option<NonZero<usize>>,
     work: impl FnOnce() -> R + Send,

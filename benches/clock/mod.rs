@@ -1,17 +1,19 @@
-//! CPU time of the process. Other work on the machine affects it less than wall time.
+//! CPU time of the process, i.e. the time that processors spend on it. Other work on the machine
+//! affects it less than elapsed time.
 
 #[cfg(unix)]
 use rustix::time::{ClockId, clock_gettime};
 
-/// Returns the user and system time of all threads of the process so far, in seconds.
+/// Returns the time, in seconds, that processors have spent so far on all threads of the process,
+/// both in the program and in the system.
 #[cfg(unix)]
 pub fn cpu_seconds() -> f64 {
     let time = clock_gettime(ClockId::ProcessCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// Returns the wall time since the first call, in seconds, on systems for which CPU time is not
-/// implemented here.
+/// Returns the time since the first call, in seconds. It replaces the CPU time on systems for which
+/// reading the CPU time is not implemented.
 #[cfg(not(unix))]
 pub fn cpu_seconds() -> f64 {
     static START: std::sync::LazyLock<std::time::Instant> =

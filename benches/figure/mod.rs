@@ -1,4 +1,4 @@
-//! The scene of the assignment, figure 9.9.
+//! The scene of the assignment: figure 9.9 of the course.
 
 use pinhole::{
     scene::{self, Count, Method, Scene},

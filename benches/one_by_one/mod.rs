@@ -1,5 +1,5 @@
-//! Renders a picture sample by sample, without culling. Tests and benchmarks compare this picture
-//! and its time with those of culling.
+//! Renders a picture sample by sample, without culling. Tests and benchmarks compare the result and
+//! its time with those of culling, which traces the samples of a pixel together.
 
 use pinhole::{
     area::Area,
@@ -9,10 +9,10 @@ use pinhole::{
     tracer::World,
 };
 
-/// Renders the area `part` of the picture, and traces each sample by itself.
+/// Renders the area `part` of the picture by tracing each sample alone.
 pub fn one_by_one(world: &World, sampling: &Sampling, part: Area) -> Film {
-    /// Maximum number of sample points that are generated at a time, which limits the memory
-    /// for them.
+    /// Maximum number of sample points that are generated at a time. It limits the memory for the
+    /// points; the result does not depend on it.
     const CHUNK: u64 = 1 << 12;
     let palette = world.palette().iter();
     let colors: Vec<_> = palette.map(|color| color.to_linear()).collect();

@@ -1,17 +1,17 @@
-//! Makes texts of scenes of many small spheres.
+//! Generates texts of scenes with many small spheres.
 
 use std::fmt::Write;
 
 use pinhole::sampling::CounterRng;
 use rand::{Rng, RngExt, SeedableRng};
 
-/// Layout of the blocks in a generated text.
+/// Arrangement of the blocks of a generated text in lines.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// Each field of a block on a line of its own.
+    /// Each field of a block is on a line of its own.
     Blocks,
-    /// Each block on a single line.
+    /// Each block is on a single line.
     Lines,
 }
 
@@ -81,8 +81,8 @@ pub fn spheres(count: usize, layout: Layout) -> String {
 }
 
 /// Returns the text of a scene of `count` spheres at distances from 5 to 50. The areas of their
-/// images add up to one and a half times the picture. For any count, some spheres are therefore
-/// visible, some are hidden, and over a fifth of the picture stays empty.
+/// images add up to one and a half times the picture. So for any count, some spheres are visible,
+/// some are hidden, and more than a fifth of the picture stays empty.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn crowd(count: usize) -> String {
     const COVERED: f64 = 1.5;
@@ -109,8 +109,8 @@ pub fn crowd(count: usize) -> String {
     text
 }
 
-/// Returns the text of a scene of `count` spheres in an upright cube in the picture. The areas of
-/// their discs add up to one and a half times a face of the cube.
+/// Returns the text of a scene of `count` spheres in an upright cube within the picture. The areas
+/// of the spheres' discs add up to one and a half times the area of a face of the cube.
 #[allow(dead_code, reason = "each benchmark has its own scene")]
 pub fn cube(count: usize) -> String {
     const COVERED: f64 = 1.5;
@@ -134,7 +134,7 @@ pub fn cube(count: usize) -> String {
     text
 }
 
-/// Generator of random numbers that are the same on all systems.
+/// Generator of random numbers that are equal in each run and on all systems.
 pub struct Random(CounterRng);
 
 impl Random {

@@ -17,7 +17,7 @@ use crate::{
     source::Source,
 };
 
-/// Checks each scene in turn and reports its problems. Returns the worst of the exit statuses.
+/// Checks each scene in turn and reports its problems. Returns the largest of the exit statuses.
 pub fn run(args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     let is_json = args.format.format == AnswerFormat::Json;
@@ -48,7 +48,7 @@ fn one(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<Status, T
 }
 
 /// Applies the fixes of a file's errors, and reports which fixes were applied. Writes the changed
-/// file, or prints the changed text if the input is standard input. With `--diff`, prints only the
+/// file, or prints the changed text if the input is standard input. With `--diff`, only prints the
 /// changes. Returns the input after the fixes.
 fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneInput, Trouble> {
     let (mut input, original) = SceneInput::to_change(path, &args.overrides, "--fix")?;
@@ -85,8 +85,7 @@ fn fixed(path: &Path, args: &CheckArgs, interrupt: &Interrupt) -> Result<SceneIn
     Ok(input)
 }
 
-/// Returns a sentence that tells the user how many fixes were not applied and which option applies
-/// them.
+/// Returns sentences that tell the user how many fixes were not applied, and how to apply them.
 fn held_back(name: &str, fixed: &Fixed, is_utf8: bool) -> String {
     let mut text = String::new();
     let fixes = |count, one, more| match count {

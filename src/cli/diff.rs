@@ -1,5 +1,5 @@
-//! `diff`: compares two pictures, a picture with a scene's exact one, or the exact ones of two
-//! scenes.
+//! `diff`: compares two pictures, a picture with a scene, or two scenes. A scene is compared by its
+//! exact picture, which is computed without sampling noise.
 
 use std::{fmt::Write, path::Path, sync::atomic::AtomicBool};
 
@@ -50,8 +50,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     };
     let jpeg = Jpeg::of(&a);
     let a = read(&args.a, &a, &args.large)?;
-    // A path with the extension of a picture format is read as a picture, even if the file is
-    // damaged.
+    // If B has the extension of a picture format, it is read as a picture, even if it is damaged
+    // and looks like a text.
     let is_named = judge::is_named_as_picture(&args.b);
     let most = if is_named {
         IfNotPicture::ReadStart
@@ -107,8 +107,8 @@ pub fn run(args: &DiffArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status(if is_strict { is_equal } else { is_right }))
 }
 
-/// Compares two pictures, whether read or rendered, and prints the result without a verdict.
-/// `steps` is the default tolerance, in steps of 8-bit sRGB.
+/// Compares two films and prints the result without a verdict. `steps` is the default tolerance, in
+/// steps of 8-bit sRGB (1/255 of the way from black to white).
 fn compare(
     args: &DiffArgs,
     films: [&Film; 2],
@@ -141,7 +141,7 @@ fn status(is_accepted: bool) -> Status {
     }
 }
 
-/// Reads a picture, and warns if its format changes colours.
+/// Reads a picture. Warns if its file format changes colours, as JPEG does.
 fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble> {
     let picture = judge::picture(bytes, large).map_err(|error| unreadable(path, &error))?;
     if let Some(warning) = picture.coding.warning() {
@@ -150,7 +150,7 @@ fn read(path: &Path, bytes: &[u8], large: &LargeArgs) -> Result<Picture, Trouble
     Ok(picture)
 }
 
-/// Checks before the comparison that the heat map can be written.
+/// Checks, before the comparison, that the heat map can be written to `path`.
 fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     if !path
         .to_string_lossy()
@@ -166,7 +166,7 @@ fn check_heat_map(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     files::check_writable(path, Purpose::Named).map_err(|error| unwritable(path, &error))
 }
 
-/// Rejects a path of the heat map that names one of the compared files.
+/// Rejects a heat map's path that names one of the compared files.
 fn check_is_not_compared(path: &Path, args: &DiffArgs) -> Result<(), Trouble> {
     for other in [&args.a, &args.b] {
         if input::is_same_file(path, other) {
@@ -194,7 +194,8 @@ fn write_heat_map(
         return Ok(());
     }
     let map = film::heat_map(a, b, tolerance).map_err(|error| trouble(error.to_string()))?;
-    // Since the last check, the path may have become a link to one of the compared files.
+    // The path is checked again, since it may have become a link to a compared file during the
+    // comparison.
     check_is_not_compared(path, args)?;
     files::write(path, Purpose::Named, cancel, |out| {
         film::write_png(&map, None, out)
@@ -215,7 +216,8 @@ struct DiffReport {
     sizes: [[u32; 2]; 2],
     comparison: Result<Comparison, SizesDiffer>,
     tolerance: f64,
-    /// The verdict on the picture A; `None` if B is not a scene.
+    /// Verdict on picture A: whether it is right and, if not, by which mistakes it became wrong.
+    /// `None` if B is not a scene.
     verdict: Option<Verdict>,
     is_strict: bool,
 }
@@ -331,7 +333,8 @@ impl DiffReport {
     }
 }
 
-/// Returns the fields of a comparison in the JSON output. `found` is `None` if the sizes differ.
+/// Returns the fields that describe a comparison in the JSON output. The argument `found` is `None`
+/// if the sizes differ.
 pub fn json(
     [a, b]: [String; 2],
     sizes: [[u32; 2]; 2],
@@ -371,7 +374,7 @@ pub fn json(
         .collect()
 }
 
-/// Writes each mistake and each guess, then which objects are right.
+/// Writes each mistake and each guess of a verdict, then which objects of the scene are right.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
     let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
@@ -408,11 +411,11 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// Returns a sentence about which objects are right and which are not. If there are more than 12
-/// objects, it lists only those that are not right, at most 12.
+/// Returns a list of the scene's objects that says which are drawn right. If the scene has more
+/// than 12 objects, only wrong ones are listed, at most 12, and the rest are counted.
 fn objects(verdict: &Verdict) -> String {
-    /// Maximum number of objects that the sentence lists. If the scene has more, those that are
-    /// right are only counted.
+    /// Maximum number of objects that the sentence lists. If the scene has more, right objects are
+    /// only counted. Chosen so that the sentence takes a few lines; any similar number works.
     const MOST: usize = 12;
     let all = &verdict.objects;
     let is_all = all.len() <= MOST;
@@ -446,8 +449,8 @@ fn state(object: &ObjectVerdict) -> String {
     }
 }
 
-/// Formats a share in per cent with one decimal, but as 0 or 100 only if the share is exactly 0 or
-/// 1.
+/// Formats a share as a percentage with one decimal. A share just above 0 becomes `less than 0.1`,
+/// and one just below 1 becomes `more than 99.9`.
 fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let rounded = (10.0 * percent).round() / 10.0;
@@ -468,8 +471,8 @@ fn round(steps: f64) -> String {
     }
 }
 
-/// Rounds `steps`, a difference in steps of 8-bit sRGB, to 10^−9. This removes the rounding errors
-/// of decoding and encoding a byte.
+/// Rounds `steps`, a difference in steps of 8-bit sRGB, to 9 decimals. This removes rounding errors
+/// from decoding and encoding a byte.
 fn plain(steps: f64) -> f64 {
     (1e9 * steps).round() / 1e9
 }

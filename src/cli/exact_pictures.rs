@@ -1,4 +1,5 @@
-//! Renders the exact pictures of two scenes, which `diff` compares.
+//! Renders the exact pictures of two scenes, which `diff` compares. They are computed without
+//! sampling noise.
 
 use std::{path::Path, sync::atomic::AtomicBool};
 
@@ -16,9 +17,9 @@ use crate::{
     tracer::World,
 };
 
-/// Tolerance between the exact pictures of two scenes, in steps of 8-bit sRGB. A larger difference
-/// is reported. The tolerance exceeds the error bound of both pictures: each one's bound of 10^−9
-/// in linear light is at most 3.3·10^−6 steps.
+/// Tolerance between the exact pictures of two scenes, in steps of 8-bit sRGB. It must exceed the
+/// errors of both pictures: each is usually at most 10^−9 in linear light, which is 3.3·10^−6
+/// steps. A larger tolerance would hide small differences between the scenes.
 pub const EXACT_STEPS: f64 = 1e-4;
 
 /// Returns whether a path has the extension of scenes, `.scn`.
@@ -34,7 +35,8 @@ pub fn of_scenes(args: &DiffArgs, cancel: &AtomicBool) -> Result<[Film; 2], Trou
     }
     let a = SceneInput::read(&args.a, &args.overrides)?;
     let b = SceneInput::read(&args.b, &args.overrides)?;
-    // Both scenes are read before returning, so that the errors of both are reported.
+    // Both scenes are read before the first error is returned, so that the errors of both are
+    // printed.
     let (a, b) = (a.scene(), b.scene());
     let (a, b) = (a?, b?);
     let sizes = [&a, &b].map(|scene| [scene.image.width, scene.image.height]);

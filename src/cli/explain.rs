@@ -1,8 +1,8 @@
-//! `explain`: prints the page of a diagnostic code or of a word of the language, the reference, or
-//! the list of all codes.
+//! `explain`: prints the page of a diagnostic code, the page of a word of the language, the
+//! language reference, or the list of all codes.
 //!
-//! The page goes to standard output, as the manual does, since it may be piped into a pager. It is
-//! Markdown unless standard output is a terminal.
+//! The page goes to standard output, since it may be piped into a pager. It is Markdown unless
+//! standard output is a terminal.
 
 use std::{borrow::Cow, fmt::Write};
 
@@ -16,8 +16,8 @@ use crate::{
     schema, suggest,
 };
 
-/// Maximum width of a printed page, in columns, even if the terminal is wider, since longer lines
-/// are hard to read.
+/// Maximum width of a printed page, in columns. It also limits the width on wider terminals,
+/// because longer lines are hard to read. Any similar width works.
 const WIDEST: usize = 90;
 
 /// Prints the page of `args.words`, or the list of all codes if there are no words.
@@ -41,7 +41,7 @@ pub fn run(args: &ExplainArgs) -> Result<Status, Trouble> {
     Ok(Status::Done)
 }
 
-/// Style in which the headings of a printed page stand out.
+/// Style of the headings of a printed page.
 #[derive(Clone, Copy)]
 enum Headings {
     Plain,
@@ -49,8 +49,7 @@ enum Headings {
 }
 
 impl Headings {
-    /// Returns bold headings if the terminal has colours, since such a terminal can also show bold
-    /// text.
+    /// Returns bold headings if the terminal shows colours, because it then shows bold text, too.
     fn of(style: Style) -> Self {
         if style.color { Self::Bold } else { Self::Plain }
     }
@@ -63,7 +62,8 @@ impl Headings {
     }
 }
 
-/// Returns the page of a code or a word, as Markdown. Fails with a suggestion if there is none.
+/// Returns the page of a diagnostic code or a word, as Markdown. If there is none, the error
+/// suggests a similar word.
 fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     let trimmed = word.trim();
     if trimmed.is_empty() {
@@ -130,7 +130,7 @@ fn page(word: &str) -> Result<Cow<'static, str>, Trouble> {
     Err(trouble(format!("nothing is known about `{word}`: {hint}")))
 }
 
-/// Appends to `page` the reasons why a sampling method works well, if `word` is the name of one.
+/// Appends the reasons why a sampling method works well, if `word` is the name of a method.
 fn with_reasons(page: String, word: &str) -> String {
     let section = schema::method(word).and_then(|_| explain::section_of(explain::SAMPLING, word));
     match section.and_then(|section| section.split_once("\n\n")) {
@@ -157,13 +157,13 @@ fn list(headings: Headings) -> String {
     text
 }
 
-/// Lays out a page for a terminal: scenes are indented, lines are wrapped, and pictures are left
-/// out.
+/// Formats a Markdown page for a terminal: scenes are indented, lines are wrapped, and pictures are
+/// left out.
 fn drawn(page: &str, width: usize, headings: Headings) -> String {
     let mut text = String::new();
     let mut paragraph = String::new();
     let mut is_scene = false;
-    // An empty line is added at the end, which closes the last paragraph.
+    // The empty line at the end closes the last paragraph.
     let mut rows: Vec<Vec<&str>> = Vec::new();
     let lines = page.lines().filter(|line| !line.starts_with("!["));
     let lines = lines.map(without_targets).collect::<Vec<_>>();
@@ -184,7 +184,8 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
         } else if line.is_empty() {
             push_wrapped(&mut text, &paragraph, width);
             paragraph.clear();
-            // A picture that was left out leaves one empty line, not two.
+            // Where a picture was left out, two empty lines would follow each other, so only one is
+            // written.
             if !text.ends_with("\n\n") {
                 text.push('\n');
             }
@@ -202,7 +203,7 @@ fn drawn(page: &str, width: usize, headings: Headings) -> String {
     text
 }
 
-/// Removes the targets of a line's links, since a terminal cannot follow them.
+/// Replaces each Markdown link by its text, since a terminal cannot follow links.
 fn without_targets(line: &str) -> String {
     let link = |rest: &'_ str| {
         let at = rest.find("](")?;
@@ -219,7 +220,7 @@ fn without_targets(line: &str) -> String {
     text + rest
 }
 
-/// Splits a row of a Markdown table into cells; an escaped `\|` does not separate cells.
+/// Splits a row of a Markdown table into cells. An escaped `\|` does not separate cells.
 fn cells(line: &str) -> Vec<&str> {
     let inner = line.trim().trim_start_matches('|');
     let inner = inner.strip_suffix('|').unwrap_or(inner);
@@ -236,8 +237,7 @@ fn cells(line: &str) -> Vec<&str> {
     cells
 }
 
-/// Appends a table to `text`: in columns if they fit into `width`, otherwise each row as a
-/// paragraph.
+/// Appends a table to `text`. If its columns do not fit into `width`, each row becomes a paragraph.
 fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
     let is_rule = |row: &&Vec<&str>| {
         row.iter()
@@ -267,8 +267,7 @@ fn push_table(text: &mut String, rows: &[Vec<&str>], width: usize) {
     }
 }
 
-/// Appends a wrapped paragraph to `text`. The further lines of a list item are indented to the
-/// item's first word.
+/// Appends a wrapped paragraph to `text`. In a list item, all lines after the first are indented.
 fn push_wrapped(text: &mut String, paragraph: &str, width: usize) {
     let words: Vec<&str> = paragraph.split_whitespace().collect();
     if words.is_empty() {
@@ -345,17 +344,19 @@ mod tests {
                 "{heading}"
             );
         }
-        // Each method says what it is, shows how it is written, and says why it is good.
+        // The page of each sampling method has three parts: what it is, how it is written, and why
+        // it works.
         for method in schema::method_names() {
             let page = page(method).unwrap();
             assert!(page.matches("\n\n").count() == 3, "{page}");
         }
-        // A word of the language explains itself, even if it is also another program's name for
+        // A word of the language explains itself, even if another program uses the word for
         // something else.
         for (name, meant) in explain::other_names() {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),
-                // `page` shows only the lines that answer, not the whole page.
+                // If a name of another program stands for a part of a page, only the lines about it
+                // are printed.
                 Some((_, words)) => {
                     let page = page(name).unwrap();
                     let lines: Vec<&str> = page.lines().collect();

@@ -1,4 +1,4 @@
-//! `figure`: a figure of a scene for a page of a course, as SVG.
+//! `figure`: draws a figure of a scene as SVG, for teaching material.
 
 use super::{
     Status, Trouble,

@@ -13,7 +13,8 @@ use super::{
 };
 use crate::{diagnostic::Report, format::format, source::Sources};
 
-/// Formats each scene in turn, or prints what would change. Returns the worst of the exit statuses.
+/// Formats each scene in turn. With `--check`, prints what would change instead. Returns the
+/// largest of the exit statuses.
 pub fn run(args: &FmtArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     Ok(each(&args.scenes, interrupt, |path| {

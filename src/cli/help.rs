@@ -1,5 +1,5 @@
-//! Texts at the end of each command's `--help`, after the options: examples, JSON output, exit
-//! status.
+//! Texts that each command's `--help` prints after the options: examples, the fields of JSON
+//! output, and exit statuses.
 
 pub const EXAMPLES: &str = "\
 Examples:

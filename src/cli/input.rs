@@ -21,25 +21,30 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum length of a scene's file, in bytes. A longer file is rejected.
+/// Maximum length of a scene's file, in bytes. A longer file is rejected. Chosen far above the
+/// length of any sensible scene; it keeps an endless input, such as `/dev/zero`, from filling the
+/// memory.
 const SCENE_LIMIT: u64 = 256 << 20;
 
-/// Number of bytes of a picture that are read to find the scene in it. The chunks of a [`Recipe`]
-/// before the pixels are shorter.
+/// Number of bytes at the start of a PNG that are read to find the scene in it. Pinhole stores at
+/// most 1 MiB of text ([`Recipe`]) before the pixels. The rest leaves room for data that other
+/// programs insert there.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// Number of bytes at the start of a file that decide whether the file is a picture. Before the
-/// picture, a program may have printed lines into the file, but not more than this.
+/// Number of bytes at the start of a file that are searched for a picture. A program may print
+/// messages before its picture; if they are longer than this, the picture is not found. Usual
+/// messages are far shorter.
 const START: u64 = 1 << 16;
 
-/// A scene as it was read, before parsing.
+/// A scene that was read, but not yet parsed.
 pub struct SceneInput {
-    /// The scene's text and its overrides: first those that a picture carries, then those on the
-    /// command line.
+    /// The scene's text and its overrides, i.e. `--set` arguments: first those that are stored in a
+    /// picture, then those on the command line.
     pub sources: Sources,
-    /// Whether the scene was read from a picture that carries it.
+    /// Whether the scene was read from a PNG in which Pinhole stored it.
     pub is_picture: bool,
-    /// The crop that the picture carries, if there is one.
+    /// The part of the picture that was rendered, if the scene was read from a PNG that shows only
+    /// a part.
     pub crop: Option<Area>,
 }
 
@@ -59,15 +64,16 @@ pub fn check_standard(paths: &[PathBuf]) -> Result<(), Trouble> {
 }
 
 impl SceneInput {
-    /// Reads the scene that the argument `path` names, with the overrides.
+    /// Reads the scene from the file `path` or, for `-`, from standard input, and adds the
+    /// overrides of the command line.
     pub fn read(path: &Path, overrides: &Overrides) -> Result<Self, Trouble> {
         let bytes = argument(path).and_then(limited);
         let bytes = bytes.map_err(|error| unreadable(path, &error))?;
         Self::of_bytes(path, bytes, overrides)
     }
 
-    /// Reads a text that the command `command` will change. Also returns the original of its file,
-    /// or `None` for standard input. Fails for pipes.
+    /// Reads a scene's text for the command `command`, which will change it. Also returns the file
+    /// as it was read, or `None` for standard input. Fails for pipes.
     pub fn to_change(
         path: &Path,
         overrides: &Overrides,
@@ -109,7 +115,7 @@ impl SceneInput {
         Ok(input)
     }
 
-    /// Makes the input from `bytes`, the text of the scene's file `path`.
+    /// Makes the input from `bytes`, the content of the scene's file `path`.
     pub fn of(path: &Path, bytes: Vec<u8>, overrides: &Overrides) -> Self {
         let mut input = Self::from_text(path.display().to_string(), bytes);
         input.add(overrides);
@@ -125,8 +131,8 @@ impl SceneInput {
     }
 
     fn add(&mut self, overrides: &Overrides) {
-        // The number in the name of an override counts only the arguments on the command line, not
-        // the overrides that a picture carries.
+        // Overrides are numbered as on the command line. Those that are stored in a picture do not
+        // count.
         let sets = (1..).zip(&overrides.sets);
         let sets = sets.map(|(number, set)| Source::from_text(format!("--set #{number}"), set));
         self.sources.sets.extend(sets);
@@ -145,9 +151,8 @@ impl SceneInput {
         }
     }
 
-    /// Reads the scene, and reports its problems to people. Objects outside of the picture are not
-    /// reported, since they may be intended, for example in one frame of an animation. The commands
-    /// that check the text itself report them.
+    /// Parses the scene and prints its problems. Warnings about objects outside of the picture are
+    /// not printed, since such objects may be intended, for example in one frame of an animation.
     pub fn scene(&self) -> Result<Scene, Trouble> {
         let mut reading = scene::read(&self.sources);
         let is_of_text = |it: &Diagnostic| it.code == "pinhole::outside_picture";
@@ -161,7 +166,7 @@ impl SceneInput {
         Report::new(&self.sources, output::style()).human(&reading.diagnostics)
     }
 
-    /// Returns the scene's text and the overrides, for a picture to carry.
+    /// Returns the scene's text and overrides in the form in which a PNG stores them.
     pub fn recipe(&self, crop: Option<Area>) -> Recipe {
         let sets = self.sources.sets.iter();
         Recipe {
@@ -172,12 +177,12 @@ impl SceneInput {
     }
 }
 
-/// Returns the name of a path for messages: on one line, with control characters made visible.
+/// Returns a path for use in messages: on one line, with control characters made visible.
 pub fn shown(path: &Path) -> String {
     visible_line(&path.display().to_string()).into_owned()
 }
 
-/// Warns about copies of a file that were left by processes that were killed while they wrote the
+/// Warns about copies of a file. They were left by processes that were killed while they wrote the
 /// file.
 pub fn name_copies(path: &Path) {
     for copy in files::copies_left(path) {
@@ -203,7 +208,7 @@ pub fn not_written(why: NotWritten) -> Trouble {
     unwritable(&why.path, &why.error)
 }
 
-/// Replaces the text of a file. Fails if the file is no longer what was read.
+/// Replaces the text of a file. Fails if another program has changed the file since it was read.
 pub fn change(
     path: &Path,
     original: &Original,
@@ -225,16 +230,17 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The bytes of an argument that should be a picture.
+/// The bytes of a file that was expected to be a picture.
 pub enum FileBytes {
     /// All bytes of a picture.
     Picture(Vec<u8>),
-    /// Bytes of another file: all of them or only the first, as [`IfNotPicture`] says.
+    /// Bytes of a file that is not a picture: all of them, or only the first. [`IfNotPicture`]
+    /// decides which.
     Other(Vec<u8>),
 }
 
-/// Reads a picture. If the first bytes show that the file is no picture, reads as much of it as
-/// `if_not_picture` says.
+/// Reads a picture. If the first bytes show that the file is not a picture, `if_not_picture` says
+/// how much of it is read.
 pub fn read_picture_or(
     path: &Path,
     large: &LargeArgs,
@@ -267,26 +273,27 @@ pub fn read_picture_or(
     })
 }
 
-/// How much is read of a file that is not a picture.
+/// How much to read of a file that turns out not to be a picture.
 pub enum IfNotPicture {
     /// The whole file, up to the maximum length of a scene.
     ReadScene,
-    /// Only the first bytes, which show that the file is not a picture.
+    /// Only the first bytes, which suffice for an error message.
     ReadStart,
 }
 
-/// Reads the bytes of a scene's file, or the start of a picture, which contains the scene. Fails
-/// unless the path is a regular file.
+/// Reads a scene's file. Of a PNG, which may contain a scene, only the start is read. Fails unless
+/// the path is a regular file.
 pub fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     limited(files::open(path)?)
 }
 
-/// Opens the argument SCENE or PICTURE for reading.
+/// Opens a scene's file, or standard input for `-`, for reading.
 fn argument(path: &Path) -> io::Result<Box<dyn Read>> {
     opened(path).map(|(from, _)| from)
 }
 
-/// Opens an argument for reading. Also returns its length in bytes if it is a regular file.
+/// Opens a file, or standard input for `-`, for reading. Also returns the length in bytes of a
+/// regular file.
 fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
     if is_standard(path) {
         return Ok((Box::new(io::stdin().lock()), None));
@@ -296,7 +303,7 @@ fn opened(path: &Path) -> io::Result<(Box<dyn Read>, Option<u64>)> {
     Ok((Box::new(file), length.map(|found| found.len())))
 }
 
-/// Reads a scene, or the start of a picture, which contains the scene.
+/// Reads a scene's text. Of a PNG, which may contain a scene, only the start is read.
 fn limited(mut from: impl Read) -> io::Result<Vec<u8>> {
     let start = files::read_from(from.by_ref().take(START), START)?;
     let is_picture = start.starts_with(&SIGNATURE);

@@ -11,28 +11,29 @@ use std::{
 
 use super::{Status, Trouble, trouble};
 
-/// Whether the user has pressed Ctrl-C, or the system has asked the process to end.
+/// Record of Ctrl-C, or of a signal that asks the process to end.
 ///
-/// Ctrl-C ends the process at once, unless a command watches the flag because it has to clean up
-/// first. Pressed again after [`GRACE`], Ctrl-C ends the process in any case.
+/// Ctrl-C ends the process at once, unless a command has called [`watch`](Self::watch) because it
+/// has to clean up first. Even then, pressing Ctrl-C again after [`GRACE`] ends the process.
 #[derive(Clone)]
 pub struct Interrupt(Arc<Flags>);
 
 #[derive(Default)]
 struct Flags {
-    /// Whether a command watches the flag `pressed` and ends itself.
+    /// Whether a command checks the flag `pressed` and ends itself when it is set.
     watched: AtomicBool,
     pressed: AtomicBool,
     first: OnceLock<Instant>,
     then: OnceLock<Box<dyn Fn() + Send + Sync>>,
 }
 
-/// Time after the first Ctrl-C from which on another one ends the process at once. Until then, a
-/// command can clean up. Removing a temporary file and stopping threads take a small part of it.
+/// Time after the first Ctrl-C during which the command can clean up. Another Ctrl-C after it ends
+/// the process at once. Removing a temporary file and stopping threads take far less than two
+/// seconds.
 const GRACE: Duration = Duration::from_secs(2);
 
 impl Interrupt {
-    /// Installs the handler of Ctrl-C, which sets the flag.
+    /// Installs a handler that records Ctrl-C.
     pub fn listen() -> Result<Self, Trouble> {
         let flags = Arc::new(Flags::default());
         let interrupt = Self(Arc::clone(&flags));
@@ -50,18 +51,19 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// Returns the flag that Ctrl-C sets. After this call, Ctrl-C only sets the flag, and the
-    /// caller must end the command when it is set.
+    /// Returns the flag that Ctrl-C sets. After this call, the first Ctrl-C only sets the flag, and
+    /// the caller must then end the command.
     pub fn watch(&self) -> &AtomicBool {
         self.0.watched.store(true, Ordering::SeqCst);
         &self.0.pressed
     }
 
-    /// Registers `what`, which is called when Ctrl-C is pressed, or at once if it already was.
-    /// `what` must make the command end.
+    /// Registers a function that makes the command end. It is called when Ctrl-C is pressed, or at
+    /// once if that has already happened.
     pub fn then(&self, what: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.then.set(Box::new(what));
-        // Ctrl-C may have been pressed before `what` was registered, so `what` is called here.
+        // If Ctrl-C was pressed before the function was registered, the handler did not call it, so
+        // it is called now.
         if self.watch().load(Ordering::SeqCst)
             && let Some(then) = self.0.then.get()
         {
@@ -74,7 +76,8 @@ impl Interrupt {
         self.0.pressed.load(Ordering::SeqCst)
     }
 
-    /// Returns why a command ended: the trouble, unless Ctrl-C made it.
+    /// Returns [`Trouble::Interrupted`] if Ctrl-C was pressed, since it then caused the error.
+    /// Otherwise, returns `trouble`.
     pub fn or(&self, trouble: Trouble) -> Trouble {
         if self.pressed() {
             Trouble::Interrupted

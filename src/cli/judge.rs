@@ -1,4 +1,4 @@
-//! Reads pictures that are compared with a scene: the code that `diff` and `grade` share.
+//! Reads pictures that are compared with a scene, for `diff` and `grade`.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::{
     scene::Scene,
 };
 
-/// Decodes a picture, unless it is larger than the arguments allow.
+/// Decodes a picture. A picture that is too large is rejected, unless `--large` was given.
 ///
 /// # Errors
 ///
@@ -21,14 +21,14 @@ pub fn picture(bytes: &[u8], large: &LargeArgs) -> Result<Picture, String> {
     })
 }
 
-/// Returns the part of the scene that a picture shows: the crop that the picture carries, or else
-/// the crop `named` on the command line, or else the whole scene. A crop is ignored if its size
-/// differs from the picture's.
+/// Returns the area of the scene that a picture shows. This is the crop that the picture's file
+/// contains, or the crop `named` on the command line, or the whole scene. A crop counts only if it
+/// has the picture's size.
 ///
 /// # Errors
 ///
-/// The sizes differ, or the crop lies outside of the scene. The message continues a sentence that
-/// begins with the picture's name.
+/// No area has the picture's size, or the crop lies outside of the scene. The message is the end of
+/// a sentence that begins with the picture's name.
 pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Area, String> {
     let [width, height] = [picture.film.width(), picture.film.height()];
     let whole = Area::whole(scene.image.width, scene.image.height);
@@ -49,7 +49,7 @@ pub fn part(picture: &Picture, scene: &Scene, named: Option<Area>) -> Result<Are
     }
 }
 
-/// Returns advice on how to compare a picture whose size differs from the scene's.
+/// Returns advice for a picture whose size differs from the scene's.
 fn way_out([width, height]: [u32; 2], whole: Area) -> String {
     let [w, h] = [whole.width, whole.height];
     let is_scaled = u64::from(width) * u64::from(h) == u64::from(height) * u64::from(w);
@@ -78,7 +78,7 @@ pub fn is_named_as_picture(path: &Path) -> bool {
         .is_some_and(|ending| ENDINGS.iter().any(|own| ending.eq_ignore_ascii_case(own)))
 }
 
-/// Quotes the value of a `--set` argument for a shell, if necessary.
+/// Quotes the value in a `--set` argument for a shell, if a shell would not take it literally.
 pub fn quoted(argument: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-+".contains(c);
     match argument.split_once('=') {

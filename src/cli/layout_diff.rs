@@ -1,8 +1,9 @@
-//! A unified diff between a text and its layout, in time and memory linear in their length.
+//! The unified diff between a scene's text and the formatted text. Its time and memory are linear
+//! in the length of the texts.
 //!
-//! A layout changes only white space. Therefore, the number of other characters before a line gives
-//! the line's place in the other text. One pass over both texts finds the unchanged lines, without
-//! a search for a shortest edit.
+//! Formatting changes only white space. Therefore, two lines can correspond only if equally many
+//! other characters precede them. One pass over both texts finds all unchanged lines, so that no
+//! general diff algorithm is needed.
 
 use super::{
     output,
@@ -13,7 +14,7 @@ use crate::{
     source::Source,
 };
 
-/// Returns a unified diff from the source to the formatted text. If the source has both kinds of
+/// Returns a unified diff from the source to the formatted text. If the source mixes LF and CRLF
 /// line ends, carriage returns are shown, since lines may differ only in them.
 pub fn layout_diff(source: &Source, formatted: &str) -> String {
     let text = source.text();
@@ -39,12 +40,12 @@ pub fn layout_diff(source: &Source, formatted: &str) -> String {
     format!("--- {name}\n+++ {name}, formatted\n{hunks}")
 }
 
-/// A position in a text that is read line by line.
+/// A position in a text, between two lines.
 struct LineCursor<'t> {
     lines: &'t [&'t str],
     /// Index of the next line.
     next: usize,
-    /// Number of characters before the next line, except white space.
+    /// Number of characters before the next line, not counting white space.
     solid_before: usize,
 }
 
@@ -62,14 +63,15 @@ impl<'t> LineCursor<'t> {
         self.lines.get(self.next).copied()
     }
 
-    /// Moves to the end of the next line, if there is one.
+    /// Moves past the next line, if there is one.
     fn pass(&mut self) {
         let line = self.line().unwrap_or_default();
         self.next += usize::from(self.next < self.lines.len());
         self.solid_before += line.chars().filter(|c| !c.is_whitespace()).count();
     }
 
-    /// Whether the next line of both texts is the same, or both are at their ends.
+    /// Returns whether the next lines of both texts are equal and at corresponding places, or both
+    /// texts are at their ends.
     fn is_same(&self, other: &Self) -> bool {
         match (self.line(), other.line()) {
             (None, None) => true,
@@ -78,7 +80,7 @@ impl<'t> LineCursor<'t> {
     }
 }
 
-/// Returns the changes from the old to the new lines.
+/// Returns the changes that turn the old lines into the new lines.
 fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut before, mut after) = (LineCursor::new(old), LineCursor::new(new));
     let mut changes = Vec::new();
@@ -92,9 +94,9 @@ fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
             let (old, new) = (before.line(), after.line());
             let [mut is_removed, mut is_added] = [old.is_some(), new.is_some()];
             if let (Some(old), Some(new)) = (old, new) {
-                // The text whose next line has fewer characters before it, not counting white
-                // space, is advanced first; if equally many, the one whose next line is empty;
-                // otherwise both.
+                // Advances the text that has fewer characters before its next line, not counting
+                // white space. If the numbers are equal, advances the text whose next line is
+                // empty. If both next lines are empty, or neither is, advances both texts.
                 let is_empty = |line: &str| line.trim().is_empty();
                 let [old, new] = [
                     (before.solid_before, !is_empty(old)),
@@ -144,8 +146,7 @@ mod tests {
                 "a\nb c\n",
                 "@@ -1,3 +1,2 @@\n a\n-b\n-c\n+b c\n",
             ),
-            // A `}` is matched only with the `}` at the same place, not with an earlier or later
-            // one.
+            // A line `}` corresponds only to the `}` with equally many characters before it.
             (
                 "}\n}\n x\n}\n",
                 "}\n}\nx\n}\n",

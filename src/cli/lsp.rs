@@ -14,7 +14,8 @@ pub fn run() -> Result<Status, Trouble> {
     let server = Server::new(log);
     match stdio::serve(server, io::stdin(), &mut io::stdout().lock(), log) {
         Ok(true) => Ok(Status::Done),
-        // The protocol requires the status 1 if `exit` comes without `shutdown`.
+        // The Language Server Protocol requires exit status 1 if the client sends `exit` without
+        // `shutdown`.
         Ok(false) => Ok(Status::SceneErrors),
         Err(error) => Err(trouble(format!("cannot write to standard output: {error}"))),
     }

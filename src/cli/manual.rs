@@ -1,5 +1,5 @@
-//! `completions` and `man`: print the definitions of the arguments as a completion script and as a
-//! manual page.
+//! `completions` and `man`: print a shell's completion script and the manual page. Both are
+//! generated from the definitions of the arguments.
 
 use std::io::{self, Write};
 
@@ -42,7 +42,8 @@ fn write(page: &mut Vec<u8>) -> io::Result<()> {
     whole.render_version_section(page)
 }
 
-/// Writes the section of one command. The sections of the command's own page become subsections.
+/// Writes the section about one command. clap makes a manual page of several sections for it, which
+/// become subsections.
 fn write_command(page: &mut Vec<u8>, command: &Command) -> io::Result<()> {
     let own = Man::new(command.clone());
     let mut parts = Vec::new();
@@ -61,7 +62,8 @@ fn write_command(page: &mut Vec<u8>, command: &Command) -> io::Result<()> {
     write!(page, ".SH \"PINHOLE {name}\"\n{parts}")
 }
 
-/// Returns the text after the options, which contains the examples, with its line breaks.
+/// Returns the text that `--help` shows after the options, mostly examples. Its line breaks are
+/// kept.
 fn examples(man: &Man) -> io::Result<String> {
     let mut extra = Vec::new();
     man.render_extra_section(&mut extra)?;

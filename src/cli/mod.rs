@@ -1,9 +1,9 @@
-//! The command line: reads input, calls the library, prints. Each command has a file.
+//! The command line. Each command has a file: it reads input, calls the library, and prints the
+//! result.
 //!
-//! Pictures and JSON go to standard output, and everything for people to standard error. The exit
-//! status is 0 if the command is done, with or without warnings; 1 if the scene has errors,
-//! pictures differ or `fmt --check` would change something; 2 for any other error; and 130 after
-//! Ctrl-C.
+//! Pictures and JSON go to standard output, and texts for people to standard error. The exit status
+//! is 0 for success, with or without warnings; 1 if the scene has errors, pictures differ, or `fmt
+//! --check` would change something; 2 for any other error; and 130 after Ctrl-C.
 
 mod args;
 mod check;
@@ -54,7 +54,7 @@ use self::{
 };
 use crate::{diagnostic::visible_line, render::RenderError, threads};
 
-/// Runs the command that the arguments name.
+/// Parses the arguments and runs the command that they name. Returns its exit status.
 pub fn run() -> ExitCode {
     let args = match Args::try_parse() {
         Ok(args) => args,
@@ -87,14 +87,17 @@ pub fn run() -> ExitCode {
     status_of(done).into()
 }
 
-/// Returns clap's answer to the arguments after their control characters were made visible, since
-/// the answer repeats some arguments. Returns `None` if clap accepts the arguments in this form.
+/// Returns clap's error or help text with control characters made visible. The text repeats
+/// arguments, and their control characters must not reach the terminal. Therefore, the arguments
+/// are parsed again after their control characters are replaced. Returns `None` if clap accepts the
+/// replaced arguments.
 fn visible_answer() -> Option<clap::Error> {
     let shown = |argument: OsString| visible_line(&argument.to_string_lossy()).into_owned();
     Args::try_parse_from(env::args_os().map(shown)).err()
 }
 
-/// Prints help, the version, or what is wrong with the arguments. Returns the exit status.
+/// Prints clap's answer: a help text, the version, or an error in the arguments. Returns the exit
+/// status.
 fn print_answer(answer: &clap::Error) -> ExitCode {
     let status = if answer.use_stderr() {
         Status::Trouble
@@ -110,7 +113,8 @@ fn print_answer(answer: &clap::Error) -> ExitCode {
     }
 }
 
-/// Runs `one` on each scene in turn, and prints errors. Returns the worst of the exit statuses.
+/// Calls `one` for each scene in turn, and prints its errors. Returns the largest of the exit
+/// statuses.
 fn each(
     scenes: &[PathBuf],
     interrupt: &Interrupt,
@@ -131,10 +135,10 @@ fn each(
 enum Status {
     /// The command is done, with or without warnings.
     Done = 0,
-    /// The command ran, and its result is negative: the scene has errors, the pictures differ, the
-    /// layout would change, or an editor disconnected without `exit`.
+    /// The command ran, but with a negative result: the scene has errors, the pictures differ, the
+    /// layout would change, or an editor disconnected without sending `exit`.
     SceneErrors = 1,
-    /// Wrong usage, a file that cannot be read or written, or too little memory.
+    /// Wrong arguments, a file that cannot be read or written, or too little memory.
     Trouble = 2,
     /// The command was ended by Ctrl-C.
     Interrupted = 130,
@@ -146,7 +150,8 @@ impl From<Status> for ExitCode {
     }
 }
 
-/// Returns the status of a command that ended, and prints what went wrong.
+/// Returns the exit status of a command that has ended. Prints its error message, if there is one
+/// that was not yet printed.
 fn status_of(done: Result<Status, Trouble>) -> Status {
     match done {
         Ok(status) => status,
@@ -162,10 +167,10 @@ fn status_of(done: Result<Status, Trouble>) -> Status {
 /// Why a command ended early.
 #[derive(Debug, thiserror::Error)]
 enum Trouble {
-    /// Something went wrong: what, in words for people.
+    /// An error, with a message for people.
     #[error("{0}")]
     Message(String),
-    /// The scene has errors, which have been printed.
+    /// The scene has errors. They have already been printed.
     #[error("the scene has errors")]
     SceneErrors,
     /// Ctrl-C was pressed.
@@ -173,7 +178,7 @@ enum Trouble {
     Interrupted,
 }
 
-/// Returns what went wrong, in words for people.
+/// Makes an error with a message for people.
 fn trouble(message: impl Into<String>) -> Trouble {
     Trouble::Message(message.into())
 }

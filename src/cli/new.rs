@@ -1,4 +1,4 @@
-//! `new`: writes the smallest scene that shows something to a new file.
+//! `new`: writes a new file with a minimal scene that shows something.
 
 use super::{
     Status, Trouble,
@@ -12,7 +12,7 @@ use crate::{
     scene,
 };
 
-/// Writes the smallest scene to a new file. Fails if the file exists.
+/// Writes the minimal scene to a new file, or to standard output for `-`. Fails if the file exists.
 pub fn run(args: &NewArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if is_standard(&args.file) {
         output::to_programs(scene::SMALLEST.as_bytes())?;

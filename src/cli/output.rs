@@ -1,4 +1,4 @@
-//! Writes to standard output for programs, and to standard error for people.
+//! Writes results for programs to standard output, and texts for people to standard error.
 
 use std::{
     borrow::Cow,
@@ -11,8 +11,8 @@ use terminal_size::{Width, terminal_size_of};
 use super::{Trouble, trouble};
 use crate::diagnostic::{Drawing, Style, visible, visible_line};
 
-/// Writes a text to standard output. If that is a terminal, control characters are made visible, so
-/// that a scene cannot control the terminal.
+/// Writes a text to standard output. On a terminal, control characters are made visible, so that a
+/// text from a scene cannot control the terminal.
 pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
     if io::stdout().is_terminal() {
         page(&visible(&String::from_utf8_lossy(text)))
@@ -21,8 +21,8 @@ pub fn to_programs(text: &[u8]) -> Result<(), Trouble> {
     }
 }
 
-/// Writes a text to standard output while the text is produced, since it may be long. On a
-/// terminal, control characters are made visible, as by [`to_programs`].
+/// Writes a text to standard output while it is produced, so that a long text need not be in
+/// memory. On a terminal, control characters are made visible.
 pub fn stream_to_programs(
     write_to: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Trouble> {
@@ -38,7 +38,8 @@ pub fn stream_to_programs(
         .map_err(stdout_error)
 }
 
-/// Writes a page, whose text is safe and laid out for the terminal, to standard output.
+/// Writes a text to standard output. The text must already be formatted for a terminal and contain
+/// no control characters from a scene.
 pub fn page(text: &str) -> Result<(), Trouble> {
     write(text.as_bytes())
 }
@@ -53,8 +54,8 @@ fn stdout_error(error: io::Error) -> Trouble {
     trouble(format!("cannot write to standard output: {error}"))
 }
 
-/// Standard output. If the reader has closed the pipe, as `head` does, the rest is dropped without
-/// an error.
+/// Standard output. If the reading program has closed the pipe, as `head` does, further output is
+/// dropped without an error.
 pub struct StandardOutput(StdoutLock<'static>);
 
 impl StandardOutput {
@@ -80,13 +81,13 @@ impl Write for StandardOutput {
     }
 }
 
-/// Writes to standard error. Errors are ignored, since they cannot be reported anywhere.
+/// Writes a text to standard error. Errors are ignored, since there is nowhere to report them.
 pub fn to_people(text: &str) {
     let _ = io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Writes a command's answer to standard error, wrapped to the width of a terminal. If the reader
-/// has closed the pipe, the rest is dropped without an error.
+/// Writes a command's result to standard error, wrapped to the width of the terminal. If the
+/// reading program has closed the pipe, the rest is dropped without an error.
 pub fn answer(text: &str) -> Result<(), Trouble> {
     let columns = terminal_size_of(io::stderr()).filter(|_| is_watched());
     let text = match columns {
@@ -101,9 +102,8 @@ pub fn answer(text: &str) -> Result<(), Trouble> {
     }
 }
 
-/// Wraps lines longer than `width` columns between words, since a terminal would break them within
-/// words. The further lines are indented to the last column of a table if this column starts in the
-/// left half of the terminal.
+/// Wraps lines longer than `width` columns between words. If a line seems to be a table's row whose
+/// last column starts in the left half, its further lines are indented to this column.
 pub fn wrapped(text: &str, width: usize) -> String {
     let broken = text.split('\n').map(|line| {
         let words = line.trim_start_matches(' ');
@@ -120,9 +120,9 @@ pub fn wrapped(text: &str, width: usize) -> String {
     broken.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the offset at which the last column of a table's line starts, at most `most`. A column
-/// starts after two spaces. If the line is not part of a table, returns 2, or `most` if that is
-/// less.
+/// Returns the offset at which the last column of a table's row starts. A column starts after at
+/// least two spaces. Columns that start after the offset `most` do not count. If there is no
+/// column, returns 2, or `most` if that is less.
 fn last_column(line: &str, most: usize) -> usize {
     let letters: Vec<char> = line.chars().take(most + 1).collect();
     let starts = letters.windows(3).enumerate();
@@ -165,9 +165,9 @@ pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// Returns the style of reports on standard error. Reports have colours if standard error is a
-/// terminal with colours and `NO_COLOR` is not set. They are drawn in ASCII if the locale is not
-/// UTF-8. If `NO_GRAPHICS` is set, they consist of sentences, for screen readers.
+/// Returns the style of reports on standard error. Colours are used if it is a terminal with
+/// colours and `NO_COLOR` is not set. Box-drawing characters are used if the locale is UTF-8. If
+/// `NO_GRAPHICS` is set, reports are sentences, for screen readers.
 pub fn style() -> Style {
     let plain = Style::default();
     let columns = terminal_size_of(io::stderr()).map(|(Width(columns), _)| usize::from(columns));
@@ -185,11 +185,12 @@ pub fn style() -> Style {
     }
 }
 
-/// Number of columns to the left of an excerpt of a scene in a report. The line number and the
-/// frame take them, so they are subtracted from the terminal's width.
+/// Number of columns that are reserved at the left of a scene's lines in a report, for line numbers
+/// and the frame. The lines get the remaining columns of the terminal. With a smaller number, the
+/// terminal would wrap long lines.
 const FRAME: usize = 8;
 
-/// Returns the style of pages on standard output; `None` if standard output is not a terminal.
+/// Returns the style for texts on standard output, or `None` if it is not a terminal.
 pub fn page_style() -> Option<Style> {
     let out = io::stdout();
     out.is_terminal().then(|| {
@@ -202,8 +203,9 @@ pub fn page_style() -> Option<Style> {
     })
 }
 
-/// Returns whether colours may be written to a terminal, according to <https://no-color.org> and
-/// <https://bixense.com/clicolors>. The terminals of DEC, such as the VT100, have no colours.
+/// Returns whether colours may be written to a terminal, as <https://no-color.org> and
+/// <https://bixense.com/clicolors> define it. In addition, the terminals `vt100` and similar, made
+/// by DEC, count as terminals without colours.
 pub fn has_color() -> bool {
     let is = |name, value| env::var_os(name).is_some_and(|found| found == value);
     let is_of_dec = |name: &str| match name.strip_prefix("vt") {
@@ -215,13 +217,13 @@ pub fn has_color() -> bool {
     !is_plain && !is("CLICOLOR", "0") && !is_set("NO_COLOR")
 }
 
-/// Returns whether an environment variable is present and not empty, as no-color.org defines it.
+/// Returns whether an environment variable is set and not empty.
 fn is_set(name: &str) -> bool {
     env::var_os(name).is_some_and(|value| !value.is_empty())
 }
 
-/// Returns whether the locale is UTF-8. The first locale variable that is not empty decides; if all
-/// are empty, the terminal is assumed to support Unicode.
+/// Returns whether the locale is UTF-8. The first locale variable that is not empty decides. If all
+/// are empty, the terminal is assumed to show Unicode.
 fn is_unicode() -> bool {
     ["LC_ALL", "LC_CTYPE", "LANG"]
         .iter()

@@ -22,18 +22,18 @@ use crate::{
     tracer::World,
 };
 
-/// A rendered picture, with its pixels in the precision that the output needs.
+/// A rendered picture. Its pixels have the precision that the output needs.
 pub enum RenderedPicture {
-    /// Means of the pixels in linear light, in 64-bit floats.
+    /// Means of pixels in linear light, as 64-bit floats.
     Light(Rendered),
-    /// Means of the pixels in linear light, rounded to 32-bit floats.
+    /// Means of pixels in linear light, rounded to 32-bit floats, as an EXR file stores them.
     Floats(Rendered<[f32; 3]>),
-    /// Pixels rounded to bytes of sRGB.
+    /// Pixels rounded to bytes of sRGB, as a PNG file stores them.
     Bytes(Rendered<[u8; 3]>),
 }
 
 impl RenderedPicture {
-    /// Returns the film of 64-bit means; `None` if the means were rounded.
+    /// Returns the picture as 64-bit floats, or `None` if the pixels were rounded.
     pub fn into_film(self) -> Option<film::Film> {
         match self {
             Self::Light(light) => Some(light.into_film()),
@@ -41,8 +41,9 @@ impl RenderedPicture {
         }
     }
 
-    /// Returns notes for the user on the error bounds of an exact picture; empty for a sampled
-    /// picture. `part` is the part of the whole picture that was rendered.
+    /// Returns a note for the user about the accuracy of an exact picture, i.e. one computed
+    /// without samples. The note is empty for a sampled picture. `part` is the area that was
+    /// rendered.
     pub fn notes(&self, part: Area, output: &PictureOutput) -> String {
         match self {
             Self::Light(Rendered::Sampled(_))
@@ -65,19 +66,21 @@ impl RenderedPicture {
     }
 }
 
-/// Precision in which pixels are stored. It is as low as the file allows, unless the 64-bit means
-/// are needed for something else, for example to show the picture in the terminal.
+/// Precision in which pixels are kept in memory. Lower precision takes less memory. It is as low as
+/// the file format allows, unless the picture is also shown in the terminal, which needs 64-bit
+/// floats.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum KeptPixels {
-    /// Means of the pixels in linear light, in 64-bit floats.
+    /// Means of pixels in linear light, as 64-bit floats.
     Light,
-    /// Means of the pixels in linear light, rounded to 32-bit floats.
+    /// Means of pixels in linear light, rounded to 32-bit floats, as an EXR file stores them.
     Floats,
-    /// Pixels rounded to bytes of sRGB.
+    /// Pixels rounded to bytes of sRGB, as a PNG file stores them.
     Bytes,
 }
 
-/// Renders a part of the scene's picture, with a progress bar if standard error is a terminal.
+/// Renders the area `part` of a scene's picture. Shows a progress bar if standard error is a
+/// terminal.
 pub fn picture(
     scene: &Scene,
     world: &World,
@@ -92,7 +95,8 @@ pub fn picture(
     })
 }
 
-/// Renders as [`picture`] does, to pixels of a type.
+/// Renders the area `part` of a scene's picture to pixels of type `P`. Shows a progress bar if
+/// standard error is a terminal.
 pub fn render_part<P: film::Pixel>(
     scene: &Scene,
     world: &World,
@@ -104,8 +108,8 @@ pub fn render_part<P: film::Pixel>(
     let expected = if sampling.is_exact() {
         part.pixels()
     } else {
-        // This is the expected number of samples in the part. If the scene gives a total number of
-        // samples, its remainder may be spread unevenly, which does not matter for a progress bar.
+        // The progress bar needs only an estimate. If the scene gives a total number of samples,
+        // the part may contain slightly more or fewer than its share, which does not matter.
         let share = part.pixels() as f64 / whole.pixels() as f64;
         (sampling.total() as f64 * share) as u64
     };
@@ -114,19 +118,21 @@ pub fn render_part<P: film::Pixel>(
     })
 }
 
-/// Error bound of a pixel's mean, in linear light. If bounds are larger, a note for the user says
-/// how many pixels are known less well than to a millionth.
+/// Error bound of a pixel's mean, in linear light, above which the user gets a note that the pixel
+/// is known less well than usual. Usual bounds are below 1e-9, and an error of 1e-6 is still
+/// invisible. With a much larger limit, a visible error could go without a note; with a smaller
+/// one, there would be more notes about invisible errors.
 const VAGUE: f32 = 1e-6;
 
-/// Name of the rounding to bytes of sRGB, as the notes about a PNG call it.
+/// Phrase for the rounding to bytes of sRGB, used in notes to the user about a PNG.
 const BYTES: &str = "the 8-bit rounding";
 
-/// Name of the rounding to 32-bit floats, as the notes about an EXR call it.
+/// Phrase for the rounding to 32-bit floats, used in notes to the user about an EXR file.
 const FLOATS: &str = "the 32-bit rounding";
 
-/// Returns the certificate of an exact part of the picture: the bound on the error of its means,
-/// and for how many pixels, `certain`, the rounding in the file is proven. `what` is the name of
-/// the rounding.
+/// Returns a note for the user about the accuracy of an exact picture: the largest error bound of
+/// its pixels' means, and for how many pixels (`certain`) the rounded values are proven right.
+/// `what` is the phrase for the rounding.
 fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what: &str) -> String {
     let pixels = exact.bounds.len() as u64;
     let rounding = match pixels - certain {
@@ -138,7 +144,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         ),
     };
     let mean = match exact.bound() {
-        // The error bound is 0 if a pixel has a single colour, which needs no averaging.
+        // The bound is 0 only if every pixel has a single colour, so that nothing is averaged.
         0.0 => "its pixel's only colour".to_owned(),
         bound => format!("within {} of its true mean", numbers::at_most(bound)),
     };
@@ -150,7 +156,7 @@ fn certificate<P: film::Pixel>(exact: &Exact<P>, part: Area, certain: u64, what:
         && count > 0
     {
         let width = exact.film.width() as usize;
-        // The certificate gives the column and row in the whole picture, not in the part.
+        // The user is told the column and row in the whole picture, not in the rendered part.
         let (x, y) = (
             part.x as usize + least % width,
             part.y as usize + least / width,
@@ -175,20 +181,20 @@ pub enum PictureOutput {
     Standard,
 }
 
-/// How the path of a file was chosen.
+/// Who chose the path of a file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum PathChoice {
-    /// The user named it on the command line.
+    /// The user, on the command line.
     Explicit,
-    /// It was derived from the scene's name. An existing file is replaced only if it is in the
-    /// scene's folder.
+    /// The program, which derived the path from the scene's name. An existing file is replaced only
+    /// if it is in the scene's folder.
     BesideScene,
 }
 
 /// Format of a picture's file.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum FileFormat {
-    /// PNG with bytes of sRGB. The file also carries the scene.
+    /// PNG with bytes of sRGB. The file also contains the scene's text.
     Png,
     /// OpenEXR with floats in linear light.
     Exr,
@@ -204,7 +210,8 @@ impl PathChoice {
 }
 
 impl PictureOutput {
-    /// Returns the output that the command line names, or the PNG file beside the scene.
+    /// Returns the output that the user named. If there is none, returns the PNG file beside the
+    /// scene.
     pub fn of(scene: &Path, output: Option<&Path>) -> Result<Self, Trouble> {
         let path = match output {
             Some(path) if input::is_standard(path) => return Ok(Self::Standard),
@@ -223,8 +230,8 @@ impl PictureOutput {
         Ok(Self::File(path.to_owned(), format, PathChoice::Explicit))
     }
 
-    /// Checks that the picture can be written, as far as that can be known before rendering, and
-    /// that it would not replace the scene.
+    /// Checks, before rendering, whether the picture can be written, as far as that can be known.
+    /// Rejects an output that would replace the scene.
     pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
         match self {
             Self::Standard if io::stdout().is_terminal() => Err(trouble(
@@ -239,7 +246,7 @@ impl PictureOutput {
         }
     }
 
-    /// Returns the precision of pixels that the output needs.
+    /// Returns the lowest precision of pixels that suffices for the output.
     pub fn keep(&self) -> KeptPixels {
         match self {
             Self::File(_, FileFormat::Exr, _) => KeptPixels::Floats,
@@ -247,8 +254,8 @@ impl PictureOutput {
         }
     }
 
-    /// Writes the picture of a scene, unless `cancel` is set. The pixels must have at least the
-    /// precision of [`Self::keep`].
+    /// Writes the picture of a scene. Fails if `cancel` is set. The pixels must have at least the
+    /// precision that [`Self::keep`] returns.
     pub fn write(
         &self,
         scene: &Path,
@@ -262,7 +269,8 @@ impl PictureOutput {
                 write_png(picture, recipe, out)
             }),
             Self::File(path, format, path_choice) => {
-                // Since the last check, the path may have become a link to the scene.
+                // The path is checked again, since it may have become a link to the scene during
+                // rendering.
                 check_is_not(path, scene)?;
                 files::write(path, path_choice.purpose(path), cancel, |out| {
                     let linear: LinearFilm = match (format, picture) {
@@ -277,8 +285,7 @@ impl PictureOutput {
         written.map_err(|error| trouble(format!("cannot write to {self}: {error}")))
     }
 
-    /// Returns a warning if the picture should carry its scene but the scene is too long; otherwise
-    /// an empty text.
+    /// Returns a warning if the scene is too long to be stored in the PNG; otherwise an empty text.
     pub fn note_of_length(&self, recipe: &Recipe) -> String {
         let carries = !matches!(self, Self::File(_, FileFormat::Exr, _));
         if !carries || recipe.fits() {
@@ -308,7 +315,7 @@ fn write_png(
 ) -> io::Result<()> {
     match picture {
         RenderedPicture::Light(light) => film::write_png(light.film(), Some(recipe), out),
-        // This cannot occur, since `keep` returns 32-bit means only for an EXR.
+        // This cannot occur, since only the output to an EXR file keeps 32-bit floats.
         RenderedPicture::Floats(_) => Err(io::ErrorKind::InvalidInput.into()),
         RenderedPicture::Bytes(bytes) => film::write_png(bytes.film(), Some(recipe), out),
     }

@@ -1,4 +1,4 @@
-//! `probe`: follows one ray, surface by surface.
+//! `probe`: lists the surfaces along one ray.
 
 use glam::DVec2;
 

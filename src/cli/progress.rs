@@ -15,14 +15,17 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::output;
 use crate::render::Control;
 
-/// Time before the progress bar appears. Shorter work shows no bar.
+/// Time before the progress bar appears, so that short work shows none. With a shorter time, the
+/// bar would flash up for work that ends soon; with a longer one, the user would wonder whether
+/// anything happens.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Interval between updates of the progress bar.
+/// Interval between updates of the progress bar. Ten updates per second look smooth and take almost
+/// no time.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// Runs `work`, which counts up to `total`. If standard error is a terminal, shows the progress and
-/// the remaining time meanwhile. Returns the result of `work`.
+/// Runs `work`, which counts its progress up to `total`. Meanwhile, a bar shows the progress and
+/// the remaining time, if standard error is a terminal. Returns the result of `work`.
 pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     let done = AtomicU64::new(0);
     if !output::is_watched() {
@@ -40,8 +43,8 @@ pub fn watched<T>(total: u64, work: impl FnOnce(&AtomicU64) -> T) -> T {
     })
 }
 
-/// Runs `work`, which renders `total` samples or exact pixels and stops when `cancel` is set. Shows
-/// the progress as [`watched`] does.
+/// Runs `work`, which renders `total` samples, or pixels if it takes no samples. It stops when
+/// `cancel` is set. Meanwhile, a bar shows the progress, if standard error is a terminal.
 pub fn rendering<T>(
     total: u64,
     threads: Option<NonZero<usize>>,
@@ -59,7 +62,7 @@ pub fn rendering<T>(
     })
 }
 
-/// Shows a bar until the sender of the channel `wait` is dropped.
+/// Shows a progress bar until the sender of the channel `wait` is dropped.
 fn show(total: u64, done: &AtomicU64, wait: &mpsc::Receiver<()>) {
     let goes_on = |time| wait.recv_timeout(time) == Err(mpsc::RecvTimeoutError::Timeout);
     if !goes_on(PATIENCE) {

@@ -18,12 +18,12 @@ pub fn run(args: &RenderArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     let output = PictureOutput::of(&args.scene, args.output.as_deref())?;
     let input = SceneInput::read(&args.scene, &args.overrides)?;
     let scene = input.scene();
-    // The output is checked before rendering, which may take hours, and even if the scene has
-    // errors: the exit status of an output that cannot be written is the worse one.
+    // The output is checked before rendering, which may take hours. It is also checked if the scene
+    // has errors: an output that cannot be written leads to exit status 2, which takes precedence.
     output.check(&args.scene)?;
     let scene = scene?;
-    // A crop on the command line replaces the crop that a picture carries. Both are in pixels of
-    // the whole picture.
+    // A crop on the command line replaces the one stored in the PNG. Both are in pixels of the
+    // whole picture.
     let crop = args.crop.or(input.crop);
     let whole = Area::whole(scene.image.width, scene.image.height);
     let part = crop.unwrap_or(whole);

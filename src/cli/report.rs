@@ -8,10 +8,11 @@ use super::{
 };
 use crate::{render::RenderError, report::numerics};
 
-/// Default number of inputs for each hard case.
+/// Default number of random inputs for each hard case of the arithmetic. A million inputs take half
+/// an hour of processor time, so the default is a hundredth of that number.
 const INPUTS: u64 = 10_000;
 
-/// Prints or writes the report that the arguments ask for.
+/// Prints or writes the report that the arguments select.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     if args.numerics {
         return numerics(args, interrupt);
@@ -19,8 +20,8 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     super::speed::run(args, interrupt)
 }
 
-/// Tests the arithmetic in the hard cases. After Ctrl-C, the table covers the inputs that were
-/// tested until then.
+/// Tests the arithmetic of the renderer in hard cases and prints the numbers of wrong decisions.
+/// After Ctrl-C, only the inputs tested so far are counted.
 fn numerics(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let cancel = interrupt.watch();
     let inputs = args.inputs.unwrap_or(INPUTS);

@@ -1,5 +1,5 @@
-//! `sheet`: writes a contact sheet: one picture with the pictures of several scenes, each with its
-//! name.
+//! `sheet`: writes a contact sheet, i.e. one picture that contains small pictures of several scenes
+//! with their names.
 
 use std::{
     path::{Path, PathBuf},
@@ -28,17 +28,21 @@ use crate::{
     tracer::World,
 };
 
-/// A cell of the sheet: a scene, whose picture is already reduced to its size on the sheet, and its
-/// caption.
+/// A cell of the sheet: a scene and its caption. The scene's picture size is already reduced to its
+/// size on the sheet.
 type SheetCell = (Scene, String);
 
-/// Gap between two cells of the sheet, and around all cells, in pixels.
+/// Gap between two cells of the sheet, and around all cells, in pixels. It separates the pictures;
+/// any similar width works.
 const GAP: u32 = 12;
-/// Colour of the frame around each picture, in sRGB bytes.
+/// Colour of the frame around each picture, in sRGB bytes. This light gray is visible on the white
+/// sheet, but does not distract from the pictures.
 const FRAME: [u8; 3] = [192; 3];
-/// Height of the letters of captions, in pixels.
+/// Height of the letters of captions, in pixels. Chosen among the few heights in which the font
+/// exists.
 const LETTERS: RasterHeight = RasterHeight::Size16;
-/// Height of a line of captions, in pixels, including the space around the letters.
+/// Height of a caption's line, in pixels. It is 6 more than the height of the letters, 16, so that
+/// there is space around them.
 const LINE: u32 = 22;
 const REGULAR: FontWeight = FontWeight::Regular;
 
@@ -93,8 +97,8 @@ fn check_output(args: &SheetArgs) -> Result<(), Trouble> {
     args.scenes.iter().try_for_each(output)
 }
 
-/// Returns the scene of a file with its caption. With `--sweep`, returns all scenes of the sweep
-/// with their captions.
+/// Returns the scene of a file with its caption. With `--sweep`, returns a scene with its caption
+/// for each value.
 fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trouble> {
     let input = SceneInput::read(path, &args.overrides)?;
     let Some(sweep) = &args.sweep else {
@@ -106,8 +110,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trou
         sources.sets.push(Source::from_text(name, set));
         SceneInput { sources, ..input }
     };
-    // The problems of the first scene are always reported; those of another scene only if it has
-    // errors.
+    // In a sweep, warnings are printed only for the first scene, since the other scenes mostly have
+    // the same ones. Errors are printed for every scene.
     let later = |input: &SceneInput| {
         let reading = scene::read(&input.sources);
         if reading.scene.is_none() {
@@ -130,8 +134,8 @@ fn scenes_of(path: &Path, args: &SheetArgs) -> Result<Vec<(Scene, String)>, Trou
     Ok(scenes)
 }
 
-/// Returns the caption of a scene's file: its name without folders and extension, or its path if
-/// another file has the same name.
+/// Returns the caption of a scene's file: the name without folders and extension, or the whole path
+/// if another file has the same name.
 fn name(path: &Path, args: &SheetArgs) -> String {
     if is_standard(path) {
         return "standard input".to_owned();
@@ -149,8 +153,8 @@ fn name(path: &Path, args: &SheetArgs) -> String {
     visible_line(&name).into_owned()
 }
 
-/// Returns the scene with its picture scaled down to at most `side` pixels in width and height. The
-/// number of samples per pixel does not change.
+/// Reduces the scene's picture to at most `side` pixels in width and height. The number of samples
+/// per pixel does not change.
 fn reduced(mut scene: Scene, side: u32) -> Scene {
     let whole = Area::whole(scene.image.width, scene.image.height);
     let [across, down] = [whole.width, whole.height].map(f64::from);
@@ -174,8 +178,8 @@ fn rendered(scene: &Scene, cancel: &AtomicBool) -> Result<Film<[u8; 3]>, RenderE
     Ok(render_part(scene, &world, whole, cancel)?.into_film())
 }
 
-/// Renders the pictures and places them on white, row by row, in `columns` columns. If `columns` is
-/// `None`, there are about as many columns as rows.
+/// Renders the scenes and places their pictures on a white sheet, row by row, in `columns` columns.
+/// If `columns` is `None`, there are about as many columns as rows.
 fn sheet(
     cells: &[SheetCell],
     columns: Option<u32>,
@@ -201,7 +205,8 @@ fn sheet(
         columns * (width + GAP) + GAP,
         heights.clone().fold(GAP, u32::saturating_add),
     ];
-    // The memory is allocated before rendering, so that a lack of memory is noticed early.
+    // The memory for the sheet is allocated before rendering, so that a lack of memory is noticed
+    // early.
     let mut sheet = Film::from_fn(size[0], size[1], |_, _| [255; 3])?;
     let mut y = GAP;
     for (row, height) in rows.zip(heights) {
@@ -230,9 +235,9 @@ fn sheet(
     Ok(sheet)
 }
 
-/// Shortens a caption to `width` pixels. The caption of a step of a sweep first loses the target,
-/// which is the same in all steps. Then it loses the start of the value, since the steps differ at
-/// its end.
+/// Shortens a caption to `width` pixels. In the caption `target=value` of a sweep, the target is
+/// removed first, since it is the same everywhere. If that does not suffice, the start of the value
+/// is removed.
 fn fitting(name: &str, width: u32) -> String {
     let most = width as usize / get_raster_width(REGULAR, LETTERS);
     if name.chars().count() <= most {
@@ -256,7 +261,7 @@ fn fitting(name: &str, width: u32) -> String {
     }
 }
 
-/// Writes a line of black text on white at the pixel (x, y).
+/// Writes a line of black text on white. Its top left corner is the pixel (x, y).
 fn write(sheet: &mut Film<[u8; 3]>, [x, y]: [u32; 2], text: &str) {
     let width = get_raster_width(REGULAR, LETTERS) as u32;
     for (place, letter) in (0..).zip(text.chars()) {

@@ -1,8 +1,8 @@
-//! Draws a picture in the terminal, above the messages about it.
+//! Shows a picture in the terminal, with messages below it.
 //!
-//! Each cell of the terminal shows two pixels, one above the other: a half block in the colour of
-//! the upper pixel on a background of the lower pixel's colour. This is coarse, but every terminal
-//! with colours can show it.
+//! Each character cell shows two pixels, one above the other: the character is the upper half of a
+//! block, drawn in the colour of the upper pixel on a background in the colour of the lower one.
+//! This is coarse, but works in every terminal with colours.
 
 use std::{
     env,
@@ -15,21 +15,23 @@ use terminal_size::{Height, Width, terminal_size_of};
 use super::{Trouble, output, trouble};
 use crate::{area::Area, color::linear_to_srgb, film::Film};
 
-/// The screen that `watch` writes to, on standard error.
+/// The terminal to which `watch` writes, by standard error.
 pub struct Screen {
-    /// The picture above the messages; `None` if no pictures are shown.
+    /// The picture above the messages; `None` if only messages are shown.
     shown: Option<ShownPicture>,
-    /// Messages since the last change of the scene. They are printed again below a new picture.
+    /// Messages since the scene's last change. When a new picture is drawn, they are printed again
+    /// below it.
     messages: String,
 }
 
-/// The picture that is on the screen.
+/// The picture that is shown in the terminal.
 #[derive(Default)]
 struct ShownPicture {
     film: Option<Film>,
-    /// The characters that draw the picture.
+    /// The characters and escape sequences that draw the picture.
     drawn: String,
-    /// The number of columns and rows of cells for which the picture was drawn.
+    /// Number of columns and rows of character cells that were available when the picture was
+    /// drawn.
     size: (usize, usize),
 }
 
@@ -55,8 +57,8 @@ impl Screen {
                 "`--show` draws in colours, and the terminal has none, by `TERM`, `NO_COLOR` or `CLICOLOR`",
             ));
         }
-        // The picture is drawn from the top of the screen. The previous content is scrolled up
-        // first, where people can find it again.
+        // The picture is drawn from the top of the screen. What was there is scrolled up first, so
+        // that the user can still scroll back to it.
         output::to_people(&format!("{}\x1b[H", "\n".repeat(size().1)));
         Ok(Self {
             shown: Some(ShownPicture::default()),
@@ -76,8 +78,8 @@ impl Screen {
         output::to_people(text);
     }
 
-    /// Returns the side, in pixels, of the square of pixels that one dot of the screen shows of the
-    /// picture `whole`. Returns `None` if no pictures are shown.
+    /// Returns how many columns and rows of pixels of the picture `whole` are shown as one dot,
+    /// i.e. half a character cell. Returns `None` if no pictures are shown.
     pub fn side(&self, whole: Area) -> Option<u32> {
         self.shown.as_ref()?;
         let (columns, rows) = size();
@@ -101,8 +103,8 @@ impl Screen {
             && shown.size != size()
         {
             shown.redraw();
-            // Lines that were drawn for the old width may have left characters behind, so the
-            // screen is cleared.
+            // The terminal may have wrapped lines that were drawn for the old width, so the screen
+            // is cleared first.
             output::to_people("\x1b[2J");
             self.refresh();
         }
@@ -110,7 +112,8 @@ impl Screen {
 
     fn refresh(&self) {
         if let Some(ShownPicture { drawn, .. }) = &self.shown {
-            // The screen is not cleared first, since drawing over it does not flicker.
+            // The picture is drawn over the old one without clearing the screen, which would
+            // flicker.
             output::to_people(&format!("\x1b[H{drawn}\x1b[J{}", self.messages));
         }
     }
@@ -125,12 +128,12 @@ impl ShownPicture {
     }
 }
 
-/// Colours that a terminal can show.
+/// Set of colours that a terminal can show.
 #[derive(Clone, Copy)]
 enum Palette {
-    /// All 24-bit colours, which are used as they are.
+    /// All 24-bit colours.
     Full,
-    /// Only 256 colours, of which the nearest one is used.
+    /// Only 256 colours. The nearest one is used.
     Of256,
 }
 
@@ -144,8 +147,8 @@ impl Palette {
         }
     }
 
-    /// Appends the escape sequence that sets the foreground (`which` = 38) or background (48)
-    /// colour.
+    /// Appends the escape sequence that sets a colour: that of the foreground if `which` is 38, or
+    /// of the background if it is 48.
     fn push(self, text: &mut String, which: u8, [r, g, b]: [u8; 3]) {
         // Writing to a string does not fail.
         let _ = match self {
@@ -155,7 +158,7 @@ impl Palette {
     }
 }
 
-/// Returns the number of columns and rows of cells that a picture may take in the terminal.
+/// Returns the number of columns and rows of character cells in which a picture may be drawn.
 fn size() -> (usize, usize) {
     let (columns, rows) = terminal_size_of(io::stderr())
         .map_or((80, 24), |(Width(columns), Height(rows))| {
@@ -164,15 +167,15 @@ fn size() -> (usize, usize) {
     (columns.max(1), rows_of_picture(rows))
 }
 
-/// Returns the number of rows that the picture may take, of `rows` rows of the terminal. A report
-/// on one mistake takes about eleven rows, and must be readable below the picture.
+/// Returns how many of the terminal's rows the picture may take. The others are for messages: a
+/// report on one mistake takes about eleven rows.
 fn rows_of_picture(rows: usize) -> usize {
     const MESSAGES: usize = 12;
     let rest = rows.saturating_sub(MESSAGES);
     rest.clamp(rows / 3, rows * 3 / 4).max(1)
 }
 
-/// Returns the characters that draw a picture in at most `columns` × `rows` cells.
+/// Returns the characters that draw a picture in at most `columns` × `rows` character cells.
 fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> String {
     let (width, height) = (film.width() as usize, film.height() as usize);
     let scale = scale(width, height, columns, rows);
@@ -197,22 +200,22 @@ fn drawn(film: &Film, (columns, rows): (usize, usize), palette: Palette) -> Stri
     text
 }
 
-/// Returns the number of pixels, in each direction, that a dot shows. A cell is two dots high, and
-/// dots are about square.
+/// Returns how many pixels of the picture, in each direction, are shown as one dot. A character
+/// cell contains two dots, one above the other, since it is about twice as high as wide.
 fn scale(width: usize, height: usize, columns: usize, rows: usize) -> f64 {
     (width as f64 / columns as f64).max(height as f64 / (2 * rows) as f64)
 }
 
-/// Returns the range of pixels of part `index`, if `pixels` pixels are divided into `parts` equal
-/// parts. The range is never empty.
+/// Returns the range of pixels in part `index`, if `pixels` pixels are divided into `parts` about
+/// equal parts. The range contains at least one pixel.
 fn share(index: usize, parts: usize, pixels: usize) -> std::ops::Range<usize> {
     let start = (index * pixels / parts).min(pixels - 1);
     let end = ((index + 1) * pixels / parts).max(start + 1);
     start..end.min(pixels)
 }
 
-/// Returns the mean, in linear light, of the pixels in the given columns and rows, as bytes of
-/// sRGB.
+/// Returns the mean of the pixels in the given columns and rows, as bytes of sRGB. It is computed
+/// in linear light.
 fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> [u8; 3] {
     let count = (columns.len() * rows.len()) as f64;
     let mut sum = [0.0; 3];
@@ -226,8 +229,8 @@ fn mean(film: &Film, columns: std::ops::Range<usize>, rows: std::ops::Range<usiz
     sum.map(|sum| (linear_to_srgb(sum / count) * 255.0).round() as u8)
 }
 
-/// Returns the number of the nearest of a terminal's colours 16 to 255, which are a cube of six
-/// levels per channel and 24 greys.
+/// Returns the number of the terminal's colour nearest to `color`, among the colours 16 to 255.
+/// These are a cube with six levels of red, green and blue, and 24 grays.
 fn nearest_of_256(color: [u8; 3]) -> u8 {
     const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
     let distance = |other: [u8; 3]| -> u32 {

@@ -1,4 +1,5 @@
-//! `report SCENE…`: reports speed against error, for a terminal, for programs, and as files.
+//! `report SCENE…`: reports how the error of each sampling method falls with time. The report is a
+//! text, JSON, or a folder of files.
 
 use std::{
     io,
@@ -26,13 +27,14 @@ use crate::{
     scene::{Method, Scene},
 };
 
-/// Number of steps of the progress bar, which shows the share of the work that is done.
+/// Number of steps of the progress bar. The bar shows whole per cents, so 1000 steps are more than
+/// enough.
 const STEPS: u64 = 1000;
 
 /// File name of a report's HTML page.
 const INDEX: &str = "index.html";
 
-/// Names of a report's files. The HTML page is the last.
+/// Names of a report's files. The HTML page comes last, since it refers to the others.
 const FILES: [&str; 5] = [
     "report.csv",
     "report.json",
@@ -41,7 +43,8 @@ const FILES: [&str; 5] = [
     INDEX,
 ];
 
-/// Reports on each scene in turn. After Ctrl-C, reports the measurements made until then.
+/// Measures each scene in turn and reports the results. After Ctrl-C, the measurements made so far
+/// are reported.
 pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     check_standard(&args.scenes)?;
     let request = request(args);
@@ -87,7 +90,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
             break;
         }
     }
-    // Ctrl-C does not interrupt the writing of files, so that measurements are not lost.
+    // Ctrl-C does not stop the writing of files, so that measurements are not lost.
     if let (Some(mut output), false) = (output, measured.is_empty()) {
         let mut contents = Vec::new();
         for (folder, measured) in folders.iter().zip(&measured) {
@@ -132,7 +135,8 @@ fn request(args: &ReportArgs) -> Request {
     }
 }
 
-/// Returns the default error, 1/256, followed by `asked`, without duplicates.
+/// Returns the errors whose cost is reported: 1/256, then those that the user asked for, without
+/// duplicates.
 fn errors(asked: &[f64]) -> Vec<f64> {
     let mut errors = vec![1.0 / 256.0];
     for &error in asked {
@@ -143,7 +147,7 @@ fn errors(asked: &[f64]) -> Vec<f64> {
     errors
 }
 
-/// Rejects `--samples` if no method takes samples.
+/// Rejects `--samples` if no chosen method takes samples.
 fn check_methods(request: &Request) -> Result<(), Trouble> {
     let is_exact = |method: &Method| *method == Method::Exact;
     if !request.samples.is_empty() && request.methods.iter().all(is_exact) {
@@ -154,7 +158,7 @@ fn check_methods(request: &Request) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Rejects a request for more than 2^53 samples in a picture, which is the limit of the language.
+/// Rejects more than 2^53 samples in a picture, the limit of the scene language.
 fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     let pixels = u64::from(scene.image.width) * u64::from(scene.image.height);
     let most = request.samples.iter().copied().max().unwrap_or(0);
@@ -166,7 +170,7 @@ fn check_samples(scene: &Scene, request: &Request) -> Result<(), Trouble> {
     }
 }
 
-/// Measures a scene. Returns `None` if Ctrl-C comes before the first measurement.
+/// Measures a scene. Returns `None` if Ctrl-C is pressed before the first measurement is complete.
 fn measure(
     subject: &MeasuredScene,
     scene: &Scene,
@@ -190,9 +194,8 @@ fn measure(
     }
 }
 
-/// Returns the subfolder for each scene's report, with `/` at its end. The report on a single scene
-/// has no subfolder, so the text is empty. With several scenes, a page about all of them is in the
-/// output folder.
+/// Returns the subfolder for each scene's report, with `/` at its end. If there is only one scene,
+/// its files are in the output folder itself, so the text is empty.
 fn folders(scenes: &[PathBuf]) -> Vec<String> {
     if scenes.len() == 1 {
         return vec![String::new()];
@@ -204,7 +207,8 @@ fn folders(scenes: &[PathBuf]) -> Vec<String> {
     names.iter().map(|name| format!("{name}/")).collect()
 }
 
-/// Returns the names of a report's files in `folder`, which is empty or ends with `/`.
+/// Returns the paths of a report's files in the subfolder `folder`, which is empty or ends with
+/// `/`.
 fn files(folder: &str) -> [String; 5] {
     FILES.map(|name| format!("{folder}{name}"))
 }
@@ -228,10 +232,9 @@ fn report_error(error: io::Error) -> Trouble {
     trouble(format!("cannot make the report: {error}"))
 }
 
-/// Returns the name of a scene's subfolder: the file's name without its extension, and with a
-/// number if another scene or the page has the name. The subfolder cannot lie outside of the
-/// report's folder: the name has no dots at its ends, and contains only letters, digits and a few
-/// common characters.
+/// Returns the name of a scene's subfolder: the name of its file without extension, with a number
+/// if the name is taken. It contains only letters, digits and a few other characters, and no dots
+/// at its ends, so that it cannot lead out of the output folder.
 fn name(scene: &Path, taken: &[String]) -> String {
     let stem = match scene.file_stem() {
         Some(stem) if !is_standard(scene) => stem.to_string_lossy().into_owned(),
@@ -243,7 +246,8 @@ fn name(scene: &Path, taken: &[String]) -> String {
         "" => "scene",
         stem => stem,
     };
-    // File systems may not distinguish upper and lower case, so names are compared in lower case.
+    // Names are compared in lower case, since a file system may not distinguish upper and lower
+    // case.
     let is_taken = |name: &String| {
         let is_same = |other: &str| other.to_lowercase() == name.to_lowercase();
         is_same(INDEX) || taken.iter().any(|other| is_same(other))

@@ -1,4 +1,4 @@
-//! `studio`: edits a scene in a browser.
+//! `studio`: serves a web page for editing a scene in a browser.
 
 use std::{
     env,
@@ -17,7 +17,7 @@ use super::{
 };
 use crate::studio::{Host, SceneFile};
 
-/// Serves the page until Ctrl-C.
+/// Serves the page until Ctrl-C is pressed.
 pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let file = file(args)?;
     let name = args
@@ -45,7 +45,8 @@ pub fn run(args: &StudioArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     Ok(Status::Interrupted)
 }
 
-/// Opens the scene's file, or makes a new scene that will be saved in the current folder.
+/// Opens the scene's file. If the user named none, makes a new scene, which will be saved in the
+/// current folder.
 fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
     let Some(scene) = &args.scene else {
         let folder = env::current_dir()
@@ -62,8 +63,8 @@ fn file(args: &StudioArgs) -> Result<SceneFile, Trouble> {
         .map_err(|error| trouble(format!("cannot read {}: {error}", shown(scene))))
 }
 
-/// Asks the system to open an address in a browser. Returns whether the program that does so could
-/// be started.
+/// Starts the system's program that opens an address in a browser. Returns whether it could be
+/// started.
 fn open(address: &str) -> bool {
     let (program, before): (_, &[&str]) = if cfg!(target_os = "macos") {
         ("open", &[])

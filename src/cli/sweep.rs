@@ -1,4 +1,5 @@
-//! `--sweep TARGET=FROM..TO/N`: makes the overrides of N scenes, from one value to another.
+//! `--sweep TARGET=FROM..TO/N`: makes N scenes from one. In them, the target (a field or a `let`)
+//! goes from one value to another in equal steps.
 
 use std::str::FromStr;
 
@@ -10,10 +11,11 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum number of scenes in a sweep. A sweep with more is rejected.
+/// Maximum number of scenes in a sweep. More are rejected, because a sheet with more pictures would
+/// hardly be readable, and because a mistyped number could take very long.
 const MOST: usize = 1000;
 
-/// The argument of `--sweep`: the target, the ends of its range, and the number of scenes.
+/// The argument of `--sweep`: the target, the first and last value, and the number of scenes.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     target: String,
@@ -24,9 +26,9 @@ pub struct Sweep {
 
 /// One scene of a sweep.
 pub struct SweepStep {
-    /// The `--set` argument that makes this scene from the one in the file.
+    /// The `--set` argument, with the exact value.
     pub set: String,
-    /// The argument with its value rounded to few digits, for a caption.
+    /// The `--set` argument with its value rounded to few digits, for the scene's caption.
     pub label: String,
 }
 
@@ -62,7 +64,7 @@ impl FromStr for Sweep {
     }
 }
 
-/// Splits a text at the first `..` outside of parentheses; returns `None` if there is none.
+/// Splits a text at the first `..` outside of parentheses. Returns `None` if there is none.
 fn ends(values: &str) -> Option<(&str, &str)> {
     let mut open = 0_usize;
     let at = values.char_indices().find(|&(at, c)| {
@@ -78,18 +80,19 @@ fn ends(values: &str) -> Option<(&str, &str)> {
 }
 
 impl Sweep {
-    /// Returns the `--set` arguments of the first and the last scene, with the values as they were
-    /// typed.
+    /// Returns the `--set` arguments of the first and the last scene, with the values as the user
+    /// typed them.
     pub fn ends(&self) -> [String; 2] {
         [&self.from, &self.to].map(|value| format!("{}={value}", self.target))
     }
 
-    /// Returns all steps, from a scene in which both ends can be evaluated. The scene language
-    /// itself interpolates: the steps are evaluated as `let`s after all other definitions.
+    /// Returns the scenes of the sweep. Their values are computed by the scene language: a `let`
+    /// for each is added to the end of the text.
     ///
     /// # Errors
     ///
-    /// The ends cannot be interpolated; they are words or colours, for example.
+    /// There is nothing between the first and the last value, for example because they are words or
+    /// colours.
     pub fn steps(&self, sources: &Sources) -> Result<Vec<SweepStep>, Trouble> {
         let Self {
             from, to, count, ..

@@ -1,24 +1,29 @@
 //! Unified diffs, in the format that `patch` reads.
 //!
-//! In: a text before and after changes. Out: the lines that differ, with three lines of context.
+//! In: a text before and after changes. Out: the lines that differ, with three unchanged lines
+//! around them.
 
 use std::ops::Range;
 
-/// Number of unchanged lines that are shown before and after a change, as is usual in diffs.
+/// Number of unchanged lines that are shown before and after a change. Three is the usual number in
+/// unified diffs.
 const AROUND: usize = 3;
 
-/// Maximum number of lines, in both texts together, that are passed after a difference in the
-/// search for the place where the texts agree again. If it is farther away, all remaining lines
-/// count as changed.
+/// Maximum number of lines, in both texts together, that are skipped after a difference to find the
+/// place where the texts agree again. If no such place is found, all remaining lines count as
+/// changed. A larger limit finds farther places, but all pairs of places are tried, so the time
+/// grows with its square.
 const MOST_STEPS: usize = 1000;
 
-/// Lines of the old text, and the lines of the new text that replace them.
+/// A change: lines of the old text, by their indices, and the lines of the new text that replace
+/// them.
 pub struct ReplacedLines {
     pub old: Range<usize>,
     pub new: Range<usize>,
 }
 
-/// Returns the changes of a file as a unified diff; empty if there are none.
+/// Returns the differences of two texts as a unified diff, or an empty text if there are none.
+/// `name` is the file's name.
 pub fn unified_diff(name: &str, old: &str, new: &str) -> String {
     let (old, new) = (lines(old), lines(new));
     let shown = |sign: char, line: &str| format!("{sign}{line}");
@@ -28,13 +33,14 @@ pub fn unified_diff(name: &str, old: &str, new: &str) -> String {
     }
 }
 
-/// Returns the lines of a text with their ends.
+/// Returns the lines of a text, each with its line end.
 pub fn lines(text: &str) -> Vec<&str> {
     text.split_inclusive('\n').collect()
 }
 
-/// Writes changes of a text below their places. `shown` writes a line, without its line feed,
-/// behind its sign.
+/// Writes changes in the unified diff format, each group below a line `@@ … @@` with its position.
+/// The function `shown` formats a line, given its sign (space, `-` or `+`) and its text without
+/// line feed.
 pub fn hunks(
     changes: &[ReplacedLines],
     old: &[&str],
@@ -74,8 +80,8 @@ pub fn hunks(
     text
 }
 
-/// Writes a range of lines as the diff format specifies: lines are counted from 1, a count of 1 is
-/// omitted, and an empty range is given by the line before it.
+/// Formats a range of lines as in unified diffs: first line and count, with lines counted from 1. A
+/// count of 1 is omitted. An empty range is given by the line before it.
 fn place(lines: &Range<usize>) -> String {
     match lines.len() {
         0 => format!("{},0", lines.start),
@@ -84,9 +90,9 @@ fn place(lines: &Range<usize>) -> String {
     }
 }
 
-/// Returns the changes from `old` to `new`. Walks through both texts. After a difference, the walk
-/// continues at the nearest place where the next two lines of both texts agree or both texts end.
-/// The list may be longer than the shortest one, but is always correct.
+/// Returns the changes from `old` to `new`. After a difference, both texts are searched for the
+/// nearest place from which the next two lines agree. There may be more changes than necessary, but
+/// they are always correct.
 fn changes(old: &[&str], new: &[&str]) -> Vec<ReplacedLines> {
     let (mut a, mut b, mut changes) = (0, 0, Vec::new());
     while a < old.len() || b < new.len() {
@@ -127,8 +133,8 @@ mod tests {
 
     use super::*;
 
-    /// Generates texts of up to 14 lines out of a few different ones, with and without a line feed
-    /// at the end.
+    /// Generates texts of up to 14 lines, made from few different lines so that repetitions occur.
+    /// The last line may lack a line feed.
     fn text() -> impl Strategy<Value = String> {
         ("((a|b|c|)\n){0,14}", "(a|b)?").prop_map(|(lines, last)| lines + &last)
     }

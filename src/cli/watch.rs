@@ -30,7 +30,7 @@ use crate::{
     tracer::World,
 };
 
-/// Renders the scene at the start and after every save, until Ctrl-C.
+/// Renders the scene at the start and after every save, until Ctrl-C is pressed.
 pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     let start = Instant::now();
     let output = output(args)?;
@@ -67,7 +67,7 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
                 screen.print(&format!("wrote {output} {time} {what}\n"));
             }
             Err(Trouble::SceneErrors | Trouble::Interrupted) => {}
-            // Watching continues after any error, since the cause may be gone at the next save.
+            // An error does not end watching, since the next save may remove its cause.
             Err(trouble) => screen.print(&output::worded_error(&trouble)),
         }
         is_first = false;
@@ -75,8 +75,9 @@ pub fn run(args: &WatchArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(Status::Interrupted)
 }
 
-/// Interval at which the terminal's size is checked while the file does not change. If the size has
-/// changed, the picture is drawn again.
+/// Interval between checks of the terminal's size while the scene does not change. If the size has
+/// changed, the picture is drawn again. With a fifth of a second, this seems immediate, and the
+/// checks take almost no time.
 const REFIT: Duration = Duration::from_millis(200);
 
 /// Returns the file to which the picture is written.
@@ -94,8 +95,8 @@ fn output(args: &WatchArgs) -> Result<PictureOutput, Trouble> {
     }
 }
 
-/// Checks that the scene can be read and is not a picture. This is checked only at the start, since
-/// later the file may be missing for a time.
+/// Checks that the scene can be read and is not a picture. The check is made only at the start,
+/// since an editor may remove the file for a moment while it saves.
 pub fn check_scene(scene: &Path) -> Result<(), Trouble> {
     let bytes = input::bytes(scene).map_err(|error| input::unreadable(scene, &error))?;
     check_text(scene, &bytes)
@@ -111,8 +112,8 @@ fn check_text(scene: &Path, bytes: &[u8]) -> Result<(), Trouble> {
     Ok(())
 }
 
-/// Renders the text `bytes` and writes its picture. Returns the time at which the picture was
-/// written. A newer text interrupts the work.
+/// Renders the scene with the text `bytes` and writes its picture. Returns the time when it was
+/// written. The work is interrupted when `is_stale` is set, since there is then a newer text.
 fn render_and_write(
     args: &WatchArgs,
     bytes: Vec<u8>,
@@ -144,11 +145,12 @@ fn render_and_write(
     Ok(done)
 }
 
-/// Time that a render may take before coarse pictures are shown meanwhile.
+/// Time that a render may take before coarse pictures are shown meanwhile. Faster renders need no
+/// coarse picture first. The value is a guess at when a user gets impatient.
 const PATIENCE: Duration = Duration::from_millis(200);
 
-/// Renders the scene. If this takes longer than [`PATIENCE`], shows increasingly fine pictures
-/// meanwhile.
+/// Renders the scene. If this takes longer than [`PATIENCE`] and pictures are shown in the
+/// terminal, shows coarse pictures meanwhile, which become finer.
 fn with_sketch(
     scene: &Scene,
     keep: KeptPixels,
@@ -173,8 +175,8 @@ fn with_sketch(
                     progress: &|_| {},
                     cancel: is_stale,
                 };
-                // A cancelled coarse picture is not reported here, since the render of the picture
-                // itself reports the cancellation.
+                // An error, usually that the render was cancelled, is ignored here, because the
+                // render of the picture itself reports it.
                 let _ = refine::coarse_to_fine(world, whole, side, &control, |sketch| {
                     screen.draw(sketch.film);
                 });
@@ -186,7 +188,7 @@ fn with_sketch(
     })
 }
 
-/// Formats a waiting time: in milliseconds if it is below a second, otherwise in seconds.
+/// Formats a waiting time: in milliseconds below a second, otherwise in seconds.
 fn time(waited: Duration) -> String {
     match waited.as_secs_f64() {
         seconds if seconds < 1.0 => format!("{:.0} ms", seconds * 1e3),

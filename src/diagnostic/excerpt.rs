@@ -12,9 +12,9 @@ use crate::source::{Source, SourceId, Sources, Span};
 
 /// Excerpt of a source: its labelled lines. Long lines are cut to the parts around the labels.
 ///
-/// miette receives the excerpt instead of the text, so a line of ten megabytes is neither printed
-/// nor scanned. Every label lies within the excerpt. (miette omits a label at the end of a text,
-/// and panics at a label beyond it.)
+/// miette, the library that draws reports, receives the excerpt instead of the text, so a line of
+/// ten megabytes is neither printed nor scanned. Every label lies within the excerpt. (miette omits
+/// a label at the end of a text, and panics at a label beyond it.)
 #[derive(Debug)]
 pub struct Excerpt<'s> {
     source: &'s Source,
@@ -38,19 +38,22 @@ struct ExcerptLine {
 }
 
 /// Maximum length, in bytes, of a line that is shown whole if the width of the terminal is unknown.
-/// Longer lines are cut.
+/// Longer lines are cut, because a line may have megabytes. Most lines that people write are
+/// shorter.
 pub const LONG_LINE_BYTES: usize = 160;
 /// Minimum width of an excerpt, in columns. An excerpt is this wide even if the terminal is
-/// narrower.
+/// narrower, so that some text around each label is shown. A smaller minimum would cut this text to
+/// a few characters.
 pub const MIN_COLUMNS: usize = 30;
-/// Number of columns that miette needs for the line from the middle of a label to the label's
-/// message, as in `╰── message`.
+/// Number of columns that miette, the library that draws reports, needs for the line from the
+/// middle of a label to the label's message, as in `╰── message`.
 const HOOK_COLUMNS: usize = 4;
 /// Minimum width, in columns, to which a label's message is wrapped. It is used if the label stands
-/// so far to the right that less room is left.
+/// so far to the right that less room is left. A narrower message would be hard to read, and a much
+/// wider one would leave less room for the text of the scene.
 const MIN_MESSAGE_COLUMNS: usize = 16;
 /// Maximum number of lines of a label that is drawn whole. A longer label is drawn only in its
-/// first line.
+/// first line. With a much larger maximum, a label of a long block could fill the screen.
 const MAX_LABEL_LINES: usize = 6;
 
 /// Returns an excerpt of every source that has labels, in the order of the labels.

@@ -154,7 +154,7 @@ fn with_comments(span: Span, sources: &Sources) -> Span {
     Span::new(span.source, span.start, span.end + behind.trim_end().len())
 }
 
-/// Blanks: the characters of white space within a line.
+/// Characters of white space within a line: space and tab. Comments call them blanks.
 const BLANK: [char; 2] = [' ', '\t'];
 
 /// Returns whether a text that follows `before` is the first on its line, apart from blanks.
@@ -168,8 +168,8 @@ fn ends_line(rest: &str) -> bool {
     rest.is_empty() || rest.starts_with(['\n', '\r'])
 }
 
-/// Returns the text after the blanks and comments at its start. A line end that is not within a
-/// comment is not skipped.
+/// Returns the text after the blanks and comments at its start. Skips line ends only within
+/// comments.
 fn past_comments(text: &str) -> &str {
     let mut rest = text.trim_start_matches([' ', '\t']);
     loop {
@@ -294,7 +294,8 @@ impl Edit {
     }
 }
 
-/// Returns `text` after those edits of the fix that belong to `source`.
+/// Applies the edits of `fix` that belong to `source` to `text`, the text of this source, and
+/// returns the result.
 pub fn apply(fix: &Fix, source: SourceId, text: &str) -> String {
     let mut applied = String::with_capacity(text.len());
     let mut at = 0;

@@ -7,10 +7,10 @@ use super::Diagnostic;
 use super::{Report, Style};
 use crate::source::Sources;
 
-/// The mistakes because of which a text is no scene, in the order of the text, with its warnings.
+/// Error that a text is not a valid scene: its mistakes and warnings, in the order of the text.
 ///
-/// They are displayed as the command line shows them, without colour. `Debug` prints the same, so
-/// that a `main` which returns them ends with a report.
+/// They are displayed as the command line shows them, without colour. `Debug` prints the same text,
+/// so that a `main` function that returns this error ends with a readable report.
 ///
 /// ```
 /// let text = "camera { eye (0, 2, 8)  lookt (0, 1, 0) }  checkerboard {}";
@@ -42,7 +42,7 @@ impl Mistakes {
         self.diagnostics.iter()
     }
 
-    /// Returns the texts that the mistakes point into.
+    /// Returns the texts to which the mistakes refer.
     pub fn sources(&self) -> &Sources {
         &self.sources
     }
@@ -66,7 +66,7 @@ impl fmt::Display for Mistakes {
     }
 }
 
-/// Writes a line for each mistake; without the feature `fancy`, nothing is drawn.
+/// Writes one line for each mistake. Reports are drawn only with the feature `fancy`.
 #[cfg(not(feature = "fancy"))]
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -9,14 +9,16 @@ use super::{Diagnostic, Label, Severity};
 use crate::source::Span;
 
 /// Maximum number of problems that a stage of reading a scene reports, and of places that one fix
-/// changes. Further problems are omitted, and a last diagnostic says so.
+/// changes. Further problems are omitted, and a last diagnostic says so. Without a limit, the
+/// reports about a large file that is no scene would need a thousand times its memory. The number
+/// is far above what anyone reads.
 pub const MOST_PROBLEMS: usize = 10_000;
 
 /// Message of the diagnostic that stands for all omitted problems. The summary does not count this
 /// diagnostic as a mistake.
 pub const LEFT_OUT: &str = "there are too many mistakes, and the others are left out";
 
-/// A stage's problems, at most [`MOST_PROBLEMS`].
+/// List of at most [`MOST_PROBLEMS`] problems that one stage of reading a scene found.
 #[derive(Debug, Default)]
 pub struct Problems {
     kept: Vec<Diagnostic>,
@@ -38,8 +40,8 @@ impl Problems {
         }
     }
 
-    /// Adds a problem that precedes others in the text: unlike [`Self::push`], also after another
-    /// problem was omitted, as long as fewer than [`MOST_PROBLEMS`] are stored.
+    /// Adds a problem that precedes others in the text. Unlike [`Self::push`], adds it even if
+    /// another problem was omitted before, as long as fewer than [`MOST_PROBLEMS`] are stored.
     pub fn push_earlier(&mut self, problem: Diagnostic) {
         if self.kept.len() < MOST_PROBLEMS {
             self.kept.push(problem);

@@ -79,10 +79,13 @@ fn counts(diagnostics: &[Diagnostic]) -> String {
 
 impl<'s> Report<'s> {
     /// Maximum number of diagnostics that are all shown as reports. If there are more, only the
-    /// first [`Self::FIRST_SHOWN`] are, and the others are counted by their codes. JSON always has
-    /// all of them.
+    /// first [`Self::FIRST_SHOWN`] are shown, and the summary counts all by their codes. Reports of
+    /// several hundred mistakes would hide the first ones from the reader. JSON always has all
+    /// diagnostics.
     pub const MOST_SHOWN: usize = 100;
     /// Number of diagnostics that are shown as reports if there are more than [`Self::MOST_SHOWN`].
+    /// A user can correct these before checking the scene again; more would only lengthen the
+    /// output.
     pub const FIRST_SHOWN: usize = 20;
 
     /// Makes a printer for diagnostics about `sources`.

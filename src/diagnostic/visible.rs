@@ -48,7 +48,7 @@ pub fn escaped(text: &str) -> String {
         .replace('"', "&quot;")
 }
 
-/// Appends a character as [`visible`] shows it.
+/// Appends a character. An invisible one is escaped, as in `\u{1b}`.
 pub fn push_visible(text: &mut String, character: char) {
     if is_invisible(character) {
         // Writing to a string does not fail.
@@ -58,9 +58,9 @@ pub fn push_visible(text: &mut String, character: char) {
     }
 }
 
-/// Returns whether a character must be escaped: a control character, a mark of an annotation, or a
-/// character with the property `Default_Ignorable_Code_Point` of the Unicode Character Database
-/// (DerivedCoreProperties), which includes the controls of bidirectional text.
+/// Returns whether a character must be escaped: a control character, an annotation mark (U+FFF9 to
+/// U+FFFB), or a character with the property `Default_Ignorable_Code_Point` of the Unicode
+/// Character Database (DerivedCoreProperties), which includes the controls of bidirectional text.
 fn is_invisible(character: char) -> bool {
     // This is the fast path: most characters are ASCII.
     if character.is_ascii() {

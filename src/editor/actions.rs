@@ -1,4 +1,4 @@
-//! Offers changes of the text: the fixes of diagnostics, and the canonical layout.
+//! Offers changes of the text: the fixes of diagnostics, and the layout of the formatter.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use crate::{
     syntax::tokens::{Lexer, TokenKind},
 };
 
-/// Returns the fixes of those problems whose first label touches the bytes `within`, each with its
-/// problem. Editors underline the first label.
+/// Returns the fixes of all problems whose first label touches the bytes `within`, each together
+/// with its problem. Editors underline a problem at its first label.
 pub fn fixes<'a>(
     analysis: &'a Analysis<'_>,
     within: Span,
@@ -32,9 +32,9 @@ pub fn fixes<'a>(
     })
 }
 
-/// Returns the byte ranges of the made-up example values in `written`, the new text of a
-/// placeholder fix: its numbers and lists, or the whole text if it has none. The author replaces
-/// these values.
+/// Returns the byte ranges of the made-up example values in `written`, the new text of a fix with
+/// placeholders. These values are its numbers and lists, or the whole text if it contains neither.
+/// The author replaces them.
 pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     let mut values: Vec<Range<usize>> = Vec::new();
     let (mut lexer, mut open) = (Lexer::new(written, 0), 0_usize);
@@ -64,15 +64,15 @@ pub fn made_up_values(written: &str) -> Vec<Range<usize>> {
     values
 }
 
-/// Returns the safe fixes of all problems of the text, joined to one fix. Returns `None` if there
-/// are none.
+/// Returns one fix that contains the safe fixes of all problems of the text. Returns `None` if no
+/// problem has a safe fix.
 pub fn fix_all(analysis: &Analysis<'_>) -> Option<Fix> {
     let fixed = scene::fix_all(analysis.model.sources(), Applicability::Safe);
     let edit = change(analysis.text(), &fixed.text);
     (!fixed.done.is_empty()).then(|| Fix::new("fix all that can be fixed safely", edit).safe())
 }
 
-/// Returns the edits that change the text to its canonical layout. Returns `None` if the text has
+/// Returns the edits that give the text the layout of the formatter. Returns `None` if the text has
 /// syntax errors.
 pub fn formatting(analysis: &Analysis<'_>) -> Option<Vec<Edit>> {
     let formatted = format_parsed(analysis.source(), &analysis.model.parsed)?;
@@ -80,7 +80,7 @@ pub fn formatting(analysis: &Analysis<'_>) -> Option<Vec<Edit>> {
     Some(edit.into_iter().collect())
 }
 
-/// Returns the smallest edit that turns one text into another; `None` if they are equal.
+/// Returns the smallest single edit that turns one text into another; `None` if they are equal.
 fn change(text: &str, new: &str) -> Option<Edit> {
     if text == new {
         return None;

@@ -1,5 +1,4 @@
-//! Analyzes a text: its tree, its meaning and its tokens. All answers to editors are derived from
-//! this analysis.
+//! Analyzes a text: its tree, its meaning and its tokens. All answers to editors use the result.
 
 use std::cell::OnceCell;
 
@@ -12,19 +11,19 @@ use crate::{
     syntax::tree::{self, Block, Definition, Field, Index, Item},
 };
 
-/// A text with its tree, its meaning and its tokens. An analysis of a scene with a thousand objects
-/// takes a few milliseconds, so it is made for each request and not kept.
+/// A text with its syntax tree, its meaning and its tokens. To analyze a scene with a thousand
+/// objects takes a few milliseconds, so each request makes a new analysis and does not keep it.
 #[derive(Debug)]
 pub struct Analysis<'s> {
-    /// The tree and the meaning.
+    /// The syntax tree, and the meaning: the scene, the values of definitions, and the problems.
     pub model: SemanticModel<'s>,
     /// The tokens. They are computed on first use, since neither a picture nor a list of problems
     /// needs them.
     tokens: OnceCell<Vec<RoleToken>>,
 }
 
-/// The nodes of the tree that contain an offset, each in the one before it: a definition or a
-/// block, a field of the block, and values.
+/// The nodes of the syntax tree that contain an offset: a definition or a block, a field of the
+/// block, and values. Each node lies within the one before it.
 #[derive(Debug, Default)]
 pub(super) struct Path<'a, 's> {
     /// The definition that contains the offset.
@@ -33,12 +32,13 @@ pub(super) struct Path<'a, 's> {
     pub block: Option<&'a Block<'s>>,
     /// The field of the block that contains the offset.
     pub field: Option<&'a Field<'s>>,
-    /// The values that contain the offset. Each is a part of the one before it.
+    /// The values that contain the offset. Each value is a part of the one before it, as `1` is of
+    /// `1 + x`.
     pub values: Vec<&'a tree::Value<'s>>,
 }
 
 impl<'s> Analysis<'s> {
-    /// Reads and lowers a text.
+    /// Parses a text and computes its meaning.
     pub fn new(sources: &'s Sources) -> Self {
         Self {
             model: scene::analyze(sources),
@@ -46,17 +46,17 @@ impl<'s> Analysis<'s> {
         }
     }
 
-    /// Returns the words and signs in the order of the text.
+    /// Returns the words, numbers and signs in the order of the text, without comments.
     pub fn tokens(&self) -> &[RoleToken] {
         self.tokens.get_or_init(|| tokens::tokens(&self.model))
     }
 
-    /// Returns the file.
+    /// Returns the analyzed source file.
     pub fn source(&self) -> &'s Source {
         &self.model.sources().file
     }
 
-    /// Returns the text.
+    /// Returns the analyzed text.
     pub fn text(&self) -> &'s str {
         self.source().text()
     }
@@ -66,12 +66,12 @@ impl<'s> Analysis<'s> {
         self.source().slice(span.range())
     }
 
-    /// Returns the problems, as the command line reports them.
+    /// Returns the problems of the text. The command line reports the same ones.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.model.diagnostics
     }
 
-    /// Returns the scene; `None` if the text has errors.
+    /// Returns the scene that the text describes; `None` if the text has errors.
     pub fn scene(&self) -> Option<Scene> {
         let has_errors = self.diagnostics().iter().any(Diagnostic::is_error);
         let parts = (!has_errors).then(|| self.model.parts.clone());
@@ -83,7 +83,7 @@ impl<'s> Analysis<'s> {
         &self.model.parsed.comments
     }
 
-    /// Returns the items of the tree.
+    /// Returns the items of the syntax tree, i.e. the definitions and blocks of the text.
     pub(super) fn items(&self) -> &[Item<'s>] {
         &self.model.parsed.tree.items
     }
@@ -96,8 +96,8 @@ impl<'s> Analysis<'s> {
         })
     }
 
-    /// Returns the word, number or sign at the offset `at`. If two of them meet there, a word is
-    /// preferred to a sign, and otherwise the later one to the earlier one.
+    /// Returns the word, number or sign at the offset `at`. If two of them touch there, prefers a
+    /// word or number to a sign, and otherwise the later one.
     pub(super) fn token_at(&self, at: usize) -> Option<RoleToken> {
         let index = self.tokens().partition_point(|token| token.span.end < at);
         let touching = self.tokens().iter().skip(index);
@@ -119,16 +119,16 @@ impl<'s> Analysis<'s> {
         Path::new(self.items(), at)
     }
 
-    /// Returns the block that contains the offset `at`, and its index named `name`. Returns `None`
-    /// if it has no such index.
+    /// Returns the block that contains the offset `at`, and its index named `name`, as `i` in
+    /// `for i < 3`. Returns `None` if the block has no such index.
     pub(super) fn index_at(&self, name: &str, at: usize) -> Option<(&Block<'s>, &Index<'s>)> {
         let block = self.path(at).block?;
         let mut indices = block.repetition.iter().flat_map(|it| &it.indices);
         Some((block, indices.find(|index| index.name.text == name)?))
     }
 
-    /// Returns the objects that a block stands for: several for a repeated block, and none if the
-    /// block has errors or is no object.
+    /// Returns the objects that a block describes. A repeated block describes several objects. A
+    /// block with errors, and a block such as `camera`, describes none.
     pub(super) fn objects_of(&self, block: &Block<'_>) -> &[Object] {
         let objects = &self.model.parts.objects;
         let first = objects.partition_point(|it| it.span.start < block.span.start);
@@ -138,13 +138,13 @@ impl<'s> Analysis<'s> {
     }
 
     /// Returns the value of an expression in the field or definition of `path`. Returns `None` if
-    /// it has errors.
+    /// the expression has errors.
     pub(super) fn value(&self, value: &tree::Value<'s>, path: &Path<'_, 's>) -> Option<Value> {
         let takes = path.row().and_then(|row| row.field(path.field?.name.text));
         self.model.value(value, takes.map(|field| field.takes))
     }
 
-    /// Returns the line of a span, counted from 1.
+    /// Returns the number of the line in which a span starts, counted from 1.
     pub(super) fn line(&self, span: Span) -> usize {
         self.source().line(span.start)
     }
@@ -159,26 +159,26 @@ impl<'a, 's> Path<'a, 's> {
             let span = item.span();
             if span.start <= at {
                 path = item_at(item, at);
-                // If two items meet at `at`, the later one is chosen.
+                // If two items touch at `at`, the later one is chosen.
                 if at < span.end {
                     break;
                 }
             } else if matches!(item, Item::Block(_)) {
-                // A `let` that was written within a block stands before that block in the list of
-                // items. So items with later places may come before those with earlier ones, and
-                // only a later block ends the search.
+                // The list of items is nearly in the order of the text: only a `let` that stands
+                // within a block precedes that block in the list. So a later item may be a block
+                // that contains `at`, and only a block that starts after `at` ends the search.
                 break;
             }
         }
         path
     }
 
-    /// Returns the row of the block's kind.
+    /// Returns the schema's row for the kind of the block in the path.
     pub fn row(&self) -> Option<&'static schema::BlockRow> {
         schema::block(self.block?.kind?.text)
     }
 
-    /// Returns the row of the field.
+    /// Returns the schema's row for the field in the path.
     pub fn field_row(&self) -> Option<&'static schema::FieldRow> {
         self.row()?.field(self.field?.name.text)
     }
@@ -217,7 +217,7 @@ fn values_at<'a, 's>(value: &'a tree::Value<'s>, at: usize) -> Vec<&'a tree::Val
     let mut next = Some(value);
     while let Some(value) = next.filter(|value| holds(value, at)) {
         values.push(value);
-        // If two parts meet at `at`, the later one is chosen.
+        // If two parts touch at `at`, the later one is chosen.
         next = value.parts().into_iter().rev().find(|part| holds(part, at));
     }
     values

@@ -1,8 +1,8 @@
-//! Finds the colours that are written in a text, and spells another colour in their place.
+//! Finds the colours in a text, and spells another colour in place of one of them.
 //!
-//! The form of the spelling is kept: a name stays a name if the new colour has one, a code stays a
-//! code, and `rgb(…)` stays a call. A call whose arguments are expressions, or that contains
-//! comments, cannot be replaced, since another colour would remove the expressions or comments.
+//! The spelling keeps its form: a name stays a name if the new colour has one, a code such as
+//! `#ff0000` stays a code, and `rgb(…)` stays a call. A call with expressions or comments in it
+//! cannot be replaced, since they would be lost.
 
 use super::{analysis::Analysis, tokens::Role};
 use crate::{
@@ -17,9 +17,9 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Swatch {
-    /// The span of its name, its code, or the call of `rgb`.
+    /// Span of the colour's name, of its code, or of the call of `rgb`.
     pub span: Span,
-    /// The colour.
+    /// The colour itself.
     pub color: Color,
 }
 
@@ -34,7 +34,7 @@ pub fn swatches(analysis: &Analysis<'_>) -> Vec<Swatch> {
         for field in &block.fields {
             let known = row.and_then(|row| row.field(field.name.text));
             if known.is_some_and(|known| known.takes == Type::Method) {
-                // The name of a method is not a colour, even if a colour has the same name.
+                // The name of a sampling method is not a colour, even if a colour has this name.
                 continue;
             }
             collect(analysis, &field.value, &mut swatches);
@@ -76,8 +76,9 @@ fn is_plain(analysis: &Analysis<'_>, span: Span, call: &Call<'_>) -> bool {
     are_numbers && !comments.get(next).is_some_and(is_inside)
 }
 
-/// Returns the spellings of `color` in place of the colour at `span`, those of the old form first.
-/// Returns an empty list if the text at `span` is a call that cannot be replaced.
+/// Returns the spellings of `color` that can replace the colour at `span`. The spelling with the
+/// form of the old one comes first. Returns an empty list if the text at `span` is a call that
+/// cannot be replaced.
 pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<String> {
     let own = match analysis.token_at(span.start).map(|token| token.role) {
         Some(Role::Function) => {
@@ -103,8 +104,8 @@ pub fn presentations(analysis: &Analysis<'_>, span: Span, color: Color) -> Vec<S
     presentations
 }
 
-/// Returns the name of a colour, if it has one. Of several names, returns the first in alphabetical
-/// order, such as the American `gray`.
+/// Returns the name of a colour, if it has one. If it has several, returns the first in
+/// alphabetical order, such as the American `gray` rather than `grey`.
 fn name(color: Color) -> Option<&'static str> {
     let bytes = color.to_bytes();
     let is_it = |name: &&str| css::color(name).is_some_and(|named| named.to_bytes() == bytes);

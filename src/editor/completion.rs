@@ -14,23 +14,23 @@ use crate::{
     source::Span,
 };
 
-/// A completion.
+/// A completion: a word or a longer text that an editor offers to insert.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Completion {
-    /// The label. Editors compare it with the typed word.
+    /// The text shown in the list of completions. Editors compare it with the typed word.
     pub label: String,
-    /// The kind.
+    /// Kind of the completion, for which editors show a symbol.
     pub kind: CompletionKind,
-    /// A short description, such as the type or the value.
+    /// A short description beside the label, such as the type or the value.
     pub detail: String,
-    /// A description in Markdown.
+    /// A longer description in Markdown.
     pub help: String,
-    /// The inserted text.
+    /// The inserted text, with placeholders for values.
     pub insert: Vec<SnippetPart>,
     /// The span that the inserted text replaces.
     pub replaces: Span,
-    /// The rank; better completions have smaller numbers.
+    /// Rank in the list of completions. Smaller ranks come first.
     pub rank: u8,
 }
 
@@ -38,11 +38,11 @@ pub struct Completion {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum CompletionKind {
-    /// `let`
+    /// The keyword `let`.
     Keyword,
-    /// A whole block.
+    /// A whole block, such as `sphere { … }`.
     Block,
-    /// A field.
+    /// A field of a block.
     Field,
     /// The name of a `let` or an index.
     Definition,
@@ -50,15 +50,15 @@ pub enum CompletionKind {
     Function,
     /// A sampling method.
     Method,
-    /// `pi`, `deg`, `rad`.
+    /// A predefined constant or unit: `pi`, `deg`, `rad`.
     Constant,
     /// A named colour.
     Color(Color),
-    /// A literal value.
+    /// An example value of a field.
     Value,
 }
 
-/// Part of the inserted text.
+/// A part of the text that a completion inserts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SnippetPart {
     /// Text that is inserted as it is.
@@ -67,7 +67,7 @@ pub enum SnippetPart {
     Placeholder(String),
 }
 
-/// Returns the completions at the offset `at`, the best first.
+/// Returns the completions at the offset `at`, the best ones first.
 pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     let at = analysis.source().floor_char_boundary(at);
     let Some(situation) = situation(analysis, at) else {
@@ -82,8 +82,7 @@ pub fn completions(analysis: &Analysis<'_>, at: usize) -> Vec<Completion> {
     completions
 }
 
-/// Returns a completion that inserts only the word itself, without placeholders, in place of the
-/// typed one.
+/// Returns a completion that replaces the typed word by `word`, without placeholders.
 fn word(
     situation: &Situation,
     word: &str,
@@ -110,12 +109,13 @@ fn placeholder(value: impl Into<String>) -> SnippetPart {
     SnippetPart::Placeholder(value.into())
 }
 
-/// Returns completions for `let`, for all kinds of objects, and for those of `image`, `camera` and
-/// `sampler` that the scene does not have yet.
+/// Returns completions for `let`, for all kinds of objects, and for each of `image`, `camera` and
+/// `sampler` that the scene does not contain yet.
 fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let is_there = |row: &schema::BlockRow| {
-        // If a block follows the word that is being typed, the typed word is parsed as a kind, and
-        // the keyword of that block as its name. So names are searched for keywords, too.
+        // If a block follows the word that is being typed, the parser takes the word for the
+        // keyword of a block, and the keyword of the block that follows for its name. So names of
+        // blocks are searched for keywords, too.
         let words = analysis.blocks().flat_map(|block| [block.kind, block.name]);
         let mut words = words.flatten();
         words.any(|word| word.span != situation.word && word.text == row.name)
@@ -127,7 +127,7 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
         // The camera comes first, because a scene needs one.
         let rank = u8::from(row.kind != BlockKind::Camera);
         let mut block = word(situation, row.name, CompletionKind::Block, about, rank);
-        // If the rest of the block follows, only the keyword is inserted.
+        // If the rest of the block is there already, only the keyword is inserted.
         if !situation.goes_on {
             block.insert = block_with_fields(row);
         }
@@ -146,8 +146,8 @@ fn items(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     blocks.chain([definition]).collect()
 }
 
-/// Returns the text of a block with the fields that it needs. A block with at most one such field
-/// is on one line.
+/// Returns the text of a block with the fields that it must have. A block with at most one required
+/// field is written on one line.
 fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
     let least = row.least_fields();
     let (open, between, close) = match least.len() {
@@ -172,8 +172,8 @@ fn block_with_fields(row: &schema::BlockRow) -> Vec<SnippetPart> {
     pieces
 }
 
-/// Splits an example value into the parts of a snippet: a placeholder or, for a list, a placeholder
-/// for each of its elements.
+/// Splits an example value into the parts of a snippet. A list gets a placeholder for each of its
+/// elements, any other value one placeholder.
 fn value_to_type_over(example: &str) -> Vec<SnippetPart> {
     let inner = example.strip_prefix('(').and_then(|e| e.strip_suffix(')'));
     match inner {
@@ -210,7 +210,8 @@ fn example(analysis: &Analysis<'_>, situation: &Situation, field: &FieldRow) -> 
     })
 }
 
-/// Returns completions for the fields that the current block may still be given.
+/// Returns completions for the fields that can be added to the current block: those that it does
+/// not have yet and that do not conflict with its other fields.
 fn fields(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let Some(row) = situation.block else {
         return Vec::new();
@@ -250,7 +251,7 @@ fn values(analysis: &Analysis<'_>, situation: &Situation) -> Vec<Completion> {
     let mut completions: Vec<Completion> = written_out(analysis, situation).into_iter().collect();
     completions.extend(definitions(analysis, situation, is_color));
     if lists.contains(&wanted) {
-        // A field for several colours takes no single colour, so nothing else is offered for it.
+        // A field for several colours does not accept a single colour, so nothing else is offered.
         return completions;
     }
     completions.extend(functions(situation, is_color));
@@ -271,7 +272,8 @@ fn methods(situation: &Situation) -> Vec<Completion> {
     methods.collect()
 }
 
-/// Returns a completion with the field's example value, if no part of the value is typed yet.
+/// Returns a completion with the field's example value. Returns `None` if a part of the value is
+/// typed already.
 fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Completion> {
     let field = situation.field.filter(|_| situation.is_whole_value)?;
     let example = example(analysis, situation, field);
@@ -287,7 +289,8 @@ fn written_out(analysis: &Analysis<'_>, situation: &Situation) -> Option<Complet
 }
 
 /// Returns completions for the indices of the current block and for the definitions before the
-/// word.
+/// typed word. If `is_color` is `Some(true)`, leaves out those that are no colours; if it is
+/// `Some(false)`, leaves out the colours.
 fn definitions(
     analysis: &Analysis<'_>,
     situation: &Situation,
@@ -381,8 +384,8 @@ fn colors(situation: &Situation) -> Vec<Completion> {
     colors.collect()
 }
 
-/// Returns the rank of a value of the type `kind`: 1 if it has the wanted type or if none is
-/// wanted, otherwise 2.
+/// Returns the rank of a value of the type `kind` in the list of completions: 1 if it has the
+/// wanted type or if no type is wanted, otherwise 2.
 fn rank(situation: &Situation, kind: Option<Type>) -> u8 {
     u8::from(situation.wanted.is_some() && kind != situation.wanted) + 1
 }

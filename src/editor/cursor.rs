@@ -1,7 +1,7 @@
 //! Finds out what can be typed at an offset of the text.
 //!
 //! The word at the offset is replaced by a made-up name, and the text is parsed as usual. The
-//! position of this name in the tree determines what can be typed.
+//! position of this name in the syntax tree determines what can be typed.
 
 use super::{
     analysis::{Analysis, Path},
@@ -16,37 +16,40 @@ use crate::{
     },
 };
 
-/// Made-up name in place of the word at the cursor. No scene uses it.
+/// Made-up name that stands for the word at the cursor while the text is parsed. Any name that no
+/// scene uses would do.
 const CURSOR: &str = "__cursor__";
 
 /// The context of an offset in the text: what can be typed, and where.
 #[derive(Clone, Debug)]
 pub struct Situation {
-    /// The kind of text that can be typed.
+    /// Kind of text that can be typed: an item, a field or a value.
     pub expected: Expected,
-    /// The schema's row of the current block, if its kind is known.
+    /// Row of the schema for the current block, if the block's kind is known.
     pub block: Option<&'static schema::BlockRow>,
-    /// Names of the fields that the current block has, except the word at the offset.
+    /// Names of the fields that the current block has. A name that is just being typed is not among
+    /// them.
     pub given: Vec<&'static str>,
-    /// The field whose value is typed.
+    /// The field whose value is being typed; `None` if no value is being typed.
     pub field: Option<&'static schema::FieldRow>,
-    /// The type that the typed value should have, if it is known.
+    /// Type that the typed value should have; `None` if it is not known.
     pub wanted: Option<Type>,
-    /// Span of the name whose definition is being typed. Its value cannot use the name.
+    /// Span of the name whose definition is being typed. The definition's value cannot use this
+    /// name.
     pub defining: Option<Span>,
-    /// Whether the value of a field or definition is typed and none of it is there yet.
+    /// Whether the value of a field or definition is to be typed, and no part of it is there yet.
     pub is_whole_value: bool,
-    /// Whether the text that belongs after the word is there already: the braces of a block, the
-    /// value of a field, or the arguments of a function.
+    /// Whether the text that has to follow the typed word is there already: the braces of a block,
+    /// the value of a field, or the arguments of a function.
     pub goes_on: bool,
-    /// The word that is being typed; empty if there is none.
+    /// Span of the word that is being typed; empty if no word is being typed.
     pub word: Span,
 }
 
 /// Kind of text that can be typed at an offset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
-    /// `let`, or a block.
+    /// A definition with `let`, or a block.
     Item,
     /// A field of the block.
     Field,
@@ -54,8 +57,8 @@ pub enum Expected {
     Value,
 }
 
-/// Returns what can be typed at the offset `at`. Returns `None` in comments, numbers and names that
-/// are being defined.
+/// Returns what can be typed at the offset `at`. Returns `None` within a comment, a number, or a
+/// name that is being defined.
 pub fn situation(analysis: &Analysis<'_>, at: usize) -> Option<Situation> {
     let ends = |token: &RoleToken| token.span.end == at && !is_part(analysis, token);
     let word = touched(analysis, at, |token| token.span.start < at && !ends(token))?;
@@ -64,8 +67,8 @@ pub fn situation(analysis: &Analysis<'_>, at: usize) -> Option<Situation> {
     is_word.then(|| with_cursor(analysis, word, ask)).flatten()
 }
 
-/// Finds the innermost call around the offset `at`. Returns the span of the function's name, and
-/// the index of the argument at the offset.
+/// Finds the innermost function call around the offset `at`. Returns the span of the function's
+/// name, and the index of the argument at the offset.
 pub fn call(analysis: &Analysis<'_>, at: usize) -> Option<(Span, usize)> {
     let word = touched(analysis, at, |token| is_part(analysis, token))?;
     with_cursor(analysis, word, |path| {
@@ -116,8 +119,8 @@ fn touched(
     (!is_in_comment).then(|| token.map_or(file(at, at), |token| token.span))
 }
 
-/// Parses the text with the made-up name [`CURSOR`] in place of `word`, and returns what `ask`
-/// returns for the path to this name in the tree.
+/// Parses the text with the made-up name [`CURSOR`] in place of `word`. Calls `ask` with the path
+/// to this name in the syntax tree, and returns its result.
 fn with_cursor<T>(
     analysis: &Analysis<'_>,
     word: Span,
@@ -128,8 +131,8 @@ fn with_cursor<T>(
         analysis.text().get(word.end..)?,
     );
     let apart = if word.range().is_empty() { " " } else { "" };
-    // The tree does not contain an unclosed list. If the name is in such a list, the text is parsed
-    // again with closing parentheses after the name.
+    // A list without a closing parenthesis is missing from the tree. If the name is in such a list,
+    // the text is parsed again with closing parentheses after the name.
     let mut closing = String::new();
     loop {
         let text = format!("{before}{CURSOR}{closing}{apart}{after}");
@@ -159,8 +162,8 @@ fn open_lists(analysis: &Analysis<'_>, at: usize) -> usize {
     })
 }
 
-/// Returns what can be typed in place of `word`, given the path to the made-up name in the tree.
-/// Returns `None` in the name of a definition or in the head of a block.
+/// Returns what can be typed in place of `word`, given the path to the made-up name in the syntax
+/// tree. Returns `None` in the name of a definition or in the head of a block.
 fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     let row = path
         .block
@@ -187,7 +190,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = matches!(last.kind, ValueKind::Call(_));
     } else if let Some(field) = path.field {
         situation.expected = Expected::Field;
-        // If the value is missing, the next field's name is parsed as the value of this field.
+        // If the value of a field is missing, the parser takes the next field's name for the value.
         let next = match &field.value.kind {
             ValueKind::Name(name) => Some(*name),
             ValueKind::Call(call) => Some(call.function.text),
@@ -199,7 +202,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = !is_empty && next.is_none();
     } else if let Some(block) = path.block {
         situation.expected = expected_in(block, word.start)?;
-        // If another block follows, its keyword is parsed as the name of this block.
+        // If another block follows, the parser takes its keyword for the name of this block.
         let is_own =
             |block: &Block<'_>| block.name.is_none_or(|it| schema::block(it.text).is_none());
         situation.goes_on = block.open.is_some() && is_own(block);
@@ -223,9 +226,9 @@ fn is_cursor(value: &tree::Value<'_>) -> bool {
     matches!(value.kind, ValueKind::Name(CURSOR))
 }
 
-/// Returns what can be typed at the offset `at`, which is in a block but not in one of its fields:
-/// another keyword in place of the block's own, or a field between the braces. Returns `None` in
-/// the rest of the head.
+/// Returns what can be typed at the offset `at`, which is in a block but not in one of its fields.
+/// This is another keyword in place of the block's keyword, or a field between the braces. Returns
+/// `None` in the rest of the block's head.
 fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     if block.kind.is_some_and(|kind| kind.text == CURSOR) {
         return Some(Expected::Item);
@@ -234,8 +237,8 @@ fn expected_in(block: &Block<'_>, at: usize) -> Option<Expected> {
     is_inside.then_some(Expected::Field)
 }
 
-/// Returns the type that the innermost part of a value should have. `takes` is the type of the
-/// whole value.
+/// Returns the type that the innermost part of a value should have. `takes` is the type that the
+/// whole value should have.
 fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
     let mut wanted = takes;
     for (outer, inner) in path.values.iter().zip(path.values.iter().skip(1)) {
@@ -247,8 +250,8 @@ fn wanted(path: &Path<'_, '_>, takes: Option<Type>) -> Option<Type> {
             }
             ValueKind::Tuple(_) | ValueKind::Parentheses(_) => match wanted {
                 Some(Type::Colors | Type::FaceColors) => Some(Type::Color),
-                // These parentheses enclose a vector or a part of an expression. In most cases,
-                // they contain numbers.
+                // These parentheses enclose a vector or a part of an expression, which usually
+                // contain numbers.
                 Some(Type::Vector) => Some(Type::Number),
                 wanted => wanted,
             },

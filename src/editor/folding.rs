@@ -3,13 +3,13 @@
 use super::analysis::Analysis;
 use crate::source::{Span, sort_by_span};
 
-/// Lines that can be folded to their first line.
+/// Consecutive lines that an editor can fold, so that only the first of them is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Fold {
     /// Span from the first character of the first line's text to the end of the last line.
     pub span: Span,
-    /// The kind of the lines.
+    /// Whether the lines are a block or comments.
     pub kind: FoldKind,
 }
 
@@ -17,13 +17,13 @@ pub struct Fold {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FoldKind {
-    /// A block.
+    /// A block with its braces.
     Block,
-    /// One or more comments without other text between them.
+    /// A comment, or several comments on consecutive lines.
     Comment,
 }
 
-/// Returns all blocks and comments of more than one line.
+/// Returns the lines that can be folded: all blocks and comments of more than one line.
 pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
     let takes_lines = |span: &Span| span.end > span.start && analysis.slice(*span).contains('\n');
     let blocks = analysis.blocks().map(|block| block.span);
@@ -41,8 +41,8 @@ pub fn folds(analysis: &Analysis<'_>) -> Vec<Fold> {
     folds
 }
 
-/// Returns the spans of comments. Comments on consecutive lines of their own are joined; a comment
-/// after code is separate.
+/// Returns the spans of all comments. Comments on consecutive lines without code are joined to one
+/// span. A comment after code on its line is not joined with others.
 fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
     let mut runs: Vec<Span> = Vec::new();
     let mut behind_code = Vec::new();
@@ -52,7 +52,7 @@ fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
         let before = source.slice(start..comment.start);
         let is_alone = before.trim_start_matches('\u{feff}').trim().is_empty();
         if !is_alone {
-            // A comment after code belongs to its line, so it is not joined with others.
+            // A comment after code describes that line, so it is not joined with others.
             behind_code.push(*comment);
             continue;
         }
@@ -67,7 +67,7 @@ fn runs_of_comments(analysis: &Analysis<'_>) -> Vec<Span> {
     runs
 }
 
-/// Returns whether the text between two comments is a single line end, perhaps with blanks.
+/// Returns whether the text between two comments is a single line end, with or without blanks.
 fn is_next_line(between: &str) -> bool {
     between.trim().is_empty() && between.matches('\n').count() == 1
 }

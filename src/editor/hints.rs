@@ -1,4 +1,4 @@
-//! Computes hints about values, such as the result of an expression. Editors show them in grey at
+//! Computes hints about values, such as the result of an expression. Editors show hints in grey at
 //! the ends of lines.
 
 use std::ops::Range;
@@ -18,9 +18,9 @@ use crate::{
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Hint {
-    /// Byte offset of the line's end.
+    /// Byte offset of the end of the line at which the hint is shown.
     pub at: usize,
-    /// The text of the hint.
+    /// The shown text, such as `= 2.5`.
     pub text: String,
 }
 
@@ -32,18 +32,18 @@ struct Remark<'s> {
     name: &'s str,
     /// Result of the value, if it is an expression.
     result: Option<Value>,
-    /// A fact that follows from this value and other values of the block, such as the field of view
-    /// that a distance gives.
+    /// A fact that follows from this value and other fields of the block, such as the field of view
+    /// that the distance `d` of the view plane gives.
     beside: Option<String>,
 }
 
 /// Returns the hints about the values that end in the byte range `within`, in order. A hint shows
-/// the result of an expression, the field of view for a `d`, or the total number of samples for a
-/// `per_pixel`.
+/// the result of an expression, the field of view for the camera's `d`, or the total number of
+/// samples for the sampler's `per_pixel`.
 ///
-/// Hints stand at the ends of lines, because within a line they would shift the formatter's
-/// columns. If other text stands between an expression and the end of its line, the result is
-/// preceded by the name of the field or definition.
+/// Hints stand at the ends of lines, because within a line they would shift the columns in which
+/// the formatter aligns values. If other text stands between an expression and the end of its line,
+/// the name of the field or definition precedes the result.
 pub fn hints(analysis: &Analysis<'_>, within: Range<usize>) -> Vec<Hint> {
     let mut remarks: Vec<Remark<'_>> = Vec::new();
     let touches =
@@ -114,7 +114,8 @@ fn is_computed(value: &tree::Value<'_>) -> bool {
 }
 
 /// Returns a fact that follows from a field of the camera or the sampler together with other
-/// fields. Returns `None` if the field has a reported problem.
+/// fields, such as `fov 53deg` for the field `d`. Returns `None` for all other fields, and if a
+/// problem is reported at the field.
 fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Option<String> {
     let parts = &analysis.model.parts;
     let image = parts.image?;
@@ -147,8 +148,8 @@ fn beside(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> Opti
     }
 }
 
-/// Returns whether a problem has a label at the field's name or at the block's keyword, as a report
-/// of conflicting fields has.
+/// Returns whether a reported problem has a label at the field's name or at the block's keyword. A
+/// report of conflicting fields has such labels.
 fn is_disputed(analysis: &Analysis<'_>, block: &Block<'_>, field: &Field<'_>) -> bool {
     let diagnostics = analysis.diagnostics().iter();
     let mut labels = diagnostics.flat_map(|diagnostic| &diagnostic.labels);

@@ -24,14 +24,14 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Hover {
-    /// The span of the word or value.
+    /// Span of the described word or value.
     pub span: Span,
-    /// The description in Markdown.
+    /// The description, in Markdown.
     pub markdown: String,
 }
 
-/// Returns the description of the word at the offset `at`. If there is a problem, its message comes
-/// first, and the page that explains the problem comes last.
+/// Returns the description of the word at the offset `at`. If a problem is reported there, its
+/// message comes first, and the page that explains this kind of problem comes last.
 pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     let meaning = meaning(analysis, at);
     let Some((span, problem)) = mistake(analysis, at) else {
@@ -54,7 +54,8 @@ pub fn hover(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     Some(Hover { span, markdown })
 }
 
-/// Returns the first problem whose first label contains the offset `at`, and that label's span.
+/// Returns the first problem whose first label contains the offset `at`, together with the span of
+/// this label.
 fn mistake<'a>(analysis: &'a Analysis<'_>, at: usize) -> Option<(Span, &'a Diagnostic)> {
     analysis.diagnostics().iter().find_map(|diagnostic| {
         let span = diagnostic.labels.first()?.span;
@@ -93,14 +94,14 @@ fn meaning(analysis: &Analysis<'_>, at: usize) -> Option<Hover> {
     }
 }
 
-/// Describes a colour in all its notations.
+/// Describes a colour in all its notations: as a code, as a call of `rgb`, and in linear light.
 pub(super) fn about_color(color: Color) -> String {
     let [r, g, b] = color.srgb.map(short);
     let [red, green, blue] = color.to_linear().map(short);
     format!("`{color}`, `rgb({r}, {g}, {b})`; in linear light ({red}, {green}, {blue})")
 }
 
-/// Describes a definition: its line and its value.
+/// Describes a definition: its text, its line and its value.
 pub(super) fn about_definition<'s>(analysis: &Analysis<'s>, definition: &Definition<'s>) -> String {
     let name = definition.name.map_or("", |name| name.text);
     let written = shorten(analysis.slice(definition.value.span));
@@ -154,7 +155,7 @@ fn camera(analysis: &Analysis<'_>) -> Option<String> {
     Some(format!("```text\n{summary}```"))
 }
 
-/// Describes the object whose name is at the path, as `pinhole inspect` does.
+/// Describes the object whose name is at the end of `path`, as `pinhole inspect` does.
 fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     let block = path.block?;
     let (kind, name) = (block.kind?.text, block.name?.text);
@@ -176,7 +177,7 @@ fn object(analysis: &Analysis<'_>, path: &Path<'_, '_>) -> Option<String> {
     })
 }
 
-/// Describes an index of a repeated block.
+/// Describes an index of a repeated block, such as `i` in `for i < 3`.
 pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String {
     let (name, count) = (index.name.text, shorten(analysis.slice(index.count.span)));
     format!(
@@ -184,9 +185,9 @@ pub(super) fn about_index(analysis: &Analysis<'_>, index: &Index<'_>) -> String 
     )
 }
 
-/// Returns the index in `path.values` of the value that the hover describes. It is the innermost
-/// value or, if that is a number, a list or a negation, the innermost operation or call that
-/// contains it.
+/// Returns the position in `path.values` of the value that the hover describes. This is the
+/// innermost value. If it is a number, a list or a negation within an operation or call, that
+/// operation or call is described instead.
 fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     use ValueKind::{Call, Chain, Negation, Number, Parentheses, Tuple};
     let (value, around) = path.values.split_last()?;
@@ -199,7 +200,7 @@ fn depth_of_meaning(path: &Path<'_, '_>) -> Option<usize> {
     Some(computed.filter(|_| is_part).unwrap_or(around.len()))
 }
 
-/// Describes the value at the path and its result.
+/// Describes the value at the end of `path`, and its result.
 fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> Option<Hover> {
     let depth = depth_of_meaning(path)?;
     let value = *path.values.get(depth)?;
@@ -231,7 +232,7 @@ fn value<'s>(analysis: &Analysis<'s>, path: &Path<'_, 's>, token: RoleToken) -> 
             about(call.function.span, markdown)
         }
         ValueKind::Number(_) => {
-            // A number gets its field's description. A coordinate of a vector gets none.
+            // A number is described by its field. The numbers within a vector are not described.
             let (row, field) = (path.row()?, path.field_row()?);
             if depth > 0 {
                 return None;

@@ -1,10 +1,11 @@
 //! Answers the requests of editors while an author writes a scene.
 //!
 //! In: a text, and an offset in it. Out: completions, the meaning of a word, the uses of a name and
-//! so on, as plain data with byte spans. Each kind of answer has a file. The files do not depend on
-//! an editor or a protocol: the language server converts the answers, and a page in a browser could
-//! do so, too. All of them use the schema, and the tree and the scene of `analysis`, which are as
-//! complete as the errors of the text allow.
+//! so on, as plain data with byte spans. Each kind of answer has a file. The files depend neither
+//! on an editor nor on a protocol: the language server converts the answers, and a page in a
+//! browser could do so, too. All files use the schema, which lists the language's blocks and
+//! fields, and the tree and the scene of `analysis`. Tree and scene are as complete as the errors
+//! of the text allow.
 
 mod actions;
 mod analysis;

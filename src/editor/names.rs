@@ -1,6 +1,6 @@
-//! Finds definitions and uses of names, and renames them.
+//! Finds the definitions and uses of names, and renames them.
 //!
-//! `let`s and objects have separate namespaces, so a `let` and an object may have the same name. An
+//! `let`s and objects have separate namespaces, so a `let` and an object may have equal names. An
 //! index is known only in its block.
 
 use super::{
@@ -16,20 +16,20 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Occurrence {
-    /// The span of the name.
+    /// Span of the name.
     pub span: Span,
-    /// Whether the name is defined here rather than used.
+    /// Whether this is the definition of the name rather than a use.
     pub is_definition: bool,
 }
 
-/// The namespace of a name.
+/// Namespace of a name: the namespace of `let`s and indices, or the namespace of objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Namespace {
     Lets,
     Objects,
 }
 
-/// Returns where the name at the offset `at` is defined: the span of the name in its definition.
+/// Returns the definition of the name at the offset `at`: the span of the name in it.
 pub fn definition(analysis: &Analysis<'_>, at: usize) -> Option<Span> {
     let mut occurrences = occurrences(analysis, at).into_iter();
     let first = occurrences.find(|occurrence| occurrence.is_definition);
@@ -83,7 +83,7 @@ pub fn renamable(analysis: &Analysis<'_>, at: usize) -> Result<Span, String> {
     })
 }
 
-/// Returns the spans to replace by `new`, the new name for the name at the offset `at`.
+/// Returns all spans that must be replaced to rename the name at the offset `at` to `new`.
 ///
 /// # Errors
 ///
@@ -112,8 +112,8 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
         }
         _ => {}
     }
-    // Indices of different blocks may have the same name, so it is no conflict if `new` is an index
-    // of another block.
+    // Indices of different blocks may have equal names. So an index can be renamed to `new` even if
+    // another block has an index `new`.
     let block = |name: &str, at| analysis.index_at(name, at).map(|(block, _)| block.span);
     let own = block(analysis.slice(name.span), name.span.start);
     let is_elsewhere = |token: &RoleToken| {
@@ -125,7 +125,8 @@ pub fn rename(analysis: &Analysis<'_>, at: usize, new: &str) -> Result<Vec<Span>
             && analysis.slice(token.span) == new
             && !is_elsewhere(token)
     };
-    // An undefined use of `new` would refer to the renamed definition, so it counts as taken, too.
+    // A use of `new` without a definition would refer to the renamed definition. So it also counts
+    // as a conflict.
     let taken = analysis.tokens().iter().find(is_taken);
     match taken.filter(|_| analysis.slice(name.span) != new) {
         Some(taken) => Err(format!(

@@ -9,19 +9,19 @@ use crate::{
     source::{Span, sort_by_span},
 };
 
-/// A word, number, sign or comment with its kind.
+/// A word, number, sign or comment of the text, with the kind by which editors colour it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct SemanticToken {
-    /// The span; a comment may have several lines.
+    /// Span of the token. A comment may span several lines.
     pub span: Span,
-    /// The kind.
+    /// Kind by which editors colour the token.
     pub kind: SemanticKind,
-    /// Whether the token is a name in its definition.
+    /// Whether the token is the name of a `let` or an index in its own definition.
     pub is_declaration: bool,
 }
 
-/// The kind of a token.
+/// Kind of a token, by which editors colour it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SemanticKind {
@@ -35,7 +35,7 @@ pub enum SemanticKind {
     Class,
     /// The name of a function.
     Function,
-    /// A predefined word that is a value: a method, a named colour, a constant.
+    /// A predefined word that stands for a value: a sampling method, a named colour or a constant.
     EnumMember,
     /// A number with its unit, or a colour code.
     Number,
@@ -46,8 +46,8 @@ pub enum SemanticKind {
 }
 
 impl SemanticKind {
-    /// All kinds, in the order of the token legend of the language server protocol, which numbers
-    /// them by index.
+    /// All kinds in the order of the token legend that the language server sends. The language
+    /// server protocol identifies a kind by its index in the legend.
     pub const ALL: [Self; 9] = [
         Self::Keyword,
         Self::Property,
@@ -61,7 +61,7 @@ impl SemanticKind {
     ];
 }
 
-/// Returns the classified tokens of the text, in order.
+/// Returns the words, numbers, signs and comments of the text with their kinds, in order.
 pub fn semantic_tokens(analysis: &Analysis<'_>) -> Vec<SemanticToken> {
     let words = analysis.tokens().iter();
     let words = words.filter_map(|token| classified(analysis, token));

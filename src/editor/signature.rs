@@ -4,23 +4,24 @@ use super::{analysis::Analysis, cursor};
 use crate::{scene::describe, schema, source::Span};
 use std::ops::Range;
 
-/// The signature of a function.
+/// Signature of a function, shown while its arguments are being typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Signature {
-    /// The signature, such as `atan2(y, x) → angle`.
+    /// The displayed signature, such as `atan2(y, x) → angle`.
     pub label: String,
-    /// One line of help.
+    /// Description of the function, in one line.
     pub help: &'static str,
-    /// The byte ranges of the parameters in the label.
+    /// Byte ranges of the parameters in the label.
     pub parameters: Vec<Range<usize>>,
-    /// Index of the parameter that is being typed.
+    /// Index of the parameter that is being typed, counted from 0.
     pub active: usize,
-    /// The span of the function's name in the text.
+    /// Span of the function's name in the text.
     pub span: Span,
 }
 
-/// Returns the signature of the innermost call around the offset `at`.
+/// Returns the signature of the function in the innermost call around the offset `at`. Returns
+/// `None` if no call of a known function surrounds it.
 pub fn signature(analysis: &Analysis<'_>, at: usize) -> Option<Signature> {
     let at = analysis.source().floor_char_boundary(at);
     let (span, index) = cursor::call(analysis, at)?;

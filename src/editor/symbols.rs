@@ -10,39 +10,40 @@ use crate::{
     },
 };
 
-/// An entry of the outline.
+/// An entry of the outline: a definition, a block, or a field of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Symbol {
-    /// The name.
+    /// Name of the definition, field or object. A block without a name is listed under its keyword.
     pub name: String,
-    /// The kind of block, or the text of the value.
+    /// Text shown beside the name: the kind of a named block and the head of its repetition, or the
+    /// value of a definition or field.
     pub detail: String,
-    /// The kind.
+    /// Whether the entry is a definition, a setting, an object or a field.
     pub kind: SymbolKind,
     /// Span of the whole definition, block or field.
     pub span: Span,
-    /// Span of the name or keyword, which editors select. It lies within `span`.
+    /// Span of the name or the keyword, which editors select. It lies within `span`.
     pub selection: Span,
-    /// The fields of a block.
+    /// Entries of the fields, if this is the entry of a block.
     pub children: Vec<Symbol>,
 }
 
-/// The kind of an entry.
+/// Kind of an entry of the outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SymbolKind {
-    /// A `let`.
+    /// A definition with `let`.
     Definition,
-    /// The image, the camera or the sampler.
+    /// The block `image`, `camera` or `sampler`.
     Setting,
-    /// An object.
+    /// The block of an object, such as `sphere`.
     Object,
-    /// A field.
+    /// A field of a block.
     Field,
 }
 
-/// Returns the outline in the order of the text.
+/// Returns the entries of the outline in the order of the text.
 pub fn symbols(analysis: &Analysis<'_>) -> Vec<Symbol> {
     let items = analysis.items().iter();
     let mut symbols: Vec<Symbol> = items
@@ -80,7 +81,7 @@ fn of_block(analysis: &Analysis<'_>, block: &Block<'_>) -> Option<Symbol> {
         selection: field.name.span,
         children: Vec::new(),
     });
-    // A misplaced name before the keyword, as in `let Ball = sphere {`, is outside of the block's
+    // A misplaced name before the keyword, as in `let Ball = sphere {`, lies outside of the block's
     // span.
     let name = block
         .name

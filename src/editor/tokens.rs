@@ -1,7 +1,7 @@
-//! Splits a text into words and signs, and assigns their roles.
+//! Splits a text into words, numbers and signs, and determines the role of each.
 //!
-//! In: a text and its tree. Out: the lexer's tokens in order. The tree determines the role of a
-//! word; a word that is not in the tree has the role [`Role::Other`].
+//! In: a text and its syntax tree. Out: the lexer's tokens in order. The role of a word follows
+//! from its place in the tree; a word that is not in the tree has the role [`Role::Other`].
 
 use crate::{
     scene::SemanticModel,
@@ -13,23 +13,23 @@ use crate::{
     },
 };
 
-/// A word or sign with its role.
+/// A word, number or sign of a text, with its role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RoleToken {
-    /// The span.
+    /// Span of the token in the text.
     pub span: Span,
-    /// The role.
+    /// What the token is for, such as the name of a field.
     pub role: Role,
 }
 
-/// The role of a word or sign.
+/// Role of a word, number or sign in the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Role {
-    /// `let`
+    /// The keyword `let`.
     Let,
-    /// `for`
+    /// The keyword `for` of a repeated block.
     Repeat,
     /// A name that is defined: the name of a `let` or an index in its definition.
     Defined,
@@ -47,20 +47,20 @@ pub enum Role {
     Method,
     /// A number, with its unit.
     Number,
-    /// `#rgb` or `#rrggbb`.
+    /// A colour code: `#rgb` or `#rrggbb`.
     ColorCode,
-    /// `+ - * / = <`
+    /// One of the signs `+ - * / = <`.
     Operator,
     /// Any other text: a brace, a comma, or a word that is not in the tree.
     Other,
 }
 
-/// Returns the span of the bytes from `start` to before `end` in the file.
+/// Returns the span in the file from the byte `start` to before the byte `end`.
 pub fn file(start: usize, end: usize) -> Span {
     Span::new(SourceId::File, start, end)
 }
 
-/// Returns the tokens of a text, comments left out.
+/// Returns the tokens of a text with their roles, without comments.
 pub fn tokens(model: &SemanticModel<'_>) -> Vec<RoleToken> {
     let text = model.sources().file.text();
     let mut roles = Roles(scanned(text, &model.parsed.comments));
@@ -80,14 +80,16 @@ pub fn tokens(model: &SemanticModel<'_>) -> Vec<RoleToken> {
     roles.0
 }
 
-/// Returns the tokens outside of `comments`, with those roles that do not depend on the tree.
+/// Returns the tokens outside of `comments`. They have the roles that the lexer can tell without
+/// the syntax tree: number, colour code, operator, or other.
 fn scanned(text: &str, comments: &[Span]) -> Vec<RoleToken> {
     let mut tokens = Vec::with_capacity(text.len() / 4);
     let mut comments = comments.iter().peekable();
     let mut lexer = Lexer::new(text, 0);
     loop {
         let token = lexer.token();
-        // A comment that error recovery found, such as `# …`, may start with any token.
+        // Error recovery may have taken a text such as `# …` for a comment, which may start with
+        // any token.
         if let Some(comment) = comments.next_if(|comment| comment.start <= token.start)
             && comment.end > token.start
         {
@@ -110,11 +112,11 @@ fn scanned(text: &str, comments: &[Span]) -> Vec<RoleToken> {
     }
 }
 
-/// The tokens of a text, while their roles are set from the tree.
+/// The tokens of a text, while their roles are set from the syntax tree.
 struct Roles(Vec<RoleToken>);
 
 impl Roles {
-    /// Sets the role of a token.
+    /// Sets the role of the token with the span `span`. Does nothing if there is no such token.
     fn set(&mut self, span: Span, role: Role) {
         let index = self.0.partition_point(|it| it.span.start < span.start);
         let token = self.0.get_mut(index);

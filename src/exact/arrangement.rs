@@ -1,4 +1,5 @@
-//! Divides a sub-pixel into convex cells if its boundaries are all straight lines.
+//! Divides a sub-pixel (a pixel or a square part of one) into convex cells if its boundaries are
+//! all straight lines.
 //!
 //! In: the lines that pass through the sub-pixel. Out: the cells, each with a point inside, added
 //! to [`Regions`]. The sub-pixel starts as one cell; each line in turn cuts the cells that it
@@ -16,24 +17,26 @@ use super::{
     region::{Region, Regions, Shares},
 };
 
-/// Minimum area of a cell, in square pixels. A smaller cell adds its whole area to the error bound,
-/// because rounding may put the point whose colour is determined outside the cell. Nor do lines cut
-/// it, because slivers that exist only by rounding would double in number with each line. A square
-/// of this area has sides of 2⁻²³ pixels, about 10⁹ unit roundoffs.
+/// Minimum area of a cell, a polygon between lines, in square pixels. A smaller cell is not cut any
+/// further, because slivers that exist only by rounding would double in number with each line. Its
+/// whole area is added to the error bound, because rounding may put the point at which its colour
+/// is determined outside the cell. A square of this area has sides of 2⁻²³ pixels, about 10⁹ unit
+/// roundoffs.
 const MIN_AREA: f64 = 1.0 / (1u64 << 46) as f64;
 
-/// Constant k of the bound area ≤ k·n·|h| for a cell of n vertices, where the area is in square
-/// pixels and h is the value of a line's form at the cell's centre. A larger cell certainly has its
-/// centre on the correct side of a line whose error is |h|.
+/// Factor k of an area limit k·n·e, in square pixels, for a cell (a polygon between lines) with n
+/// vertices, where e is the error of the values of a line's form a·x + b·y + c. If the cell's area
+/// exceeds the limit, the cell's centre is certainly on the correct side of the line.
 ///
-/// Derivation: the line does not cut the cell, so the form has the same sign at all vertices, and
-/// is at most n·|h| there. Each vertex is at most 2n·|h| from the line, because the larger of |a|
-/// and |b| in the form a·x + b·y + c is at least 1/2. The cell is at most √2 long, and 2·√2 < 3.
+/// Derivation: the form has the same sign at all vertices, and its value at the centre is the mean
+/// of those at the vertices. If the centre's value is at most e, those at the vertices are at most
+/// n·e. All vertices are then within 2n·e of the line, because the larger of |a| and |b| is at
+/// least 1/2. The cell is at most √2 long, so that its area is at most 2·√2·n·e, and 2·√2 < 3.
 const MAX_AREA_PER_HEIGHT: f64 = 3.0;
 
-/// Upper bound on the rounding error of a line's form a·x + b·y + c at a vertex; below it, the sign
-/// of the form is uncertain. The form has four roundings of terms that are at most 2, because the
-/// larger of |a| and |b| is about 1.
+/// Maximum rounding error of the form a·x + b·y + c of a line at a vertex. At a smaller absolute
+/// value, the sign of the form is uncertain. The form has four roundings of terms that are at most
+/// 2, because the larger of |a| and |b| is about 1.
 const ROUNDING: f64 = 8.0 * f64::UNIT;
 
 /// Returns the share of each colour in the sub-pixel of `regions`, which `lines` cut into cells.
@@ -64,8 +67,8 @@ pub fn shares(lines: &[BoundaryLine], mut regions: Regions) -> Shares {
         }
         let area = area(polygon);
         let inside = center(polygon);
-        // If the cell's point is close to a line, rounding may have put the point, and even the
-        // whole cell, on the wrong side of the line.
+        // If the point at which the cell's colour is determined is close to a line, rounding may
+        // have put the point, and even the whole cell, on the wrong side of the line.
         let may_be_thin = || area <= MAX_AREA_PER_HEIGHT * polygon.len() as f64 * worst;
         let is_near_line = || {
             lines

@@ -1,4 +1,4 @@
-//! The boundaries of what is seen in a sub-pixel.
+//! The boundaries of what is seen in a sub-pixel (a pixel or a square part of one).
 //!
 //! In: a sub-pixel and its candidates, the objects that may be seen in it. Out: the lines and
 //! conics that may separate colours in it: silhouettes, intersections of surfaces, and
@@ -19,24 +19,29 @@ use super::budget::PixelBudget;
 
 /// Minimum doubtful area of a conic, in square pixels, at which the conic is computed again in the
 /// highest precision. The doubtful area is the area that the conic's error may put on the wrong
-/// side. The value is eight unit roundoffs, about the rounding error of a pixel's mean in `f64`.
+/// side of the conic. The value is eight unit roundoffs, about the rounding error of a pixel's mean
+/// in `f64`, so that a smaller area does not matter.
 const LOOSE_CONIC: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Work charged to the pixel's budget per pair of objects whose depths are compared, in units of
-/// about 50 ns.
+/// Approximate time to compare the depths of two objects, in units of about 50 ns. It is charged to
+/// the pixel's budget, and need not be precise, because the budget only stops computations that
+/// take too long.
 const PAIR_WORK: f64 = 1.0 / 16.0;
-/// Work charged to the pixel's budget per object or pair of objects whose curves are computed, in
-/// units of about 50 ns.
+/// Approximate time to compute the curves of an object or of a pair of objects, in units of about
+/// 50 ns. It is charged to the pixel's budget, and need not be precise, because the budget only
+/// stops computations that take too long.
 const CURVES_WORK: f64 = 8.0;
-/// Work charged to the pixel's budget to prepare a triangle or cuboid, in units of about 50 ns. It
-/// is charged only if there are more candidates than [`CACHE_SLOTS`], because the world's cache of
-/// prepared objects then cannot keep all of them.
+/// Approximate time to prepare a triangle or cuboid, in units of about 50 ns. It is charged to the
+/// pixel's budget only if there are more candidate objects than [`CACHE_SLOTS`], because the
+/// world's cache of prepared objects then cannot keep all of them.
 const PREPARATION_WORK: f64 = 140.0;
-/// Additional work charged to the pixel's budget per object, and per pair of surfaces, whose curves
-/// are computed in the highest precision ([`Big`]), in units of about 50 ns.
+/// Approximate additional time to compute the curves of an object or of a pair of surfaces in the
+/// highest precision ([`Big`]), in units of about 50 ns. It is charged to the pixel's budget, and
+/// need not be precise, because the budget only stops computations that take too long.
 const BIG_CURVE_WORK: f64 = 1500.0;
 
-/// Source of boundary curves: an object or a pair of objects, as indices into the candidates.
+/// Source of boundary curves: one object or a pair of objects, given by their indices in the list
+/// of candidates.
 #[derive(Clone, Copy, Debug)]
 enum BoundarySource {
     /// The silhouette of an object.
@@ -57,7 +62,7 @@ struct Boundaries<'a, T: Precision> {
     budget: &'a PixelBudget<'a>,
 }
 
-/// Returns the candidates in `among` that may be seen in the sub-pixel, in file order.
+/// Returns the objects in `among` that may be seen in the sub-pixel, in file order.
 pub fn visible(
     world: &World,
     sub_pixel: SubPixel,
@@ -71,8 +76,8 @@ pub fn visible(
 }
 
 /// Replaces the content of `out` by the curves that may separate colours in the sub-pixel, where
-/// only `candidates` may be seen. Returns `true` if `out` has all of them. Returns `false` as soon
-/// as more than `max_curves` unequal curves are found or the budget is spent.
+/// only `candidates` may be seen. Returns `true` if `out` has all of these curves. Returns `false`
+/// as soon as more than `max_curves` unequal curves are found or the budget is spent.
 pub fn curves(
     world: &World,
     sub_pixel: SubPixel,
@@ -83,9 +88,10 @@ pub fn curves(
 ) -> bool {
     out.clear();
     let boundaries = Boundaries::<Double>::new(world, sub_pixel, candidates, budget);
-    // Some curve of each `imprecise` source has too large an error in double-double. Some pair of
-    // surfaces of each `incomplete` source has no intersection in double-double, and only the
-    // highest precision decides whether there is one.
+    // A source is an object or a pair of objects. A source is in `imprecise` if one of its curves
+    // has too large an error in double-double. It is in `incomplete` if two of its surfaces have no
+    // intersection in double-double, so that only the highest precision decides whether they have
+    // one.
     let (mut imprecise, mut incomplete) = (Vec::new(), Vec::new());
     let mut incomplete_curves = Vec::new();
     let mut room = max_curves;
@@ -104,8 +110,9 @@ pub fn curves(
             merge_equal_curves(out);
             room = out.len() + max_curves;
         }
-        // `room` is the length of `out` at which equal curves are merged next. It exceeds `2 *
-        // max_curves` only if more than `max_curves` curves were left after merging.
+        // `room` is the length of `out` above which equal curves are merged again. After a merge,
+        // it is the number of unequal curves plus `max_curves`. If it exceeds `2 * max_curves`,
+        // there are more than `max_curves` unequal curves, and the search stops.
         if room > 2 * max_curves || budget.is_spent() {
             return ControlFlow::Break(());
         }
@@ -132,8 +139,8 @@ pub fn curves(
     out.len() <= max_curves
 }
 
-/// Merges curves with equal forms, such as those of objects that share planes or edges. A merged
-/// curve gets the largest error of the curves that it replaces.
+/// Merges curves with equal equations, such as those of objects that share planes or edges. A
+/// merged curve gets the largest error of the curves that it replaces.
 fn merge_equal_curves(curves: &mut Vec<Boundary>) {
     curves.sort_by_cached_key(Boundary::key);
     curves.dedup_by(|again, curve| {
@@ -206,9 +213,9 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         ControlFlow::Continue(())
     }
 
-    /// Appends to `out` the curves of `source` that may pass through the sub-pixel. Returns `false`
-    /// if some pair of its surfaces has no intersection curve in this precision. These surfaces are
-    /// equal planes or concentric spheres, or cannot be distinguished from such.
+    /// Appends to `out` the boundary curves of `source` that may pass through the sub-pixel.
+    /// Returns `false` if two surfaces of the source have no intersection curve in the precision
+    /// `T`, because they are, or cannot be distinguished from, equal planes or concentric spheres.
     fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
             if curve.may_cross_pixel() {
@@ -252,8 +259,8 @@ impl<'a, T: Precision> Boundaries<'a, T> {
         self.objects[at].get_or_init(|| {
             self.charge_big_curve();
             let object = T::object(&self.world.geometry, self.candidates[at].object);
-            // With more candidates than slots, the world's cache cannot keep all prepared objects,
-            // so that each may have to be prepared again.
+            // The world's cache cannot keep all prepared objects if there are more candidates than
+            // slots in the cache. Each object may then have to be prepared again.
             if self.candidates.len() > CACHE_SLOTS && matches!(*object, Object::Convex(_)) {
                 self.budget.charge(PREPARATION_WORK);
             }
@@ -282,8 +289,8 @@ impl Boundary {
         }
     }
 
-    /// Returns whether the curve's error is below [`LOOSE_LINE`] or [`LOOSE_CONIC`], so small that
-    /// the highest precision would hardly improve the error bound of the pixel's mean.
+    /// Returns whether the curve's error is below [`LOOSE_LINE`] or [`LOOSE_CONIC`]. The highest
+    /// precision would then hardly improve the error bound of the pixel's mean.
     fn is_tight(&self) -> bool {
         match self {
             Self::Line(line) => line.rad < LOOSE_LINE,
@@ -291,8 +298,8 @@ impl Boundary {
         }
     }
 
-    /// Returns the coefficients of the curve's form as bits, normalised so that equal curves have
-    /// equal keys.
+    /// Returns the coefficients of the curve's equation as bits, normalised so that equal curves
+    /// have equal keys.
     fn key(&self) -> [u64; 12] {
         let mut factors = [0.0; 12];
         match self {
@@ -303,7 +310,7 @@ impl Boundary {
                 }
             }
         }
-        // A form and its negative describe the same curve, and adding 0 turns −0 into 0.
+        // An equation and its negative describe the same curve, and adding 0 turns −0 into 0.
         let leading = factors.iter().find(|factor| **factor != 0.0);
         let sign = 1_f64.copysign(leading.copied().unwrap_or(1.0));
         factors.map(|factor| (factor * sign + 0.0).to_bits())

@@ -14,18 +14,20 @@ use crate::{
 
 use super::conic_segment::Arc;
 
-/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width; above it, the
-/// arc is computed in double-double. All arcs of a curve across the pixel then contribute at most
-/// 4e-15 square pixels, far below the default tolerance of 9e-10.
+/// Maximum error of an arc's area, as computed in `f64`, divided by the arc's width in pixels.
+/// Above it, the arc is computed again in double-double. With this value, all arcs of a curve
+/// across the pixel contribute at most 4e-15 square pixels to the error, far below the default
+/// tolerance of 9e-10.
 const ARC_TOLERANCE: f64 = 32.0 * f64::UNIT;
 
-/// Maximum |dy/dx| of a line that is treated as a function y(x); above it, the line counts as
-/// vertical, because its x changes by less than eight unit roundoffs across the pixel.
+/// Maximum |dy/dx| of a line that is treated as a function y(x). A steeper line counts as vertical,
+/// because its x changes by less than eight unit roundoffs across the pixel.
 const MAX_SLOPE: f64 = (1u64 << 50) as f64;
 
-/// Minimum distance in y between the pixel and a branch, its bulge over the chord included, at
-/// which the branch is ignored. It is divided by the branch's largest |y| or by 1, whichever is
-/// greater. Rounding errors of y are millions of times smaller.
+/// Minimum distance in y, in pixels, between the pixel and a conic's branch (one of its two
+/// functions y(x)) at which the branch is ignored. If the branch's largest |y| is above 1, the
+/// distance is a fraction of this |y| instead. The value is millions of times the rounding errors
+/// of y, so that no branch inside the pixel is ignored.
 const OUTSIDE_MARGIN: f64 = 1.0 / (1u64 << 30) as f64;
 
 /// A curve as a function y(x).
@@ -44,18 +46,19 @@ pub enum Track<'a> {
     Branch {
         /// The conic.
         graph: &'a ConicGraph,
-        /// Sign of the root √Δ: 1 or −1.
+        /// Sign of the square root in the branch's formula y = (−b ± √Δ)/C ([`ConicGraph`]): 1 or
+        /// −1.
         side: f64,
     },
 }
 
-/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions of x:
+/// A conic Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0 as two functions of x, its branches:
 ///
 /// y = (−b ± √Δ)/C with b = Bx + E, Δ = b² − C·g, g = Ax² + 2Dx + F
 #[derive(Clone, Copy, Debug)]
 pub struct ConicGraph {
     factors: [Double; 6],
-    /// Coefficients of x², 2x and 1 in Δ, a polynomial in x.
+    /// Coefficients of x², 2x and 1 in Δ, the polynomial in x under the root in the formula for y.
     delta: [Double; 3],
 }
 
@@ -65,7 +68,8 @@ pub struct ConicSpan<'a> {
     graph: &'a ConicGraph,
     /// Values of x at the left end, in the middle and at the right end.
     x: [f64; 3],
-    /// Values of √Δ at the left end, in the middle and at the right end.
+    /// Values of √Δ, the root in the formula for y, at the left end, in the middle and at the right
+    /// end.
     roots: [f64; 3],
 }
 
@@ -78,7 +82,7 @@ pub struct Section {
     /// The arc, and the side to which it bulges: 1 for greater y, −1 for smaller y. `None` if the
     /// section is straight.
     pub arc: Option<(f64, Arc)>,
-    /// Maximum distance in y between the track and this section.
+    /// Maximum distance in y between the curve ([`Track`]) and this approximation.
     pub error: f64,
 }
 
@@ -93,11 +97,12 @@ impl ConicGraph {
         }
     }
 
-    /// Returns the values of x inside the pixel at which the conic has vertical tangents, where its
-    /// two functions begin and end.
+    /// Returns the values of x inside the pixel at which the conic has a vertical tangent. Its two
+    /// functions y(x) begin or end there.
     pub fn ends(&self) -> impl Iterator<Item = f64> {
         let [p, q, r] = self.delta;
-        // Δ is px² + 2qx + r; its roots are computed without cancellation.
+        // Δ, the polynomial under the root in the formula for y, is px² + 2qx + r. Its zeros are
+        // computed without cancellation.
         let discriminant = q.times(&q).minus(&p.times(&r));
         let roots = (discriminant.hi >= 0.0).then(|| {
             let root = discriminant.sqrt().hi;
@@ -107,7 +112,8 @@ impl ConicGraph {
         roots.into_iter().flatten().filter(|x| x.abs() < 0.5)
     }
 
-    /// Returns √Δ at `x`, or 0 if Δ is negative.
+    /// Returns √Δ, the root in the conic's formula for y ([`ConicGraph`]), at `x`. Returns 0 if Δ
+    /// is negative.
     fn root(&self, x: f64) -> f64 {
         let [p, q, r] = &self.delta;
         let at = Double::from_f64(x);
@@ -116,8 +122,8 @@ impl ConicGraph {
         delta.hi.max(0.0).sqrt()
     }
 
-    /// Returns the two functions over the range of x from `left` to `right`, or `None` if the conic
-    /// has no point at the middle x.
+    /// Returns the conic's two functions y(x) over the range of x from `left` to `right`. Returns
+    /// `None` if the conic has no point at the middle x.
     pub fn span(&self, left: f64, right: f64) -> Option<ConicSpan<'_>> {
         let x = [left, 0.5 * (left + right), right];
         let middle = self.root(x[1]);
@@ -128,13 +134,15 @@ impl ConicGraph {
         })
     }
 
-    /// Computes y at `x` of the function with the sign `side` (1 or −1), where `root` is √Δ at `x`.
+    /// Computes y at `x` of the conic's branch with the sign `side` (1 or −1). `root` is √Δ, the
+    /// root in the formula for y, at `x`.
     fn y(&self, x: f64, root: f64, side: f64) -> f64 {
         let [a, b, c, d, e, f] = &self.factors;
         let root = root * side;
         let at = Double::from_f64(x);
         let minus = b.times(&at).plus(e).negated().hi;
-        // Of the two equal formulas (−b ± √Δ)/C and g/(−b ∓ √Δ), use the one without cancellation.
+        // Of the two equal formulas for y (`ConicGraph`), (−b ± √Δ)/C and g/(−b ∓ √Δ), the one
+        // whose sum does not cancel is used.
         if minus * side >= 0.0 {
             (minus + root) / c.hi
         } else {
@@ -144,8 +152,8 @@ impl ConicGraph {
         }
     }
 
-    /// Computes in double-double the point at `x` of the function with the sign `side`, and √Δ
-    /// times `side` there.
+    /// Computes in double-double the point at `x` of the conic's branch with the sign `side` (1 or
+    /// −1), and there the root √Δ in the formula for y, with this sign.
     fn end_in_double(&self, x: f64, side: f64) -> ArcEnd<Double> {
         let [a, b, c, d, e, f] = &self.factors;
         let [p, q, r] = &self.delta;
@@ -175,18 +183,18 @@ impl ConicGraph {
 }
 
 impl<'a> ConicSpan<'a> {
-    /// Returns the function with the sign `side` as a track, with its section over the range.
-    /// Returns `None` if the function is not finite or lies outside the pixel. The section is
-    /// `None` if the branch turns too much to be represented by one arc; the caller then halves the
-    /// range.
+    /// Returns the conic's branch with the sign `side` (1 or −1) as a function y(x) ([`Track`]),
+    /// and an arc or chord that approximates it ([`Section`]). Returns `None` if the branch is not
+    /// finite or lies outside the pixel. The section is `None` if the branch turns too much to be
+    /// represented by one arc; the caller then halves the range.
     pub fn branch(&self, side: f64) -> Option<(Track<'a>, Option<Section>)> {
         let Self { graph, x, roots } = self;
         let y = [0, 1, 2].map(|i| graph.y(x[i], roots[i], side));
         if !y[1].is_finite() {
             return None;
         }
-        // If the branch's curvature has one sign, the branch is nowhere farther from its chord than
-        // twice its distance in the middle, `sagitta`.
+        // If the branch is curved in one direction only, its distance from the chord is at most
+        // twice `sagitta`, the distance in the middle.
         let sagitta = y[1] - 0.5 * (y[0] + y[2]);
         let size = y.iter().fold(1.0, |size: f64, y| size.max(y.abs()));
         let beyond = 0.5 + 2.0 * sagitta.abs() + OUTSIDE_MARGIN * size;
@@ -205,9 +213,9 @@ impl<'a> ConicSpan<'a> {
                     ..straight
                 })
             }
-            // A branch without an arc may be too flat to distinguish its tangents. If its middle is
-            // within `flat`, the rounding error, of the chord, it is treated as straight. Each y
-            // has six roundings, and the mean of two y adds two.
+            // A branch may be so flat that rounding errors prevent the computation of an arc. It is
+            // treated as straight if the distance between its middle and the chord is at most the
+            // rounding error `flat`. Each y has six roundings, and the mean of two y adds two.
             None => {
                 let flat = 8.0 * f64::UNIT * (1.0 + y[0].abs() + y[2].abs());
                 (sagitta.abs() <= flat).then_some(Section {
@@ -219,9 +227,9 @@ impl<'a> ConicSpan<'a> {
         Some((Track::Branch { graph, side }, section))
     }
 
-    /// Returns the arc with the ends `ends` and the end tangents of the function with the sign
-    /// `side`, and an error bound of the area between arc and chord. Returns `None` if the tangents
-    /// do not intersect between the ends, or if the arc turns by more than 120°.
+    /// Returns the arc with the ends `ends` and the end tangents of the conic's branch with the
+    /// sign `side` (1 or −1), and an error bound of the area between arc and chord. Returns `None`
+    /// if the tangents do not intersect between the ends, or if the arc turns by more than 120°.
     fn arc(&self, ends: [DVec2; 2], side: f64) -> Option<(Arc, f64)> {
         let Self { graph, roots, .. } = self;
         let [start, end] = ends;
@@ -254,8 +262,9 @@ impl<'a> ConicSpan<'a> {
     }
 }
 
-/// A point of a conic, with a signed √Δ ([`ConicGraph`]) there: it has the sign of the branch, and
-/// is half of the derivative of the conic's form with respect to y.
+/// A point of a conic on one of its two branches, and the root ±√Δ ([`ConicGraph`]) there, with the
+/// sign of the branch. The root is half of the derivative of the conic's quadratic form with
+/// respect to y.
 struct ArcEnd<T> {
     at: [T; 2],
     root: T,
@@ -265,7 +274,8 @@ struct ArcEnd<T> {
 struct Tangents {
     /// Position of the control point relative to the arc's start.
     control: DVec2,
-    /// Square of the arc's weight.
+    /// Square of the arc's weight, i.e. of the weight of its control point as a rational Bézier
+    /// curve.
     w2: f64,
     /// Maximum error of the area between the arc and its chord.
     off: f64,
@@ -273,21 +283,21 @@ struct Tangents {
 
 impl Tangents {
     /// Intersects the tangents of the conic with the coefficients `factors` at the points `ends`,
-    /// and bounds the error of the area between arc and chord.
-    ///
-    /// The computed gradient has an error of a few roundings of its terms. This is κ roundings of
-    /// the gradient's length, where κ − 1 is the size of the terms divided by the length. The
-    /// direction of each tangent has the same error in radians. In the triangle of chord and
-    /// tangents, an angle error at the chord changes the area by half the square of the adjacent
-    /// leg times the error. If the control point moves along its tangent, triangle and weight
-    /// change in opposite directions, and the total change is no greater.
-    ///
-    /// The square of the weight is the quotient of two values of the conic's quadratic part Q. The
-    /// area between arc and chord grows no faster than the weight. A value of Q has rounding errors
-    /// of its own terms, and the error of its argument, which is a vector: rounding errors of the
-    /// coordinates and of the direction. An error of √Δ needs no term: it corresponds to another
-    /// conic within the error of the given one, which moves points and tangents together.
+    /// and bounds the error of the area between the arc and its chord.
     fn new<T: Real<Radius = f64>>(factors: &[T; 6], ends: &[ArcEnd<T>; 2]) -> Self {
+        // The chord and the two tangents are the sides of a triangle. The computed gradient of the
+        // conic has an error of κ roundings of its length, where κ − 1 is the size of its terms
+        // divided by its length. The direction of each tangent has the same error in radians. It
+        // changes the triangle's area by half the square of the tangent's side times the error. If
+        // the control point moves along a tangent, the triangle's area and the weight change in
+        // opposite directions, so that the area between arc and chord changes no more than the
+        // triangle's.
+        //
+        // The square of the weight is the quotient of two values of the conic's quadratic part Q.
+        // The area between arc and chord grows no faster than the weight. A value of Q has the
+        // rounding errors of its own terms, and the error of the vector at which Q is taken. An
+        // error of the root √Δ (`ConicGraph`) is not counted: it corresponds to another conic
+        // within the error of the given one, which moves points and tangents together.
         let [a, b, c, d, ..] = factors;
         let product = |[x, y]: &[T; 2], [z, w]: &[T; 2]| x.times(z).plus(&y.times(w));
         let length = |[x, y]: &[T; 2]| libm::hypot(x.to_f64(), y.to_f64());
@@ -339,7 +349,7 @@ impl Tangents {
 }
 
 impl Track<'_> {
-    /// Returns the track of a line, or `None` if the line is vertical or steeper than
+    /// Returns a line as a function y(x). Returns `None` if the line is vertical or steeper than
     /// [`MAX_SLOPE`].
     pub fn of_line(line: &BoundaryLine) -> Option<Self> {
         let [a, b, c] = line.factors;
@@ -347,7 +357,8 @@ impl Track<'_> {
         (slope.abs() <= MAX_SLOPE && start.is_finite()).then_some(Self::Line { slope, start })
     }
 
-    /// Computes y at `x`. A branch must have a point there.
+    /// Computes y of the curve at `x`. If the curve is a branch of a conic, the branch must have a
+    /// point at `x`.
     pub fn y(&self, x: f64) -> f64 {
         match self {
             Self::Level(y) => *y,
@@ -356,15 +367,14 @@ impl Track<'_> {
         }
     }
 
-    /// Returns the straight section of the track from x = `left` to x = `right`.
+    /// Returns the chord of the curve from x = `left` to x = `right`.
     pub fn straight(&self, left: f64, right: f64) -> Section {
         Section::straight([left, 0.5 * (left + right), right].map(|x| self.y(x)))
     }
 }
 
 impl Section {
-    /// Returns a straight section with the given y at the left end, in the middle, and at the right
-    /// end.
+    /// Returns a chord with the given y at the left end, in the middle, and at the right end.
     pub fn straight(y: [f64; 3]) -> Self {
         Self {
             y,
@@ -373,10 +383,10 @@ impl Section {
         }
     }
 
-    /// Returns an upper bound of the section's y at `x` if `up` is 1, and a lower bound if `up` is
-    /// −1. On the side to which the arc bulges, the bound follows the two tangents; on the other
-    /// side, it follows the chord. The section's error is included. `x` must be `left`, `right`, or
-    /// the x of a control point.
+    /// Returns a bound of the curve's y at `x`: an upper bound if `up` is 1, and a lower bound if
+    /// `up` is −1. On the side to which the arc bulges, the bound follows the arc's two end
+    /// tangents; on the other side, it follows the chord. The approximation error is included. `x`
+    /// must be `left`, `right`, or the x of a control point.
     fn hull(&self, up: f64, x: f64, left: f64, right: f64) -> f64 {
         let chord = |a: DVec2, b: DVec2| {
             if b.x > a.x {
@@ -399,13 +409,13 @@ impl Section {
         at + up * self.error
     }
 
-    /// Returns an upper bound of this section's y minus that of `other` over the range of x from
-    /// `left` to `right`. If it is negative, this section is certainly below `other`.
+    /// Returns an upper bound of this curve's y minus that of `other` over the range of x from
+    /// `left` to `right`. If the bound is negative, this curve is certainly below `other`.
     pub fn overlap(&self, other: &Self, left: f64, right: f64) -> f64 {
         let controls = [self, other].map(|section| section.arc.map(|(_, arc)| arc.control.x));
         let places = [Some(left), controls[0], controls[1], Some(right)];
-        // The bounds of both sections are straight between these values of x, so that their
-        // difference is greatest at one of them.
+        // The bounds of both curves are linear in x between the ends and the control points, so
+        // that their difference is greatest at one of these x.
         let hulls = places
             .into_iter()
             .flatten()
@@ -415,22 +425,20 @@ impl Section {
         hulls.min(rise.unwrap_or(f64::INFINITY))
     }
 
-    /// Returns two bounds for arcs over the same range of x: how far this section rises above
-    /// `other`, and how far the two are apart in y. Returns `None` unless both are arcs that bulge
-    /// to the same side. If the arcs are nearly parallel, the bounds are tight, even if the arcs
-    /// nearly coincide.
-    ///
-    /// Derivation: compare points with the same curve parameter, with heights measured from the
-    /// direction of this section's chord. If the weights are equal, a point of each arc is the same
-    /// weighted mean of that arc's three control points. A difference in x counts times the slope
-    /// of the steepest tangent. A difference in weight moves a point by at most this difference
-    /// times the point's distance from the control point.
-    ///
-    /// The control point of a narrow arc is uncertain along the arc, where the area hardly depends
-    /// on it. The error of a point is less than eight times the area's error divided by the width,
-    /// plus the rounding error of x, which changes the area by at most itself times the arc's
-    /// height.
+    /// Returns two bounds for arcs over the same range of x: how far this arc rises above `other`,
+    /// and how far the two are apart in y. Returns `None` unless both curves are arcs that bulge to
+    /// the same side. The bounds are tight if the arcs are nearly parallel or nearly coincide.
     fn parallel_bounds(&self, other: &Self) -> Option<[f64; 2]> {
+        // Points of the two arcs with the same curve parameter are compared, with heights measured
+        // from the direction of this arc's chord. If the weights are equal, a point of each arc is
+        // the same weighted mean of that arc's three control points. A difference in x counts times
+        // the slope of the steepest tangent. A difference in weight moves a point by at most this
+        // difference times the point's distance from the control point.
+        //
+        // The control point of a narrow arc is uncertain along the arc, where the area hardly
+        // depends on it. The error of a point is less than eight times the area's error divided by
+        // the width, plus the rounding error of x, which changes the area by at most itself times
+        // the arc's height.
         let ((up, a), (other_up, b)) = (self.arc.as_ref()?, other.arc.as_ref()?);
         if up != other_up {
             return None;
@@ -446,8 +454,8 @@ impl Section {
         let size = legs.iter().map(|leg| leg.length()).fold(0.0, f64::max);
         let weights = (a.weight - b.weight).abs();
         let aside = (a.control.x - b.control.x).abs() + weights * size;
-        // The coordinates of each arc's points have rounding errors of about twenty operations.
-        // These count for both arcs, in the three points as well as in the chord from which heights
+        // The coordinates of each arc's points have rounding errors of about twenty operations. The
+        // errors of both arcs count, in the three points as well as in the chord from which heights
         // are measured.
         let rounding = 64.0 * f64::UNIT * (1.0 + size + slope.abs() * aside);
         let off = weights * tallest
@@ -460,13 +468,14 @@ impl Section {
         Some([rise + off, apart + off])
     }
 
-    /// Returns the integral of y over x. `left` and `right` must be the ends of the section.
+    /// Returns the integral of y over x from `left` to `right`, which must be the ends of the
+    /// curve.
     pub fn integral(&self, left: f64, right: f64) -> f64 {
         let chord = 0.5 * (right - left) * (self.y[0] + self.y[2]);
         chord + self.arc.map_or(0.0, |(bulge, arc)| bulge * arc.area())
     }
 
-    /// Returns an upper bound of the distance in y between two sections over the same range of x.
+    /// Returns an upper bound of the distance in y between two curves over the same range of x.
     /// Returns infinity unless both are straight or both are arcs that bulge to the same side. The
     /// bound is tight if the curves are nearly equal.
     pub fn distance(&self, other: &Self) -> f64 {

@@ -1,18 +1,18 @@
 //! Limits on the work on a pixel and on a picture, and the requested accuracy.
 //!
-//! In: the work of the next step, in units of about 50 ns. Out: whether to do the step. A region
-//! whose step is not done gets the mean of the colours that may be seen in it, with its whole area
-//! as the error bound, so that every pixel of any scene is finished. Work is counted instead of
-//! timed, so that the same scene gives the same picture.
+//! In: the work of the next computation, in units of about 50 ns. Out: whether to do it. A region
+//! that is not computed any more gets the mean of the colours that may be seen in it, with its
+//! whole area as the error bound, so that every pixel of any scene is finished. Work is counted
+//! instead of timed, so that the same scene gives the same picture.
 
 use std::{
     cell::Cell,
     sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed},
 };
 
-/// Maximum work on a pixel, in units of about 50 ns, which amounts to about 0.6 seconds. Beyond it,
-/// the rest of the pixel counts as an error. A unit is the time to cut one square of a checkerboard
-/// out of a polygon on the machine where it was measured.
+/// Maximum work on a pixel, in units of about 50 ns. It limits the time for a pixel of any scene to
+/// about 0.6 seconds; the rest of the pixel then counts as an error. A unit is the time to cut one
+/// square of a checkerboard out of a polygon on the machine where it was measured.
 const PIXEL_WORK: f64 = 1.2e7;
 
 /// Work of all threads on the pixels of a picture, and its limit.
@@ -49,8 +49,8 @@ impl PictureWork {
 #[derive(Debug)]
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
-    /// Requested error bound of the pixel's mean, as a fraction of the pixel's area. Integrators
-    /// may truncate infinite sums at fractions of it.
+    /// Requested error bound of the pixel's mean, as a fraction of the pixel's area. An infinite
+    /// sum ends where the omitted terms are at most a given fraction of this bound.
     pub tolerance: f64,
     /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,
@@ -76,14 +76,14 @@ impl<'a> PixelBudget<'a> {
         self.cancel.load(Relaxed)
     }
 
-    /// Returns whether the budget is used up or the picture is cancelled, so that nothing more
-    /// should be computed.
+    /// Returns whether the budget is used up or the picture is cancelled. Nothing more should then
+    /// be computed.
     pub fn is_spent(&self) -> bool {
         self.left.get() <= 0.0 || self.is_cancelled()
     }
 
-    /// Charges `work` if the budget affords it. Returns whether it does. The budget affords neither
-    /// infinity nor NaN, and nothing at all once the picture is cancelled.
+    /// Charges `work` if the budget affords it. Returns whether it does. Returns `false` if `work`
+    /// is infinite or NaN, or if the picture is cancelled.
     pub fn try_charge(&self, work: f64) -> bool {
         let is_affordable = self.affords(work);
         if is_affordable {

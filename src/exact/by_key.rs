@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-/// A value with a number, its key. Two of them are compared by their keys only.
+/// A value with a number, its key. Values are compared by their keys only.
 pub(super) struct ByKey<T>(pub f64, pub T);
 
 impl<T> Ord for ByKey<T> {

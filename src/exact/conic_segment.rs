@@ -15,18 +15,20 @@ use super::{
     checker::{BoundedSum, Homography, UNIT, form, square_wave},
 };
 
-/// Maximum of |1 − w²| for which an arc of weight w has its area computed by a series; above it, by
-/// a closed formula. The first of the terms that the series omits is at most 0.36³⁴ = 8e-16.
+/// Maximum of |1 − w²| at which the area of an arc of weight w is computed by a series. A larger
+/// value uses a closed formula, which loses digits near w = 1, a parabola. The first of the terms
+/// that the series omits is at most 0.36³⁴ = 8e-16.
 const NEAR_PARABOLA: f64 = 0.36;
 
-/// Maximum number of board lines at which an arc is cut; if more cross it, the arc is halved first.
-/// Measured: with 48, boards of small squares behind spheres take up to 50 % longer.
+/// Maximum number of a board's lines at which an arc is cut into pieces. If more lines cross the
+/// arc, it is halved first. Measured: with 48, boards of small squares behind spheres take up to 50
+/// % longer.
 const MAX_LINES: f64 = 12.0;
-/// Maximum area of the segments of an arc's two halves together, divided by the area of the whole
-/// arc's segment. Above it, numbers are too large or too small to represent the arc: it is not
-/// halved, and its segment is added to the error bound. The exact quotient is 1/4 for a parabola,
-/// at most 0.37 for an ellipse (half of one), and less than 1/4 for a hyperbola. The constant is
-/// twice the largest of these.
+/// Maximum total area of the segments (between arc and chord) of an arc's two halves, divided by
+/// the area of the whole arc's segment. A larger quotient shows that numbers are too large or too
+/// small to represent the arc: it is not halved, and its segment is added to the error bound. The
+/// exact quotient is 1/4 for a parabola, at most 0.37 for an ellipse (half of one), and less than
+/// 1/4 for a hyperbola. The constant is twice the largest of these.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.
@@ -105,11 +107,11 @@ fn triangle_share(w: f64) -> f64 {
     (w / s) * (w / s - libm::log(w + s) / s / s)
 }
 
-/// Evaluates the series in z = sin²θ
+/// Evaluates the series in z = sin²θ, where cos θ is the weight of an arc:
 ///
-/// (θ − sin θ·cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k,
+/// (θ − sin θ·cos θ)/sin³θ = Σ 2/(2k + 3)·C(2k, k)/4^k·z^k.
 ///
-/// which follows from the integral of 2x²/√(1 − x²).
+/// It follows from the integral of 2x²/√(1 − x²).
 fn series(z: f64) -> f64 {
     const TERMS: usize = 34;
     const COEFFICIENTS: [f64; TERMS] = {
@@ -131,16 +133,17 @@ fn series(z: f64) -> f64 {
 }
 
 impl Homography {
-    /// Integrates the board's sign s(a)·s(b) over the region between an arc and its chord, in
-    /// square pixels.
-    ///
-    /// The arc is cut where it crosses a line of the board, so that the segment of each piece lies
-    /// in one square. The chords of the pieces enclose the rest of the region, a convex polygon. A
-    /// piece whose segment is negligible is replaced by its chord. If a segment of area A is cut
-    /// into n pieces, each piece has a segment of A/n³, and all pieces together have A/n². This
-    /// total equals the tolerance t if each piece has t^(3/2)/√A.
+    /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over the region
+    /// between an arc and its chord, in square pixels.
     pub(super) fn over_segment(&self, arc: &Arc, budget: &PixelBudget) -> BoundedSum {
         let area = arc.area();
+        // The arc is cut where it crosses a line of the board, so that the segment of each piece
+        // lies in one square. The chords of the pieces enclose the rest of the region, a convex
+        // polygon.
+        //
+        // A piece whose segment is smaller than a limit is replaced by its chord. If an arc with a
+        // segment of area A is cut into n pieces, each piece has a segment of A/n³, and all pieces
+        // together have A/n². This total equals the tolerance t if the limit is t^(3/2)/√A.
         if let Some(sign) = self.square_of(arc) {
             return over_one_square(area, sign);
         }
@@ -237,9 +240,10 @@ impl Homography {
         Some(sign)
     }
 
-    /// Returns the numbers of the first and last line of a family (0: a = i, 1: b = i) that may
-    /// cross an arc. The first exceeds the last if no line crosses the arc. Returns `None` if the
-    /// arc's triangle may reach the horizon.
+    /// Returns the numbers of the first and last line of one of the board's families of lines that
+    /// may cross an arc: the lines a = i if `family` is 0, and b = i if it is 1. The first exceeds
+    /// the last if no line crosses the arc. Returns `None` if the arc's triangle may reach the
+    /// horizon.
     fn lines(&self, arc: &Arc, family: usize) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in [arc.start, arc.control, arc.end] {
@@ -267,11 +271,12 @@ fn over_one_square(area: f64, sign: f64) -> BoundedSum {
     }
 }
 
-/// The ends of an arc's pieces, and the sum of the integrals over the pieces' segments.
+/// The ends of the pieces into which an arc is cut, and the sum of the integrals over the segments
+/// between the pieces and their chords.
 struct Chords {
     points: Vec<DVec2>,
     sum: BoundedSum,
-    /// Maximum area of a piece's segment that is neglected, in square pixels.
+    /// Maximum area between a piece of the arc and its chord that is neglected, in square pixels.
     neglected: f64,
 }
 

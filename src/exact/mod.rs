@@ -66,40 +66,40 @@ use self::{
 };
 
 /// Default of the requested error bound: the fraction of a pixel's area that may have a wrong
-/// colour. It is a little below 1e-9, so that the result is within 1e-9 even after the rounding of
-/// sums.
+/// colour. It is a little below 1e-9, to leave room for the rounding of sums.
 const DEFAULT_TOLERANCE: f64 = 9e-10;
-/// Maximum number of curves that pass through a whole pixel; with more, the pixel is quartered
-/// before anything is computed. n curves cross at about n² points, where all curves have to be
-/// examined; a quarter has only about half of the curves. Measured: with 6 instead of 12, a dozen
-/// objects take 10 % longer. A heap of 300 objects takes twice as long with 24 as with 6, and seven
-/// times as long with 96 as with 24.
+/// Maximum number of curves that pass through a whole pixel. With more curves, the pixel is
+/// quartered before anything is computed. n curves cross at about n² points, where all curves have
+/// to be examined; a quarter has only about half of the curves. Measured: with 6 instead of 12, a
+/// dozen objects take 10 % longer. A heap of 300 objects takes twice as long with 24 as with 6, and
+/// seven times as long with 96 as with 24.
 const MAX_CURVES: usize = 12;
-/// Number by which the maximum number of curves grows with each quartering. Curves that pass
-/// through the same small piece are unlikely to be separated in smaller ones. Measured on a heap of
-/// objects: with 1 instead of 4, the time is two thirds; with 16, it is four times as long.
+/// Number by which the maximum number of curves in a square part of a pixel grows with each
+/// quartering. Curves that pass through the same small part are unlikely to be separated in smaller
+/// ones. Measured on a heap of objects: with 1 instead of 4, the time is two thirds; with 16, it is
+/// four times as long.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
-/// Maximum number of times per pixel that an already computed piece is quartered to reduce its
-/// bound. The piece with the largest bound comes first, while the pixel's bound exceeds the
-/// tolerance. Near a point that a few curves share, each quartering reduces the bound to a quarter;
-/// 16 of them reduce it by a factor of 2^32.
+/// Maximum number of times per pixel that an already computed part of the pixel is quartered to
+/// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest
+/// bound comes first. Near a point that a few curves share, each quartering reduces the bound to a
+/// quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
-/// Maximum memory of a pixel's queued pieces, in bytes; above it, the pixel is not divided any
-/// further, and uncomputed pieces count as errors. The limit excludes memory that a piece needs
-/// only while it is computed, and does not apply to a pixel that is a single piece.
+/// Maximum memory of a pixel's queued parts, in bytes. Above it, the pixel is not divided any
+/// further, and uncomputed parts count as errors, which a smaller maximum would make more frequent.
+/// Memory that a part needs only while it is computed is not counted.
 const MAX_MEMORY: usize = 64 << 20;
-/// Minimum side, in pixels, of a piece that is quartered because too many curves pass through it. A
-/// smaller piece counts as an error instead; its area is less than a unit roundoff of the pixel's
-/// area.
+/// Minimum side of a square part of a pixel that is quartered because too many curves pass through
+/// it, in pixels. A smaller part counts as an error instead; its area is less than a unit roundoff
+/// of the pixel's area.
 const MIN_SIDE: f64 = 1.0 / (1 << 28) as f64;
-/// Work that a piece ([`PixelPiece`]) takes from its pixel's work limit, in units of about 50 ns.
-/// Work constants need not be precise, because they only stop computations that take too long.
+/// Work charged to a pixel's budget per square part of the pixel ([`PixelPiece`]), in units of
+/// about 50 ns. A rough value is enough, because the budget only stops what takes too long.
 const PIECE_WORK: f64 = 100.0;
-/// Work charged per candidate object of a piece, in units of about 50 ns.
+/// Work charged per object that may be seen in a part of a pixel, in units of about 50 ns. A rough
+/// value is enough, because the budget only stops what takes too long.
 const OBJECT_WORK: f64 = 4.0;
-/// Work charged per ordered pair of curves in a piece with a conic, in units of about 50 ns.
-/// Without it, the regions' work accounts for only half of the time measured for a heap of 10⁴
-/// spheres.
+/// Work charged per ordered pair of curves in a part of a pixel with a conic, in units of about
+/// 50 ns. Without it, half of the time measured for a heap of 10⁴ spheres is not accounted for.
 const SLABS_WORK: f64 = 60.0;
 /// Work charged per pixel that shows only a few squares of a checkerboard, in units of about 50 ns.
 const BOARD_PIXEL_WORK: u64 = 10;
@@ -108,7 +108,7 @@ const BOARD_PIXEL_WORK: u64 = 10;
 /// light, and the pixel has the mean of each value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactPixel<const N: usize = 3> {
-    /// Mean of each value.
+    /// Mean of each value over the pixel's area.
     pub mean: [f64; N],
     /// Maximum absolute error of each mean.
     pub bound: f64,
@@ -119,47 +119,46 @@ pub struct ExactPixel<const N: usize = 3> {
 pub struct Integrator<'a, const N: usize = 3> {
     pub(crate) world: &'a World,
     quartering: Quartering<'a>,
-    /// Values of each colour of the world's palette, by its index there (slot).
+    /// Values of each colour of the world's palette, by the colour's index there (its slot).
     colors: Vec<[f64; N]>,
     /// Requested error bound: the fraction of a pixel's area that may have a wrong colour.
     tolerance: f64,
     work: PictureWork,
 }
 
-/// A square part of a pixel, whose colour shares are computed separately.
+/// A square part of a pixel (a piece), for which the colours' shares are computed separately.
 struct PixelPiece {
     sub_pixel: SubPixel,
-    /// Objects that may be seen in the piece.
+    /// Objects that may be seen in this part of the pixel.
     candidates: Vec<VisibilityCandidate>,
     shares: Shares,
     state: PieceState,
 }
 
-/// State of the computation of a piece.
+/// State of the computation of a part of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PieceState {
-    /// Nothing is computed yet, because too many curves pass through the piece or the budget is
-    /// spent.
+    /// Nothing is computed yet, because too many curves pass through this part of the pixel or the
+    /// budget is spent.
     Crowded,
     Computed,
-    /// The piece is computed and will not be quartered, because quartering the piece that contains
-    /// it reduced the bound by less than half.
+    /// Computed and final: quartering its parent reduced the bound by less than half.
     Final,
 }
 
 impl PixelPiece {
-    /// Returns the area of the piece as a fraction of the pixel.
+    /// Returns the area of this part as a fraction of the pixel.
     fn area(&self) -> f64 {
         self.sub_pixel.side * self.sub_pixel.side
     }
 
-    /// Returns the maximum error of the pixel's mean that this piece may cause.
+    /// Returns the maximum error of the pixel's mean that this part of the pixel may cause.
     fn bound(&self) -> f64 {
         self.area() * self.shares.bound
     }
 
-    /// Returns the memory in bytes of the piece's vectors. The piece itself is counted with the
-    /// queue.
+    /// Returns the memory of this part's vectors, in bytes. The memory of the part itself is
+    /// counted with the queue.
     fn memory(&self) -> usize {
         let candidates = self.candidates.capacity() * size_of::<VisibilityCandidate>();
         let shares = self.shares.by_slot.capacity() * size_of::<(usize, f64)>();
@@ -220,7 +219,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         let mut curves = Vec::new();
         let mut scratch = Scratch::default();
         let mut batches = BoardBatches::new();
-        // Checkerboard pixels that are computed alone, because the batches are not accurate enough.
+        // Checkerboard pixels that are computed alone, because too many lines cross them or the
+        // result of their batch was not accurate enough.
         let mut deferred = Vec::new();
         let is_over = || cancel.load(Relaxed) || self.work.is_exceeded();
         let flow = self.quartering.parts(part, &mut scratch, &mut |part| {
@@ -262,9 +262,9 @@ impl<'a, const N: usize> Integrator<'a, N> {
     }
 
     /// Calls `show` with each area in which only one object is seen, and with each other pixel,
-    /// together with the objects' shares, by palette slot. The world must be made by
-    /// [`World::by_object`], so that slots stand for objects. Above the work limit, a pixel's
-    /// middle counts for the whole pixel. Returns whether all shares are known to within 1e-6.
+    /// together with the objects' shares of the area. The world must be made by
+    /// [`World::by_object`], so that palette indices stand for objects. Above the work limit, a
+    /// pixel's middle counts for the whole pixel. Returns whether all shares are within 1e-6.
     pub fn shares(&self, part: Area, mut show: impl FnMut(Area, &[(usize, f64)])) -> bool {
         let mut is_exact = true;
         let mut curves = Vec::new();
@@ -293,7 +293,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         is_exact
     }
 
-    /// Computes the mean of the pixel (`x`, `y`), in which only the candidates may be seen.
+    /// Computes the mean of the pixel (`x`, `y`). `candidates` are the objects that may be seen in
+    /// it.
     fn pixel(
         &self,
         x: u32,
@@ -333,8 +334,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue of pieces grows by copying to twice the memory; the old memory
-                // exists until then.
+                // A full queue is copied to twice the memory; during the copy, both exist.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -420,7 +420,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film: &mut PartPixels<N>,
         deferred: &mut Vec<BoardPixel>,
     ) {
-        // The share is rounded once, before the roundings of a mean of two colours.
+        // The share has one rounding, and the mean of the two colours adds `rounding(2)`.
         let roundings = UNIT + rounding(2);
         let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {
@@ -431,8 +431,8 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film.set(pixel.x, pixel.y, self.mean(&shares, bound));
     }
 
-    /// Computes the shares of a piece. If too many curves pass through the piece or the budget is
-    /// spent, the piece is [`Crowded`](PieceState::Crowded), with a bound of 1.
+    /// Computes the colours' shares in a part of a pixel. If too many curves pass through the part
+    /// or the budget is spent, the result is [`Crowded`](PieceState::Crowded), with a bound of 1.
     fn piece(
         &self,
         sub_pixel: SubPixel,

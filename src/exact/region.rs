@@ -21,27 +21,29 @@ use super::{
     conic_segment::Arc,
 };
 
-/// Work charged to the pixel's budget per region, in units of about 50 ns.
+/// Work charged to the pixel's budget per region, in units of about 50 ns. A rough value is enough,
+/// because the budget only stops computations that take too long.
 const REGION_WORK: f64 = 4.0;
 /// Work charged to the pixel's budget per candidate object that a region's ray may hit, in units of
-/// about 50 ns.
+/// about 50 ns. A rough value is enough, because the budget only stops computations that take too
+/// long.
 const RAY_WORK: f64 = 0.5;
-/// Work charged to the pixel's budget per candidate object that a region's ray may hit, if
-/// double-double arithmetic does not decide what the ray hits and the highest precision
-/// ([`Big`]) does, in units of about 50 ns.
+/// Work charged to the pixel's budget per candidate object that a region's ray may hit, in units of
+/// about 50 ns, if double-double arithmetic does not decide what the ray hits. The highest
+/// precision ([`Big`]) then decides, and each object takes hundreds of times as long.
 const BIG_RAY_WORK: f64 = 200.0;
 
 /// Shares of the colours in a pixel or sub-pixel.
 #[derive(Clone, Debug, Default)]
 pub struct Shares {
-    /// Slots (indices) of the world's palette, each with the share of the sub-pixel's area that
-    /// shows its colour. The shares add up to 1 except for rounding.
+    /// Indices into the world's palette, each with the share of the sub-pixel's area that shows its
+    /// colour. The shares add up to 1 except for rounding.
     pub by_slot: Vec<(usize, f64)>,
     /// Maximum share of the sub-pixel that may have the wrong colour.
     pub bound: f64,
 }
 
-/// Adds up the shares of the colours over the regions of a sub-pixel.
+/// Sum of the shares of the colours over the regions of a sub-pixel.
 pub struct Regions<'a> {
     world: &'a World,
     sub_pixel: SubPixel,
@@ -56,7 +58,8 @@ pub struct Regions<'a> {
 /// A checkerboard in the coordinates of a sub-pixel.
 pub struct LocalBoard {
     pub board: Homography,
-    /// Whether the square 0 ≤ a < 1, 0 ≤ b < 1 in the coordinates of `board` has the second colour.
+    /// Whether the second colour is on the square 0 ≤ a < 1, 0 ≤ b < 1, where a and b are the
+    /// coordinates in `board`.
     pub odd: bool,
     /// Maximum error of a value of the board's linear forms, divided by the size of the form's
     /// terms.
@@ -77,7 +80,8 @@ pub struct Region<'a> {
 }
 
 impl<'a> Regions<'a> {
-    /// Starts the sum for a sub-pixel in which only `candidates` may be seen.
+    /// Starts the sum of the colours' shares for a sub-pixel. `candidates` are the objects that may
+    /// be seen in it.
     pub fn new(
         world: &'a World,
         sub_pixel: SubPixel,
@@ -105,7 +109,7 @@ impl<'a> Regions<'a> {
             return self.shares.add(first, region.area);
         }
         let Some(at) = self.board(object) else {
-            // This cannot happen, because only checkerboards have two colours.
+            // This is unreachable: only checkerboards have two colours.
             self.add_doubtful_area(region.area);
             return self.shares.add(first, region.area);
         };
@@ -117,9 +121,9 @@ impl<'a> Regions<'a> {
             sum.bound += segment.bound;
         }
         let half = if local_board.odd { -0.5 } else { 0.5 } * sum.value;
-        // `sum.bound` assumes that each factor of the board's forms has one rounding error. Here,
-        // the factors may have greater errors. The error of a share never exceeds the region's
-        // area.
+        // `sum.bound` assumes that each factor of the board's forms has one rounding error. The
+        // bound is increased, because the factors may have greater errors. The error of a share
+        // never exceeds the region's area.
         let bound = 0.5 * sum.bound * (1.0 + local_board.relative_error / f64::UNIT);
         let bound = bound.min(0.5 * region.area + half.abs());
         self.shares.add(first, 0.5 * region.area + half);
@@ -127,9 +131,9 @@ impl<'a> Regions<'a> {
         self.shares.bound += bound;
     }
 
-    /// Returns the object that is seen in a region, or `None` for the background. If double-double
-    /// arithmetic does not decide this with certainty, the region's point may lie next to a
-    /// boundary, and the region's area is added to the error bound.
+    /// Returns the object that is seen in a region, or `None` for the background. One ray through a
+    /// point of the region decides. If double-double arithmetic does not decide with certainty, the
+    /// point may lie next to a boundary, and the region's area is added to the error bound.
     fn seen(&mut self, region: &Region) -> Option<usize> {
         let (object, is_certain) = self.object_at(region.inside);
         if !is_certain {
@@ -158,8 +162,8 @@ impl<'a> Regions<'a> {
         found
     }
 
-    /// Adds to the error bound an area that may be counted in a wrong region or in none, as a
-    /// fraction of the sub-pixel's.
+    /// Adds to the error bound an area that may be counted in a wrong region or in none. `area` is
+    /// a fraction of the sub-pixel's area.
     pub fn add_doubtful_area(&mut self, area: f64) {
         self.shares.bound += area;
     }
@@ -257,8 +261,8 @@ impl Shares {
         match self.by_slot.iter_mut().find(|(known, _)| *known == slot) {
             Some((_, share)) => {
                 *share += area;
-                // The sum of two shares of a colour is at most 1, so that it is rounded by at most
-                // this.
+                // The sum of two shares of a colour is at most 1, so that its rounding error is at
+                // most a unit roundoff.
                 self.bound += f64::UNIT;
             }
             None => self.by_slot.push((slot, area)),

@@ -21,28 +21,30 @@ use super::{
     region::{Region, Regions, Shares},
 };
 
-/// Maximum distance in y, in pixels, by which curves may seem to be out of order because of
-/// rounding: two values of at most 1, each accurate to eight unit roundoffs. Such curves count as
-/// ordered.
+/// Maximum distance in y, in pixels, by which curves may be out of order and still count as
+/// ordered. It is the possible rounding error of the distance: two values of at most 1, each
+/// accurate to eight unit roundoffs.
 const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
-/// Distance in y, in pixels, between neighbouring curves, up to which a slab is not cut although
-/// the curves may cross in it; the area between them is added to the error bound instead. It is a
-/// thousand unit roundoffs, and amounts to 10⁻¹³ square pixels.
+/// Maximum distance in y, in pixels, between neighbouring curves at which a slab (a vertical strip)
+/// is not cut although the curves may cross in it. The area between the curves is added to the
+/// error bound instead. The value is a thousand unit roundoffs, so that the area is at most 10⁻¹³
+/// square pixels.
 const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 
-/// Minimum width of a slab that is cut, in pixels. In a narrower slab, the area between unseparated
-/// curves is added to the error bound. Not critical: with 2^−50 or 2^−46, the measured bounds
-/// change by at most 2 % and the running time by at most about 10 %.
+/// Minimum width of a slab (a vertical strip) that is cut, in pixels. In a narrower slab, the area
+/// between curves that may cross is added to the error bound. Not critical: with 2^−50 or 2^−46,
+/// the measured bounds change by at most 2 % and the running time by at most about 10 %.
 const MIN_WIDTH: f64 = 1.0 / (1u64 << 48) as f64;
-/// Maximum number of slabs of a sub-pixel, done or queued, in addition to the initial ones. Above
-/// it, slabs are not cut, and their doubtful area is added to the error bound. Not critical: with
-/// 1024 or 16,384, the measured bounds change by at most 2 % and the running time by at most 10 %.
+/// Maximum number of slabs (vertical strips) of a sub-pixel, done or queued, in addition to the
+/// initial ones. With so many slabs, none is cut any more, and the area between curves that may
+/// cross is added to the error bound. Not critical: with 1024 or 16,384, the measured bounds change
+/// by at most 2 % and the running time by at most 10 %.
 const MAX_ADDED_SLABS: usize = 4096;
 
-/// Maximum number of steps of the false position method that searches where two curves cross; after
-/// them, the last estimate is used. For comparison, bisection from a pixel's side to the unit
-/// roundoff takes 53 steps.
+/// Maximum number of steps of the false position method that searches where two curves cross. After
+/// the last step, its estimate is used. The value is a little more than the 53 steps that bisection
+/// takes from a pixel's side to the unit roundoff.
 const MAX_STEPS: usize = 60;
 
 /// Maximum rounding error of the area of a region in a slab, divided by the slab's width. It covers
@@ -57,8 +59,9 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     for curve in curves {
         match curve {
             Boundary::Line(line) => {
-                // The line is at most √2 long and is displaced by at most 2·`line.rad` (see
-                // `arrangement`), and 2·√2 < 3. `ROUNDING` covers the rounding errors of areas.
+                // The line is at most √2 long. It is displaced by at most 2·`line.rad`, because the
+                // larger of its factors of x and y is at least 1/2, and 2·√2 < 3. `ROUNDING` covers
+                // the rounding errors of areas.
                 regions.add_doubtful_area(3.0 * line.rad);
                 match Track::of_line(line) {
                     Some(track) => lines.push(track),
@@ -85,8 +88,9 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     cuts.retain(|x| x.abs() <= 0.5);
     cuts.sort_unstable_by(f64::total_cmp);
     cuts.dedup();
-    // With one pair of unseparated neighbours in every slab, the doubtful area of all slabs adds up
-    // to at most the pixel's tolerance.
+    // Area up to which two neighbouring curves of a slab may overlap without a cut. If there is one
+    // such pair in each of the `MAX_ADDED_SLABS` slabs, their areas add up to the pixel's
+    // tolerance.
     let doubtful_limit = regions.budget.tolerance / MAX_ADDED_SLABS as f64;
     let mut all = Slabs {
         lines,
@@ -95,8 +99,8 @@ pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
         slabs: 0,
         doubtful_limit,
     };
-    // The widest slab is cut first. If the number of slabs reaches its limit, only narrow ones are
-    // left uncut.
+    // The widest slab is cut first, so that only narrow slabs are left uncut if the number of slabs
+    // reaches its limit.
     let max_slabs = MAX_ADDED_SLABS + cuts.len();
     let slab = |left: f64, right: f64| ByKey(right - left, [left, right]);
     let mut slabs: BinaryHeap<_> = cuts.windows(2).map(|pair| slab(pair[0], pair[1])).collect();
@@ -213,9 +217,9 @@ fn add(regions: &mut Regions, lower: &Section, upper: &Section, left: f64, right
     });
 }
 
-/// Returns the x at which to cut a slab in which two tracks may cross. This is their crossing if
-/// their order at one end of the slab differs from the order in the middle; otherwise, it is the
-/// middle.
+/// Returns the x at which to cut a slab (a vertical strip) in which two curves may cross. This is
+/// the x of their crossing if their order at one end of the slab differs from the order in the
+/// middle; otherwise, it is the middle.
 fn crossing(lower: &Track, upper: &Track, a: &Section, b: &Section, left: f64, right: f64) -> f64 {
     let middle = 0.5 * (left + right);
     let gap = |x: f64| upper.y(x) - lower.y(x);

@@ -1,4 +1,5 @@
-//! Draws the figure `camera`: the eye, the window and one ray, seen from outside.
+//! Draws the figure `camera`: from outside, it shows the camera's eye, one ray, and the window,
+//! i.e. the rectangle in space that the picture shows.
 
 use glam::{DVec2, DVec3};
 
@@ -17,24 +18,26 @@ use crate::{
     tracer::Hit,
 };
 
-/// Height of the figure, in SVG units.
+/// Height of the figure, in SVG units, before empty space is cropped. Its width is 680. The scene
+/// is scaled to fit; in a lower figure, it would be smaller.
 const HEIGHT: f64 = 460.0;
 
-/// Maximum length of a ray that is drawn as far as the visible point, as a multiple of the distance
-/// from the eye to a corner of the window. Of a longer ray, only the first part is drawn, since the
-/// window would otherwise be too small.
+/// Maximum length of a ray that is drawn to its end, as a multiple of the distance from the eye to
+/// a corner of the window. Only the start of a longer ray is drawn. With a larger value, the window
+/// could become too small to be recognised.
 const FARTHEST: f64 = 15.0;
 
-/// Maximum number of objects that are drawn, boards not counted. Further ones, in the order of the
-/// scene, are left out.
+/// Maximum number of objects that are drawn, not counting checkerboards. The first ones in the
+/// scene are drawn. With many more, the figure would be confusing.
 const MOST_OBJECTS: usize = 60;
 
-/// Approximate maximum number of lines that are drawn on a board in each direction. If a board has
-/// more squares within the drawing, a line is drawn only at every second, third, … square.
+/// Approximate maximum number of lines on a checkerboard in each direction. If there are more
+/// squares, only every second line, or every third, and so on, is drawn. More lines would hide the
+/// rest of the figure.
 const MOST_LINES: f64 = 14.0;
 
-/// Draws the figure, with the ray through the middle of `pixel`, or of a pixel of the largest
-/// object.
+/// Draws the figure. The ray goes through the middle of `pixel` or, if that is `None`, of a pixel
+/// that shows the largest object.
 pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let [x, y] = pixel.unwrap_or_else(|| pixel_of_largest(scene));
     let middle = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
@@ -69,8 +72,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     let arrow = 0.13 * (max - min).length();
     points.extend([-view.ahead, view.right, view.top].map(|axis| view.eye + axis * arrow));
 
-    // The observer is to the right of the camera, behind it and above it. In this view, the ray
-    // runs to the right.
+    // The direction from the scene to the observer of the figure is to the right of the camera,
+    // behind it and above it. The ray then runs to the right in the figure.
     let level = (view.ahead + view.top * 0.2).with_y(0.0);
     let level = level.normalize_or(DVec3::NEG_Z);
     let side = level.cross(DVec3::Y) * 0.72 - level * 0.55 + DVec3::Y * 0.42;
@@ -89,7 +92,7 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     for corner in corners {
         outside.line(&mut canvas, "faint", &[view.eye, corner]);
     }
-    // Draw the picture in the window.
+    // In the window, draws the outlines of the objects as the camera sees them.
     let picture = overlays(scene, &ShownObjects::First(None));
     let in_frame = |at: DVec2| view.at_depth(at.clamp(DVec2::ZERO, view.size), facts.d);
     draw_objects(
@@ -155,8 +158,8 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> String {
     )
 }
 
-/// Returns the pixel in the middle of the object with the largest visible area, boards excluded.
-/// Returns the middle of the picture if there is no such object.
+/// Returns the pixel in the middle of the object that takes the largest area in the picture.
+/// Checkerboards do not count. If there is no object, returns the middle of the picture.
 fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     let (seen, _) = seen(scene);
     let mut largest = (0.0, Area::whole(scene.image.width, scene.image.height));
@@ -173,9 +176,10 @@ fn pixel_of_largest(scene: &Scene) -> [u32; 2] {
     [around.x + around.width / 2, around.y + around.height / 2]
 }
 
-/// Returns the objects to draw, at most [`MOST_OBJECTS`] and without boards: index, centre and
-/// radius of the bounding sphere. An object is drawn if it is within about `reach` of the eye and
-/// is in front of it or has the index `hit`.
+/// Returns the objects to draw, at most [`MOST_OBJECTS`], without checkerboards: for each, its
+/// index, and the centre and the radius of its bounding sphere. Only objects that are smaller than
+/// `reach` and near the eye compared with `reach` are drawn. Except for the object with the index
+/// `hit`, they must also be in front of the eye.
 fn objects_within(
     scene: &Scene,
     view: &Projection,
@@ -198,9 +202,9 @@ fn objects_within(
     around.filter(is_within).take(MOST_OBJECTS).collect()
 }
 
-/// Returns lines between the squares of the boards, up to the extent of the drawn `points` in x and
-/// z. If the squares are many, returns only every second line, every third one, and so on
-/// ([`MOST_LINES`]). Adds the corners of the drawn part of each board to `points`.
+/// Returns the lines between the squares of the checkerboards. If there are many, only some are
+/// returned ([`MOST_LINES`]). The lines cover the area in which the points of the figure, `points`,
+/// lie. The corners of each board's drawn area are added to `points`.
 fn boards(scene: &Scene, points: &mut Vec<DVec3>, reach: f64) -> Vec<[DVec3; 2]> {
     let mut lines = Vec::new();
     let (min, max) = bounds3(points);

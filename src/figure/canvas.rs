@@ -1,12 +1,13 @@
 //! Writes a drawing as SVG.
 //!
-//! In: marks in the order in which they are drawn, and labels with the points that they name. Out:
-//! the file. Labels are placed last, so that they cover neither marks nor each other. Every length
-//! is written with one decimal, so that the bytes are the same on every machine.
+//! In: marks (lines, arrows and dots) in the order in which they are drawn, and labels with the
+//! points that they name. Out: the text of the file. Labels are placed last, where they hide
+//! neither marks nor each other. Lengths are rounded to one decimal, so that the file is the same
+//! on every machine.
 //!
-//! The style sheet has no CSS variables, which printing programs such as librsvg do not support.
-//! The colours are those of Okabe and Ito. On white they are darkened until letters have a contrast
-//! of 4.5 to 1.
+//! The style sheet has no CSS variables, since programs for printing, such as librsvg, do not
+//! support them. The colours are those of Okabe and Ito, which colour-blind people can distinguish.
+//! On white, they are darkened until letters have a contrast of 4.5 to 1.
 
 use std::fmt::Write;
 
@@ -14,18 +15,20 @@ use glam::DVec2;
 
 use crate::{color::Color, editor::viewport::clip, numbers};
 
-/// Width of every figure, in SVG units. A unit is half a point if a page shows the figure 12 cm
-/// wide.
+/// Width of every figure, in SVG units. If a page shows a figure 12 cm wide, as intended, a unit is
+/// half a typographic point.
 pub const WIDTH: f64 = 680.0;
 
-/// Font size, in SVG units. On a page that shows the figure 12 cm wide, letters have 9 points.
+/// Font size, in SVG units. If a page shows a figure 12 cm wide, as intended, letters have 9
+/// typographic points.
 const LETTERS: f64 = 18.0;
 
-/// Width of a letter and height of a line, in SVG units, from which the sizes of labels are
-/// estimated. The width is the mean in wide typefaces such as DejaVu Sans.
+/// Assumed width of a letter and height of a line of text, in SVG units. The sizes of labels are
+/// estimated from them. The width is the mean of the letters in a wide typeface such as DejaVu
+/// Sans, so the estimate is large enough for narrower typefaces.
 const LETTER: DVec2 = DVec2::new(10.2, 21.0);
 
-/// Style sheet of every figure, for its CSS classes.
+/// Style sheet of every figure: the appearance of its CSS classes, on light and on dark pages.
 const STYLE: &str = "\
 text{font:18px Helvetica,Arial,'DejaVu Sans',sans-serif;fill:currentColor;stroke:#fff;stroke-width:5px;stroke-linejoin:round;paint-order:stroke}\
 tspan{font-style:italic}.strong{font-weight:bold}\
@@ -37,33 +40,35 @@ circle{fill:currentColor}.seen{stroke:currentColor;stroke-width:1.5}\
 @media(prefers-color-scheme:dark){.paper{fill:#15181d}.fill{fill-opacity:.65}text{stroke:#15181d}.ink{color:#eceff4}.faint{color:#a3adb8}\
 .blue{color:#6cc0f5}.red{color:#f5a05a}.green{color:#3fcfa5}}";
 
-/// Empty rows that a cropped figure keeps above and below what is drawn, in SVG units.
+/// Height of the empty space that a cropped figure keeps above and below its marks, in SVG units.
+/// It is enough that the marks do not touch the text around the figure.
 const MARGIN: f64 = 12.0;
 
-/// Cost of a label that covers one segment of a mark. For comparison, moving a label one step
-/// farther away from its point costs 6. A label is placed where its total cost is least.
+/// Cost of a label that covers a line segment of a mark. A label is placed where the sum of its
+/// costs is least. Moving it one step away from its point costs only 6, so a label moves up to six
+/// steps to leave a segment free. With a smaller cost, labels would cover more marks.
 const MARK: f64 = 40.0;
 
-/// Cost of a label that covers one of a filled polygon's diagonals, about four of which stand for
-/// the polygon's area. The cost is a little more than that of one step farther away, so that a
-/// label leaves the polygon if there is room near it.
+/// Cost of a label that covers a diagonal of a filled polygon. About four diagonals stand for the
+/// polygon's area. Moving a label one step away from its point costs 6, which is less, so a label
+/// leaves the polygon if there is free space near it.
 const FILL: f64 = 7.0;
 
-/// A drawing that is being built.
+/// A drawing, to which marks and labels are added.
 pub struct Canvas {
     size: DVec2,
-    /// Top and bottom of what is drawn, except for paths in SVG notation.
+    /// Top and bottom of what has been drawn, in SVG units. Paths in SVG notation do not count.
     rows: [f64; 2],
     marks: String,
-    /// Segments that labels should not cover, each with the cost of covering it.
+    /// Line segments that labels should not cover, each with the cost of covering it.
     obstacles: Vec<([DVec2; 2], f64)>,
-    /// Labels beside points. For each: CSS class, point, preferred direction from the point to the
-    /// label, and text.
+    /// Labels of points. Each has a CSS class, the point, the preferred direction from the point to
+    /// the label, and the text.
     labels: Vec<(&'static str, DVec2, DVec2, String)>,
 }
 
 impl Canvas {
-    /// Returns an empty drawing of the given height, in SVG units.
+    /// Makes an empty drawing of the given height, in SVG units.
     pub fn new(height: f64) -> Self {
         Self {
             size: DVec2::new(WIDTH, height),
@@ -74,7 +79,7 @@ impl Canvas {
         }
     }
 
-    /// Draws a polygonal line through `points`, in the CSS class `class`. Labels avoid it.
+    /// Draws a line through `points`. Labels will avoid it. `class` contains its CSS classes.
     pub fn line(&mut self, class: &str, points: &[DVec2]) {
         let cost = if class.contains("faint") { 1.5 } else { MARK };
         let segments = points.windows(2).map(|ends| ([ends[0], ends[1]], cost));
@@ -82,7 +87,7 @@ impl Canvas {
         self.path(class, points, "");
     }
 
-    /// Fills a polygon with a colour of the scene.
+    /// Fills a polygon with a colour of the scene. Labels will avoid it if possible.
     pub fn fill(&mut self, class: &str, color: Color, points: &[DVec2]) {
         let half = points.len() / 2;
         let diagonals = (0..half).step_by((half / 4).max(1));
@@ -100,15 +105,15 @@ impl Canvas {
         self.raw_path(class, &path, more);
     }
 
-    /// Draws a path, given in SVG notation. `more` contains further attributes of the SVG element.
-    /// Labels may cover the path.
+    /// Draws a path, given in SVG notation, with further attributes `more`. Labels may cover the
+    /// path.
     pub fn raw_path(&mut self, class: &str, path: &str, more: &str) {
         if !path.is_empty() {
             let _ = writeln!(self.marks, "<path class=\"{class}\"{more} d=\"{path}\"/>");
         }
     }
 
-    /// Draws an arrow.
+    /// Draws an arrow whose tip is `to`. Labels will avoid it.
     pub fn arrow(&mut self, class: &str, from: DVec2, to: DVec2) {
         let along = (to - from).normalize_or_zero() * 11.0;
         let side = along.perp() * 0.4;
@@ -117,12 +122,13 @@ impl Canvas {
         self.line(&head, &[to - along + side, to, to - along - side]);
     }
 
-    /// Draws a dot.
+    /// Draws a dot. Labels will avoid it.
     pub fn dot(&mut self, class: &str, at: DVec2, radius: f64) {
         self.circle(class, at, radius, "");
     }
 
-    /// Draws a dot that is filled with a colour of the scene, and a ring around it.
+    /// Draws a dot that is filled with a colour of the scene, and a ring around it. Labels will
+    /// avoid it.
     pub fn seen(&mut self, color: Color, at: DVec2, radius: f64) {
         self.circle("seen ink", at, radius, &format!(" style=\"fill:{color}\""));
     }
@@ -140,15 +146,15 @@ impl Canvas {
         );
     }
 
-    /// Adds a label to the point `at`, if possible on the side that points away from `from`. Text
-    /// between asterisks is italic.
+    /// Adds a label for the point `at`. It is preferably placed on the side that faces away from
+    /// `from`. In the text, words between asterisks are italic.
     pub fn label(&mut self, class: &'static str, [at, from]: [DVec2; 2], text: impl Into<String>) {
         let away = (at - from).normalize_or_zero();
         self.labels.push((class, at, away, text.into()));
     }
 
-    /// Writes a text at a fixed position. `anchor` says whether `at` is the `start`, the `middle`
-    /// or the `end` of its base line.
+    /// Writes a text at a fixed position. `anchor` is `start`, `middle` or `end`, and says which
+    /// point of the text's base line is at `at`. Words between asterisks are italic.
     pub fn text(&mut self, class: &str, anchor: &str, at: DVec2, text: &str) {
         let mut spans = String::new();
         for (part, text) in text.split('*').enumerate() {
@@ -166,20 +172,21 @@ impl Canvas {
         );
     }
 
-    /// Extends the rows that are drawn to those from `top` to `bottom`.
+    /// Records that something is drawn from the height `top` to the height `bottom`.
     fn cover(&mut self, top: f64, bottom: f64) {
         self.rows = [self.rows[0].min(top), self.rows[1].max(bottom)];
     }
 
-    /// Returns the file as [`finish`](Self::finish) does, without the empty rows at the top and at
-    /// the bottom.
+    /// Places the labels and returns the SVG file. Empty space at the top and at the bottom is
+    /// cropped. The title and the description are for screen readers.
     pub fn finish_cropped(mut self, title: &str, description: &str) -> String {
         self.place_labels();
         let [top, bottom] = self.rows;
         self.file([top - MARGIN, bottom + MARGIN], title, description)
     }
 
-    /// Returns the file, with a title and a description for screen readers.
+    /// Places the labels and returns the SVG file. The title and the description are for screen
+    /// readers.
     pub fn finish(mut self, title: &str, description: &str) -> String {
         self.place_labels();
         let height = self.size.y;
@@ -197,7 +204,7 @@ impl Canvas {
         )
     }
 
-    /// Writes each label at the side and the distance from its point with the least cost.
+    /// Writes each label at the place near its point where the cost is least.
     fn place_labels(&mut self) {
         let mut taken: Vec<[DVec2; 2]> = Vec::new();
         for (class, at, away, text) in std::mem::take(&mut self.labels) {
@@ -228,9 +235,9 @@ impl Canvas {
         }
     }
 
-    /// Returns the cost of placing a label in `rectangle`: very high if the rectangle is partly
-    /// outside of the drawing, lower for each label in `taken` that it would cover, and much lower
-    /// for each segment in `obstacles`.
+    /// Returns the cost of placing a label in `rectangle`. It is highest if the label would extend
+    /// beyond the drawing, lower if it would cover labels (`taken`), and lowest if it would cover
+    /// segments of marks (`obstacles`).
     fn cost(&self, rectangle: [DVec2; 2], taken: &[[DVec2; 2]]) -> f64 {
         let [min, max] = rectangle;
         let is_outside = min.cmplt(DVec2::splat(4.0)).any() || max.cmpgt(self.size - 4.0).any();
@@ -246,7 +253,7 @@ impl Canvas {
     }
 }
 
-/// Directions from a point to its label, the preferred ones first.
+/// Directions from a point to its label. If several are equally good, the first one is used.
 const SIDES: [[f64; 2]; 8] = [
     [1.0, 0.0],
     [1.0, -0.6],
@@ -258,15 +265,14 @@ const SIDES: [[f64; 2]; 8] = [
     [-1.0, 0.6],
 ];
 
-/// Formats a number with four significant digits, for people to read.
+/// Formats a number for people, with four significant digits.
 pub fn number(x: f64) -> String {
     numbers::short(numbers::significant(x, 4)).replace('-', "−")
 }
 
-/// Formats a length with at most one decimal.
+/// Formats a length in SVG units with at most one decimal.
 pub fn length(x: f64) -> String {
-    // The clamp avoids an overflow. Marks with NaN or very large coordinates are not visible
-    // anyway.
+    // The limit avoids overflow. Nothing with such a large coordinate, or with NaN, is visible.
     let tenths = (x.clamp(-1e6, 1e6) * 10.0).round() as i64;
     let sign = if tenths < 0 { "-" } else { "" };
     match (tenths.abs() / 10, tenths.abs() % 10) {

@@ -1,4 +1,5 @@
-//! Draws the figure `methods`: the sample patterns of all methods with the same number of samples.
+//! Draws the figure `methods`: a pixel's sample points by each sampling method, with the same
+//! number of samples.
 
 use glam::DVec2;
 
@@ -9,23 +10,23 @@ use crate::{
     scene::{Count, Method, Sampler, Scene},
 };
 
-/// Maximum number of samples in a pixel that a figure shows. A figure of more samples is refused,
-/// since the dots would form a grey area.
+/// Maximum number of samples per pixel in a figure. Figures with more are refused, since the dots
+/// would merge into a gray area.
 const MOST: u64 = 1024;
 
-/// Maximum number of rows or of columns of a [`Tiling`] whose lines are drawn. A tiling with more
-/// rows or columns is not drawn, since its lines would form a grey area.
+/// Maximum number of rows, and of columns, of a grid of cells ([`Tiling`]) whose lines are drawn.
+/// The lines of a finer grid would merge into a gray area.
 const MOST_LINES: usize = 64;
 
-/// Side of the square that shows a pixel, in SVG units.
+/// Side of the square that shows a pixel, in SVG units. Three of these squares fit beside each
+/// other.
 const SIDE: f64 = 196.0;
 
-/// Distance, in SVG units, from the corner of one square to the corner of the next square to the
-/// right, and of the next one below.
+/// Distances between the corners of neighbouring squares, in SVG units: to the right, and
+/// downwards. They leave space for the texts above each square.
 const PITCH: DVec2 = DVec2::new(226.0, 262.0);
 
-/// Refuses `count` samples if they are too many for a figure ([`MOST`]), since nobody could tell
-/// them apart.
+/// Refuses more samples in a pixel than a figure can show clearly, [`MOST`].
 ///
 /// # Errors
 ///
@@ -40,7 +41,7 @@ pub fn most(count: u64) -> Result<(), String> {
     }
 }
 
-/// Draws the figure, with the samples of the pixel in column `x` and row `y`.
+/// Draws the figure for the pixel in column `x` and row `y`.
 pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
     let count = Sampling::new(
         &Sampler {
@@ -88,14 +89,15 @@ pub fn draw(scene: &Scene, [x, y]: [u32; 2]) -> Result<String, String> {
     ))
 }
 
-/// Describes in words the strata of a method with `n` samples, each of which contains one sample.
+/// Describes in words the cells into which a method divides the pixel, each of which contains one
+/// of the `n` samples.
 fn kept(method: Method, n: u64) -> String {
     let tilings = tilings(method, n);
     if tilings.len() > 3 {
         return format!("every box of 1/{n}");
     }
     let words = tilings.iter().map(|tiling| match tiling {
-        // With `regular`, each sample is exactly in the middle of its cell.
+        // The method `regular` places each sample exactly in the middle of its cell.
         _ if method == Method::Regular => "middles of cells",
         tiling if tiling.is_columns() && tiling.is_rows() => "anywhere",
         tiling if tiling.is_columns() => "columns",
@@ -108,10 +110,10 @@ fn kept(method: Method, n: u64) -> String {
     }
 }
 
-/// Draws the strata of the method `method` with `n` samples as thin lines in the square with the
-/// top left corner `corner` and the side `side`. The strata form one or more [`Tiling`]s of the
-/// square. The lines of the first tiling are a little stronger, unless it consists of rows or
-/// columns alone.
+/// Draws the cells into which a method divides the pixel, each of which contains one of the `n`
+/// samples. The pixel is the square with the top left corner `corner` and the side `side`. A method
+/// may divide it in several ways ([`Tiling`]s). The lines of the first way are stronger, unless its
+/// cells are rows or columns.
 pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: f64) {
     let at = |x: f64, y: f64| corner + DVec2::new(x, y) * side;
     let tilings = if n > 0 { tilings(method, n) } else { vec![] };
@@ -126,7 +128,7 @@ pub fn strata(canvas: &mut Canvas, method: Method, n: u64, corner: DVec2, side: 
     canvas.line("ink", &[&frame[..], &frame[..1]].concat());
 }
 
-/// Returns the lines between the cells of a tiling of the unit square.
+/// Returns the lines between the cells of a grid that divides the unit square.
 fn lines(tiling: &Tiling) -> Vec<[[f64; 2]; 2]> {
     let n = tiling.rows.iter().sum::<u64>() as f64;
     let widest = tiling.rows.iter().copied().max().unwrap_or_default() as usize;

@@ -1,13 +1,12 @@
-//! Draws figures for a page of a course.
+//! Draws figures of scenes for teaching material.
 //!
-//! In: a scene and the kind of figure. Out: an SVG file, the same bytes on every machine. A figure
-//! has one idea and few marks, and each mark is labelled where it stands. Nothing is computed here
-//! that another part of the program computes: samples come from [`sampling`](crate::sampling),
-//! visible objects from the tracer, outlines from the editor's overlays, axes and angles from
-//! [`inspect`](crate::inspect).
+//! In: a scene, and the kind of figure. Out: the text of an SVG file, the same on every machine. A
+//! figure shows one idea with few marks, and each mark has its label beside it. The figures use
+//! results of other modules: samples come from [`sampling`](crate::sampling), visible objects from
+//! the tracer, outlines from the editor, and axes and angles from [`inspect`](crate::inspect).
 //!
-//! Each kind of figure has a file. `canvas` writes the SVG and places the labels; `outside` shows
-//! the scene from a point beside its camera.
+//! Each kind of figure has a file. `canvas` writes the SVG and places labels. `outside` shows the
+//! scene from a point beside its camera.
 
 mod camera;
 mod canvas;
@@ -26,15 +25,15 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// The camera, seen from outside.
+    /// The camera's eye, its window and one ray, seen from outside.
     Camera,
-    /// A pixel with its samples.
+    /// A pixel with its samples and colours.
     Pixel,
     /// A triangle with its sides, centroid, normal and spin.
     Triangle,
-    /// The frame of the picture before and after the camera's roll.
+    /// The edge of the picture before and after the camera's roll.
     Roll,
-    /// The patterns of all methods.
+    /// The sample points of all sampling methods in a pixel.
     Methods,
 }
 
@@ -47,13 +46,13 @@ pub const KINDS: [(&str, Kind); 5] = [
     ("methods", Kind::Methods),
 ];
 
-/// The part of the scene that a figure shows. If a field is `None`, the figure chooses a pixel or a
-/// triangle by itself.
+/// The pixel and the triangle that a figure shows. A field that is `None` is chosen automatically.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Choice<'a> {
-    /// The column and the row of a pixel, for figures of cameras, pixels and methods.
+    /// Column and row of the pixel. It is for the figures of the camera, of a pixel, and of all
+    /// methods.
     pub pixel: Option<[u32; 2]>,
-    /// The name of a triangle.
+    /// Name of the triangle. It is for the figure of a triangle.
     pub object: Option<&'a str>,
 }
 
@@ -61,12 +60,12 @@ pub struct Choice<'a> {
 ///
 /// # Errors
 ///
-/// Returns a sentence that says why the scene has no such figure, and which figures it has.
+/// Returns a sentence for the user that says why the scene has no such figure.
 ///
 /// # Panics
 ///
-/// The scene was not read, but made in code, and breaks a condition of the language;
-/// [`Scene::check`] tells.
+/// The scene breaks a condition of the language. This is possible only for a scene that was made in
+/// code; [`Scene::check`] detects it.
 pub fn figure(scene: &Scene, kind: Kind, choice: Choice<'_>) -> Result<String, String> {
     let Image { width, height, .. } = scene.image;
     match (choice.pixel, kind, choice.object) {
@@ -94,7 +93,7 @@ pub fn figure(scene: &Scene, kind: Kind, choice: Choice<'_>) -> Result<String, S
     }
 }
 
-/// Returns the triangle named `wanted`, or the first triangle if no name is given.
+/// Returns the triangle named `wanted` or, without a name, the first triangle of the scene.
 fn triangle_of<'s>(scene: &'s Scene, wanted: Option<&str>) -> Result<&'s Triangle, String> {
     let objects = scene.objects.iter();
     let triangles = objects.filter_map(|object| match &object.shape {

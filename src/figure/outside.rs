@@ -1,8 +1,9 @@
-//! Shows a scene from outside, in a view that fits given points into a rectangle of the drawing.
+//! Shows a scene from outside, i.e. not from its camera. The view fits given points into a
+//! rectangle of the drawing.
 //!
-//! In: points, and the side from which they are seen. Out: the positions of points in the drawing.
-//! The observer is an ordinary camera of the language, so that [`Projection`] and the editor's
-//! outlines can be used here, too.
+//! In: points in space, and the side from which they are seen. Out: their positions in the drawing.
+//! The observer is a camera as in the scene language, so that [`Projection`] and the editor's
+//! outlines can be used.
 
 use std::sync::Arc;
 
@@ -18,14 +19,16 @@ use crate::{
 };
 
 /// Distance of the observer from the middle of the shown points, as a multiple of the radius of a
-/// sphere around these points. At this distance, parallel lines look almost parallel.
+/// sphere around them. From farther away, parallel lines look more parallel, and the view shows
+/// less depth. Chosen by eye.
 const DISTANCE: f64 = 6.0;
 
-/// Maximum absolute value of a coordinate that determines the view, in metres. Larger coordinates
-/// are clamped, so that sums and squares do not overflow.
+/// Maximum absolute value of the coordinates that determine the view, in metres. Larger coordinates
+/// are limited to it. Sums and squares of coordinates then do not overflow, since an `f64` reaches
+/// 1.8e308.
 const MOST: f64 = 1e100;
 
-/// View of a scene from outside of its camera, in a rectangle of the drawing.
+/// A view of a scene from outside, in a rectangle of the drawing.
 pub struct Outside {
     camera: Camera,
     image: Image,
@@ -36,11 +39,11 @@ pub struct Outside {
 }
 
 impl Outside {
-    /// Makes the view that fits `points` into the rectangle `panel`. The observer looks from the
-    /// direction `side`, with `up` upwards.
+    /// Makes the view that fits `points` into the rectangle `panel`. `side` is the direction
+    /// towards the observer, and `up` points upwards in the drawing.
     pub fn new(points: &[DVec3], [side, up]: [DVec3; 2], panel: [DVec2; 2]) -> Self {
         let (min, max) = bounds3(points);
-        // Unlimited coordinates could be so large that their sums would overflow.
+        // Sums of unlimited coordinates could overflow.
         let within = |v: DVec3| v.clamp(DVec3::splat(-MOST), DVec3::splat(MOST));
         let (min, max) = (within(min), within(max));
         let radius = ((max - min).length() / 2.0).max(1.0 / MOST);
@@ -81,7 +84,7 @@ impl Outside {
         self.projection.projected(point) * self.scale + self.offset
     }
 
-    /// Draws the polygonal line through `points` in space.
+    /// Draws the line through `points` in space. It is cut off at the edge of the rectangle.
     pub fn line(&self, canvas: &mut Canvas, class: &str, points: &[DVec3]) {
         for line in self.projection.line(points) {
             let line: Vec<DVec2> = line
@@ -92,7 +95,7 @@ impl Outside {
         }
     }
 
-    /// Draws the outlines of the objects with the given indices, filled with their colours.
+    /// Draws the outlines of the objects with the given indices, filled with the objects' colours.
     pub fn objects(&self, canvas: &mut Canvas, scene: &Scene, indices: Vec<usize>) {
         let scene = Scene {
             camera: self.camera,
@@ -106,9 +109,9 @@ impl Outside {
     }
 }
 
-/// Draws the outlines of the objects in a picture, filled with their colours. `place` maps a point
-/// of the picture to the drawing. Skips boards, since the editor outlines only one of their
-/// squares.
+/// Draws the outlines of the objects in a picture, filled with their colours. The function `place`
+/// maps a point of the picture to the drawing. Checkerboards are left out, since the outlines show
+/// only one of their squares.
 pub fn draw_objects(
     canvas: &mut Canvas,
     scene: &Scene,
@@ -134,8 +137,8 @@ pub fn draw_objects(
     }
 }
 
-/// Removes each point of a line that is less than one SVG unit away from the previous point.
-/// Otherwise, a scene with many small spheres would make a large file.
+/// Removes each point of a line that is less than one SVG unit away from the one before it. Such
+/// points are not visible, and many small spheres would make a large file.
 fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
     let end = line.last().copied();
     line.dedup_by(|next, kept| next.distance_squared(*kept) < 1.0);
@@ -143,7 +146,7 @@ fn thinned(mut line: Vec<DVec2>) -> Vec<DVec2> {
     line
 }
 
-/// Draws the parts of a polygonal line that lie in the rectangle `panel`.
+/// Draws those parts of a line that lie in the rectangle `panel`.
 pub fn draw_within(canvas: &mut Canvas, class: &str, line: &[DVec2], panel: [DVec2; 2]) {
     let mut part: Vec<DVec2> = Vec::new();
     for ends in line.windows(2) {
@@ -159,7 +162,8 @@ pub fn draw_within(canvas: &mut Canvas, class: &str, line: &[DVec2], panel: [DVe
     canvas.line(class, &part);
 }
 
-/// Returns the scale and the offset that fit points into the middle of the rectangle `panel`.
+/// Returns the scale and the offset by which points fill the rectangle `panel` as far as possible
+/// and are centred in it.
 pub fn fit(points: &[DVec2], panel: [DVec2; 2]) -> (f64, DVec2) {
     let least = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let greatest = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
@@ -170,14 +174,14 @@ pub fn fit(points: &[DVec2], panel: [DVec2; 2]) -> (f64, DVec2) {
     )
 }
 
-/// Returns the least and the greatest coordinates of some points.
+/// Returns the least and the greatest coordinates of `points` on each axis.
 pub fn bounds3(points: &[DVec3]) -> (DVec3, DVec3) {
     let least = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let greatest = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     (least, greatest)
 }
 
-/// Returns the convex hull of points (Andrew's monotone chain).
+/// Returns the convex hull of points, by Andrew's monotone chain algorithm.
 fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
     points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
     let chain = |points: &mut dyn Iterator<Item = &DVec2>| {

@@ -1,5 +1,5 @@
-//! Draws the figure `pixel`: one pixel with its strata, its samples, and the object that each of
-//! them hits.
+//! Draws the figure `pixel`: one pixel with its sample points, the cells that each contain one of
+//! them, and the colours that they see.
 
 use glam::DVec2;
 
@@ -17,22 +17,24 @@ use crate::{
     tracer::World,
 };
 
-/// Top left corner of the drawn pixel, in SVG units.
+/// Top left corner of the square that shows the pixel, in SVG units. It leaves a margin at the edge
+/// of the figure.
 const CORNER: DVec2 = DVec2::new(16.0, 16.0);
 
-/// Side of the drawn pixel, in SVG units.
+/// Side of the square that shows the pixel, in SVG units. It takes about half of the figure's
+/// width, 680; the rest is for the list of colours.
 const SIDE: f64 = 360.0;
 
-/// Number of rows, and of columns, of the points at which the colours in the pixel are determined.
-/// Each point stands for a small square of the drawing. The number divides [`SIDE`], so that
-/// rounding the squares to one decimal leaves no gaps between them.
+/// Number of rows, and of columns, of points at which the pixel's colours are determined. Each
+/// point is drawn as a small square. The number must divide [`SIDE`], so that rounding lengths to
+/// one decimal leaves no gaps between the squares; 120 gives squares of 3 units.
 const ROWS: u32 = 120;
 
-/// Maximum number of colours that are listed beside the pixel. If it shows more, those with the
-/// largest areas are listed.
+/// Maximum number of colours that are listed beside the pixel. If there are more, those with the
+/// largest areas are listed. The list has space for few, and most pixels show no more.
 const COLORS: usize = 4;
 
-/// Draws the figure of `pixel`, or of a pixel with several colours if it is `None`.
+/// Draws the figure of `pixel` or, if it is `None`, of a pixel with several colours.
 pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     let world = World::new(scene);
     let [x, y] = pixel.unwrap_or_else(|| most_colors(scene, &world));
@@ -137,9 +139,9 @@ pub fn draw(scene: &Scene, pixel: Option<[u32; 2]>) -> Result<String, String> {
     ))
 }
 
-/// Fills the drawn pixel (x, y) with the colours that are visible in it. Returns at most [`COLORS`]
-/// of them, those with the largest areas first. For each: its index in the world's palette, and a
-/// point of the picture where it is visible.
+/// Fills the square that shows the pixel (x, y) with the pixel's colours. Returns those with the
+/// largest areas, at most [`COLORS`]: for each, its index in the world's palette, and a point of
+/// the picture that shows it.
 fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, DVec2)> {
     let offset = |i: u32| (f64::from(i) + 0.5) / f64::from(ROWS) - 0.5;
     let step = SIDE / f64::from(ROWS);
@@ -175,7 +177,7 @@ fn regions(canvas: &mut Canvas, world: &World, [x, y]: [u32; 2]) -> Vec<(usize, 
     seen.take(COLORS).collect()
 }
 
-/// Returns the exact share of the pixel's area that each of `colors` covers.
+/// Returns, for each of `colors`, the exact share of the pixel's area that it covers, from 0 to 1.
 fn shares(world: &World, [x, y]: [u32; 2], colors: &[(usize, DVec2)]) -> [f64; COLORS] {
     let shown: Vec<Color> = colors
         .iter()
@@ -190,8 +192,8 @@ fn shares(world: &World, [x, y]: [u32; 2], colors: &[(usize, DVec2)]) -> [f64; C
         .map_or([0.0; COLORS], |pixel| pixel.mean)
 }
 
-/// Returns the name of the object that is visible at a point of the picture, or "background". A
-/// name is cut to 12 characters.
+/// Returns the name of the object at a point of the picture, or "background". A longer name is cut
+/// to 12 characters.
 fn name(scene: &Scene, world: &World, at: DVec2) -> String {
     let Some((Some(hit), _)) = pick(scene, world, at) else {
         return "background".to_owned();
@@ -204,8 +206,8 @@ fn name(scene: &Scene, world: &World, at: DVec2) -> String {
     }
 }
 
-/// Returns the pixel with the highest score by [`evenness`]. Candidates are pixels on edges between
-/// two colours, which are searched along the rows of a coarse grid over the picture.
+/// Returns a pixel that suits the figure: the one with the highest score by [`evenness`]. Pixels at
+/// changes of colour are tried, along the rows of a coarse grid over the picture.
 fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     let (width, height) = (scene.image.width, scene.image.height);
     let (columns, rows) = (width.min(64), height.min(90));
@@ -235,10 +237,10 @@ fn most_colors(scene: &Scene, world: &World) -> [u32; 2] {
     best.1
 }
 
-/// Returns a score of how well a pixel suits the figure, from the colours at 8 × 8 points in it.
-/// The score is higher for more colours, up to three, and for more equal shares of the colours (low
-/// Simpson index). It is lower for each change of colour from one point to the next, since there
-/// are many changes near the horizon.
+/// Returns how well a pixel suits the figure, from its colours at 8 × 8 points. The score is higher
+/// for more colours, up to three, and for more equal areas of the colours (a low Simpson index). It
+/// is lower for many changes of colour from point to point, which are typical near the horizon of a
+/// checkerboard.
 fn evenness(world: &World, [x, y]: [u32; 2]) -> f64 {
     let at = |i: u32| (f64::from(i) + 0.5) / 8.0 - 0.5;
     let slot = |cell: u32| world.slot_at(x, y, DVec2::new(at(cell % 8), at(cell / 8)));

@@ -1,4 +1,4 @@
-//! Draws the figure `roll`: the frame of the picture before and after the camera's roll.
+//! Draws the figure `roll`: the edge of the picture before and after the camera's roll.
 
 use glam::DVec2;
 
@@ -13,13 +13,15 @@ use crate::{
     scene::{Camera, Scene},
 };
 
-/// Height of the figure, in SVG units.
+/// Height of the figure, in SVG units, before empty space is cropped. Its width is 680. The
+/// pictures are scaled to fit; in a lower figure, they would be smaller.
 const HEIGHT: f64 = 400.0;
 
-/// Number of segments of the polygonal line that is drawn as the arc of the roll's angle.
+/// Number of straight segments by which the arc of the roll's angle is drawn. With 24, it looks
+/// round.
 const ARC: u32 = 24;
 
-/// Draws the figure.
+/// Draws the figure for the roll of the scene's camera, and returns it as SVG.
 pub fn draw(scene: &Scene) -> String {
     let mut canvas = Canvas::new(HEIGHT);
     let roll = scene.camera.roll;
@@ -36,8 +38,8 @@ pub fn draw(scene: &Scene) -> String {
     )
 }
 
-/// Draws two frames over the picture of the camera without roll: the frame of this picture, and
-/// that of the rolled picture.
+/// Draws, over the picture of the camera without roll, the edge of this picture and the edge of the
+/// rolled picture.
 fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     let rolled = |roll: Angle| {
         let camera = Camera {
@@ -48,8 +50,8 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     };
     let (level_camera, level) = rolled(Angle::default());
     let roll = scene.camera.roll;
-    // Maps a point of the picture with the roll `roll` to the point of the picture without roll
-    // that shows the same ray.
+    // Maps a point of the picture with the given roll to the point of the picture without roll that
+    // shows the same direction.
     let seen = |roll: Angle, point: DVec2| {
         let (_, view) = rolled(roll);
         level.projected(view.at_depth(point, 1.0))
@@ -113,7 +115,7 @@ fn before_and_after(canvas: &mut Canvas, scene: &Scene) {
     canvas.label("blue", [lowest(&after), eye], "after");
 }
 
-/// Draws the rolled picture in its own frame.
+/// Draws the rolled picture upright, as a user sees it.
 fn picture(canvas: &mut Canvas, scene: &Scene) {
     let found = overlays(scene, &ShownObjects::First(None));
     let size = DVec2::from(found.size.map(f64::from));

@@ -1,4 +1,5 @@
-//! Draws the figure `triangle`: a triangle with its sides, centroid, normal and spin.
+//! Draws the figure `triangle`: a triangle with its sides, centroid, normal, and spin (rotation in
+//! its plane).
 
 use glam::{DVec2, DVec3};
 
@@ -13,13 +14,14 @@ use crate::{
     tracer::vertices,
 };
 
-/// Height of the figure, in SVG units.
+/// Height of the figure, in SVG units, before empty space is cropped. Its width is 680. The
+/// triangle is scaled to fit; in a lower figure, it would be smaller.
 const HEIGHT: f64 = 430.0;
 
-/// Number of straight segments that draw the arc of the triangle's spin, its rotation in its plane.
+/// Number of straight segments by which the arc of the spin is drawn. With 24, it looks round.
 const ARC: u32 = 24;
 
-/// Draws the figure.
+/// Draws the figure of a triangle, and returns it as SVG.
 pub fn draw(triangle: &Triangle) -> String {
     let corners = vertices(triangle);
     let [left, right, apex] = corners;
@@ -67,8 +69,8 @@ pub fn draw(triangle: &Triangle) -> String {
     if is_spun {
         let [a, b, c] = unspun;
         outside.line(&mut canvas, "faint dash", &[a, b, c, a]);
-        // The arc is the path of a point while the triangle is spun. The point is the midpoint
-        // between the centroid and the right end of the base.
+        // The arc is the path of a point while the triangle is rotated: the midpoint between the
+        // centroid and the right end of the base.
         let on_way = |i: u32| {
             let [_, right, _] = spun(spin * (f64::from(i) / f64::from(ARC)));
             outside.at(centroid.midpoint(right))

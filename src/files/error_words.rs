@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// Replaces the message of an error of the operating system by plain words. Returns any other error
+/// Replaces the message of an operating system's error by plain words. Other errors are returned
 /// unchanged.
 pub fn in_words(error: io::Error) -> io::Error {
     use io::ErrorKind;
@@ -13,7 +13,8 @@ pub fn in_words(error: io::Error) -> io::Error {
     let kind = error.kind();
     let words = match kind {
         ErrorKind::NotFound => "there is no such file or folder",
-        // On Unix, error 1 is EPERM, which for example an immutable file causes.
+        // On Unix, the error number 1 is EPERM. Changing a file that is marked as immutable causes
+        // it, for example.
         ErrorKind::PermissionDenied if cfg!(unix) && number.starts_with("1)") => {
             "the system protects it from being changed"
         }

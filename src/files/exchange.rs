@@ -1,4 +1,4 @@
-//! Replaces a file so that its previous content can still be checked and restored.
+//! Replaces a file without losing what another program saves at the same moment.
 
 use std::{
     fs::{self, File},
@@ -14,15 +14,15 @@ use super::{
 };
 
 /// Replaces the file at `path`, which was read as `original`, by the temporary file. Fails if the
-/// file at `path` is no longer what was read.
+/// file at `path` is no longer `original`.
 ///
 /// Another program may save the file between the check and the replacement. Therefore, the two
-/// files exchange their names, and the replaced file is checked once more. If it is not what was
-/// read, the names are exchanged back, and the result is an error. On systems that cannot exchange
-/// names, the file is replaced without the second check.
+/// files exchange their names, and the replaced file is checked once more. If it is not `original`,
+/// the names are exchanged back, and the function fails. On systems that cannot exchange names, the
+/// file is replaced without this second check.
 pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io::Result<()> {
-    // After the exchange, the old file has a temporary name. The lock keeps other processes from
-    // removing it as a leftover.
+    // After the exchange, the old file has the temporary name. The lock keeps other processes from
+    // removing it, since they remove unlocked temporary files.
     let found = kind::open(path).ok();
     let _is_locked = found.as_ref().map(File::try_lock);
     original.check(path)?;
@@ -40,9 +40,8 @@ pub fn replace(temporary: NamedTempFile, path: &Path, original: &Original) -> io
     }
 }
 
-/// Exchanges the names back: the file that now has the temporary name gets its path again. If
-/// another program has saved a file at the path in the meantime, that file is newer and keeps the
-/// path.
+/// Exchanges the names back, so that the file with the temporary name gets its path again. If
+/// another program has saved a newer file at the path meanwhile, the newer file keeps the path.
 fn bring_back(temporary: &NamedTempFile, path: &Path) -> io::Result<()> {
     let mut at_path = id(&temporary.as_file().metadata()?);
     loop {
@@ -55,7 +54,8 @@ fn bring_back(temporary: &NamedTempFile, path: &Path) -> io::Result<()> {
     }
 }
 
-/// Exchanges the names of two files atomically.
+/// Exchanges the names of two files in one step, so that no other program sees an intermediate
+/// state.
 #[cfg(any(target_os = "linux", target_os = "android", target_vendor = "apple"))]
 fn exchange(one: &Path, other: &Path) -> io::Result<()> {
     use rustix::fs::{CWD, RenameFlags, renameat_with};
@@ -84,11 +84,13 @@ mod tests {
 
     use super::*;
 
-    /// Index of the last of the rounds 0, 1, 2, … of the test [`what_is_saved_meanwhile_stays`].
+    /// Number of the test's last round; the first is 0. From round to round, the other program
+    /// saves a little later. With 400, it saves before, during and after the replacement, and the
+    /// test still ends soon.
     const LAST: u32 = 400;
 
-    /// Another program saves the file, in each round at another moment from before the replacement
-    /// to after it. What it saved must never be lost.
+    /// Another program saves the file, in each round at a later moment, from before the replacement
+    /// to after it. The file that it saves must never be lost.
     #[test]
     fn what_is_saved_meanwhile_stays() {
         let folder = tempdir().unwrap();
@@ -102,9 +104,9 @@ mod tests {
             let theirs = folder.path().join("theirs");
             fs::write(&theirs, "theirs").unwrap();
             let save = || fs::rename(&theirs, &path).unwrap();
-            // In the first round, the file is saved before the replacement, and in the last round
-            // after it. On a busy machine, the thread of the rounds between may never run at the
-            // right moment.
+            // On a busy machine, the other program's thread may never run before the replacement,
+            // or never after it. Therefore, the first round saves before it, and the last round
+            // after it.
             let done = match round {
                 0 => {
                     save();
@@ -140,8 +142,8 @@ mod tests {
         let folder = tempdir().unwrap();
         let path = folder.path().join("a.scn");
         let temporary = NamedTempFile::new_in(folder.path()).unwrap();
-        // The older file has the temporary name, and another program has saved a newer one at the
-        // path.
+        // The older file now has the temporary name, and another program has saved a newer one at
+        // the path.
         fs::remove_file(temporary.path()).unwrap();
         fs::write(temporary.path(), "older").unwrap();
         fs::write(&path, "newer").unwrap();

@@ -1,5 +1,5 @@
-//! Writes files in place that cannot be replaced by renaming a new file, because their folder is
-//! read-only or something is mounted on them.
+//! Overwrites files that cannot be replaced by a new file, because their folder is read-only or
+//! because something is mounted at their path.
 
 use std::{
     fs::{self, OpenOptions},
@@ -17,7 +17,8 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Returns whether a file may be written in place after replacing it failed with `error`.
+/// Returns whether `error`, with which replacing a file failed, is a reason to overwrite the file
+/// in place.
 pub fn is_reason(error: &io::Error) -> bool {
     use io::ErrorKind;
     matches!(
@@ -29,10 +30,10 @@ pub fn is_reason(error: &io::Error) -> bool {
     )
 }
 
-/// Overwrites the file at `path` if it is still what was read. Meanwhile, a complete copy of the
-/// new content exists beside the file or, if that is not possible, in the user's state folder. At
-/// any moment, either the file or the copy is complete. If no copy can be created, returns
-/// `reason`, the error that prevented the replacement.
+/// Overwrites the file at `path`, unless it has changed since it was read. In the meantime, a copy
+/// of the new content exists beside the file or in the user's state folder, so that nothing is lost
+/// if this process is killed. Fails if no copy can be created. The error is then `reason`, for
+/// which the file could not be replaced by a new one.
 pub fn write_in_place(
     path: &Path,
     original: &Original,
@@ -66,10 +67,10 @@ pub fn write_in_place(
     }
 }
 
-/// Returns the copies of a file, complete or not, that were left by processes that were killed
-/// while they wrote the file. Searches beside the file and in the user's state folder.
+/// Returns the copies of a file, possibly incomplete, that were left by processes that were killed
+/// while they overwrote it. Searches beside the file and in the user's state folder.
 pub fn copies_left(path: &Path) -> Vec<PathBuf> {
-    // The name of a copy begins with the name of the file itself, not with that of a link to it.
+    // Copies are named after the file itself, not after a link to it.
     let beside = match fs::read_link(path) {
         Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
         Err(_) => path.to_owned(),
@@ -95,15 +96,16 @@ fn copy_prefix(path: &Path) -> String {
     format!("{name}.copy-")
 }
 
-/// Returns the prefix of the name of a copy in the state folder. Copies of files from all folders
-/// lie there, so the prefix contains a hash of the file's canonical path `path`.
+/// Returns the prefix of the name of a copy in the user's state folder. The folder contains copies
+/// of files from all folders, so the prefix contains a hash of the file's path, `path`, which must
+/// be canonical.
 fn prefix_in_state(path: &Path) -> String {
     let digest = digest(path.as_os_str().as_encoded_bytes());
     format!("{digest}-{}", copy_prefix(path))
 }
 
-/// Creates an empty file for the copy of the file at the canonical path `path`: beside the file, or
-/// else in the state folder. Returns `None` if both fail.
+/// Creates an empty file for the copy of the file at `path`, which must be canonical. It lies
+/// beside the file or, if that fails, in the user's state folder. Returns `None` if both fail.
 fn copy_beside(path: &Path) -> Option<NamedTempFile> {
     let copy_in = |folder: &Path, prefix: &str| {
         let mut builder = Builder::new();

@@ -1,5 +1,5 @@
-//! Determines the kind of file at a path before the file is opened: opening a pipe may block
-//! forever, and opening a device may have effects.
+//! Determines the kind of a file before it is opened. Otherwise, opening a pipe could wait forever,
+//! and opening a device could have effects.
 
 use std::{
     fmt,
@@ -54,7 +54,7 @@ impl FileKind {
         Self::File
     }
 
-    /// Returns the error for a file of this kind if a regular file is needed.
+    /// Returns the error for a file of this kind where a regular file is needed.
     pub fn refused(self) -> io::Error {
         let kind = match self {
             Self::Folder => io::ErrorKind::IsADirectory,
@@ -77,7 +77,7 @@ impl fmt::Display for FileKind {
     }
 }
 
-/// Returns the folder of a file; `.` if the path is only a name.
+/// Returns the folder that contains a file; `.` if the path is only a name.
 pub fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -85,14 +85,14 @@ pub fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Opens a regular file for reading, and follows links. Fails for any other kind of file. Opening a
-/// pipe does not block.
+/// Opens a regular file for reading. Links are followed. Fails for any other kind of file, without
+/// waiting if it is a pipe.
 pub fn open(path: &Path) -> io::Result<File> {
     open_if(path, |kind| kind == FileKind::File)
 }
 
-/// Returns whether a path names a descriptor that this process has open already: `/dev/stdin`, or a
-/// path such as `/dev/fd/63`, which a shell writes for `<(…)`.
+/// Returns whether a path stands for a file descriptor that is already open: `/dev/stdin`, or a
+/// path such as `/dev/fd/63`, which a shell passes for `<(command)`.
 fn is_argument(path: &Path) -> bool {
     path == Path::new("/dev/stdin")
         || [Path::new("/dev/fd"), Path::new("/proc/self/fd")]
@@ -100,14 +100,14 @@ fn is_argument(path: &Path) -> bool {
             .any(|folder| path.parent() == Some(folder))
 }
 
-/// Opens an argument of the command line for reading. If the path names a descriptor that the shell
-/// has opened, it may be anything except a folder; otherwise it must be a regular file.
+/// Opens a file that is named on the command line for reading. It must be a regular file, or a
+/// descriptor that the shell has opened, which may also be a pipe or a device.
 pub fn open_argument(path: &Path) -> io::Result<File> {
     if !is_argument(path) {
         return open(path);
     }
     let file = open_if(path, |kind| kind != FileKind::Folder)?;
-    // A program is expected to wait for the data of a pipe that it got as an argument.
+    // If the argument is a pipe, the user expects the program to wait for its data.
     wait_for_it(&file)?;
     Ok(file)
 }
@@ -123,13 +123,14 @@ fn open_at_once(path: &Path, is_wanted: impl Fn(FileKind) -> bool) -> io::Result
     };
     check(&fs::metadata(path)?)?;
     let file = without_waiting(OpenOptions::new().read(true)).open(path)?;
-    // Another program may have replaced the file between the check and opening it.
+    // Another program may have replaced the file before it was opened, so its kind is checked
+    // again.
     check(&file.metadata()?)?;
     Ok(file)
 }
 
-/// Sets flags so that opening a pipe does not wait for its other end, and opening a terminal does
-/// not make it the controlling terminal of this process.
+/// Sets flags for opening files: a pipe does not wait for its other end, and a terminal does not
+/// become the controlling terminal of this process.
 #[cfg(unix)]
 pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     use rustix::fs::OFlags;
@@ -142,7 +143,7 @@ pub(super) fn without_waiting(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// Makes reads and writes of an open pipe blocking.
+/// Makes reads and writes of an open pipe wait for its other end.
 #[cfg(unix)]
 pub(super) fn wait_for_it(file: &File) -> io::Result<()> {
     use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};

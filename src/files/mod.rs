@@ -1,13 +1,17 @@
 //! The only module that opens, creates and replaces files.
 //!
-//! In: a path and a purpose. Out: a file, or an error in words. `kind` checks what kind of file a
-//! path names before it is opened, so that nothing blocks on a pipe. `original` recognises a file
-//! that was read. `write` writes every file completely or not at all, through a `temporary` file
-//! that then replaces the old one. In `exchange`, the two files exchange their names if another
-//! program may save the old one meanwhile. A file that cannot be replaced is written `in_place`.
-//! `output_folder` replaces only files that Pinhole itself wrote into a folder. `user_files` stores
-//! small files for the user alone in the `state` folder. `system` has what the system says of itself. `error_words` expresses the system's
-//! errors in plain words. Other modules decide what files contain.
+//! In: a path, and the purpose of the file. Out: an open file, or an error in plain words.
+//!
+//! - `kind` checks the kind of a file before it is opened, so that the program does not wait for a
+//!   pipe.
+//! - `original` recognises whether a file has changed since it was read.
+//! - `write` writes files completely or not at all: a `temporary` file replaces the old one.
+//!   `exchange` exchanges the names of both, in case another program saves the old file at the same
+//!   moment. `in_place` overwrites a file that cannot be replaced.
+//! - `output_folder` replaces only files that Pinhole itself wrote into a folder.
+//! - `user_files` stores small private files in the user's `state` folder.
+//! - `system` reads what the system says about itself.
+//! - `error_words` replaces the system's error messages by plain words.
 #![allow(
     clippy::disallowed_methods,
     reason = "everything else opens, makes and replaces files by this module"

@@ -1,5 +1,5 @@
-//! A file as it was read. Before the file is replaced, it is compared with this copy, since another
-//! program may have saved it meanwhile.
+//! A copy of a file as it was read. Before the file is replaced, it is compared with the copy,
+//! since another program may have saved it meanwhile.
 
 use std::{
     fmt,
@@ -10,8 +10,8 @@ use std::{
 
 use super::{error_words::in_words, kind::read};
 
-/// Identity of a file: the number of its device and its inode number there. If another file
-/// replaces the file, the identity at the path changes.
+/// Identity of a file: the number of its device, and its inode number on the device. Another file
+/// at the same path has another identity.
 pub type FileId = (u64, u64);
 
 /// Returns the identity of the file that the metadata describe.
@@ -21,39 +21,42 @@ pub fn id(found: &Metadata) -> FileId {
     (found.dev(), found.ino())
 }
 
-/// Returns (0, 0), since the standard library has no file numbers on this system.
+/// Returns (0, 0), since the standard library gives files no numbers on this system.
 #[cfg(not(unix))]
 pub fn id(_: &Metadata) -> FileId {
     (0, 0)
 }
 
-/// A file as it was read, with its identity and its bytes; or the fact that there was no file.
+/// A copy of a file as it was read: its identity and its bytes. It is empty if there was no file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Original(Option<(FileId, Vec<u8>)>);
 
 impl Original {
-    /// Reads the file at `path` with the function `read`, and remembers its identity.
+    /// Reads the file at `path` by the function `read`, and records the file's identity.
     pub fn read(path: &Path, read: impl FnOnce(&Path) -> io::Result<Vec<u8>>) -> io::Result<Self> {
-        // Another file may replace this one between the two calls. The identity that is stored here
-        // then differs from that of the new file, which counts as changed.
+        // Another file may replace this one after its identity is recorded and before it is read.
+        // The recorded identity is then that of the old file, so the new file counts as changed,
+        // which is safe.
         let found = fs::metadata(path).map_err(in_words)?;
         Ok(Self(Some((id(&found), read(path)?))))
     }
 
-    /// Makes the original of a file that does not exist.
+    /// Makes the record that there was no file.
     pub fn missing() -> Self {
         Self(None)
     }
 
-    /// Returns the bytes that were read; `None` if there was no file.
+    /// Returns the bytes that were read, or `None` if there was no file.
     pub fn bytes(&self) -> Option<&[u8]> {
         self.0.as_ref().map(|(_, bytes)| bytes.as_slice())
     }
 
-    /// Fails if the file at `path` is not the file that was read. Does nothing if no file was read.
+    /// Fails if the file at `path` has changed since it was read. Does nothing if there was no
+    /// file.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
-            // No file was read. If one exists by the time of writing, creating the new file fails.
+            // There was no file, so there is nothing to compare. If another program has created one
+            // meanwhile, creating the new file fails.
             return Ok(());
         };
         let is_same = || {
@@ -68,7 +71,7 @@ impl Original {
     }
 }
 
-/// Error: a file was not replaced, because it is no longer the file that was read.
+/// Error: a file was not replaced, because another program has changed it since it was read.
 #[derive(Debug)]
 struct Changed;
 
@@ -84,8 +87,8 @@ pub(super) fn changed() -> io::Error {
     io::Error::other(Changed)
 }
 
-/// Returns whether an error says that another program has changed the file, so that it was not
-/// replaced.
+/// Returns whether an error says that a file was not replaced because another program has changed
+/// it.
 pub fn is_changed(error: &io::Error) -> bool {
     error.get_ref().is_some_and(|cause| cause.is::<Changed>())
 }

@@ -1,8 +1,8 @@
-//! A folder for the output files of a command, in which the user's own files are never replaced.
+//! A folder for the output files of a command, in which files of the user are never replaced.
 //!
-//! The folder contains a list, `.pinhole`, of the files that Pinhole wrote there, with the SHA-256
-//! of each content, in the format that `sha256sum --check` reads. A file that is not in the list,
-//! or has another hash, belongs to the user.
+//! The folder contains a list, `.pinhole`, of the files that Pinhole wrote there. For each file, it
+//! has the SHA-256 of its content, in the format that `sha256sum --check` reads. Any file that is
+//! not in the list, or has another hash, belongs to the user.
 
 use std::{
     collections::BTreeMap,
@@ -20,34 +20,35 @@ use super::{
     write::{Purpose, check_writable, write},
 };
 
-/// Name of the file in which the names and the hashes of Pinhole's files in the folder are listed.
+/// Name of the list of the files that Pinhole wrote into an output folder.
 const LIST: &str = ".pinhole";
 
-/// First line of the file [`LIST`], for people who open it.
+/// First line of the list [`LIST`]. It explains the list to people who open it.
 const HEAD: &str = "# Files that pinhole made here, and replaces unless they were changed\n";
 
-/// Maximum length of the file [`LIST`], in bytes. A longer one is an error.
+/// Maximum length of the list [`LIST`], in bytes. A longer list is an error. A line has about a
+/// hundred bytes, so 16 MiB suffice for more than a hundred thousand files.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// Maximum length, in bytes, of a file that Pinhole wrote into the folder. A longer file cannot be
-/// Pinhole's, so it is not replaced.
+/// Maximum length, in bytes, of an existing file that may be replaced. Pinhole's output files are
+/// far shorter, so a longer file counts as changed by the user, and need not be read to know that.
 const FILE_LIMIT: u64 = 256 << 20;
 
-/// A folder for the output files of a command, in which no file of the user is replaced.
+/// A folder for the output files of a command. No file of the user is replaced in it.
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
-    /// For each file that Pinhole wrote: its name, with `/` between folders, and the hashes that
-    /// its content may have.
+    /// The files that Pinhole wrote: for each path in the folder, with `/` between names, the
+    /// hashes that the file's content may have.
     hashes: BTreeMap<String, Vec<String>>,
 }
 
-/// Error that a file or a folder prevents the files from being written.
+/// Error: output files cannot be written because of a file or a folder.
 #[derive(Debug)]
 pub struct NotWritten {
-    /// Path of the file or folder.
+    /// Path of the file or folder that caused the error.
     pub path: PathBuf,
-    /// The cause of the error, in words.
+    /// The cause of the error, in plain words.
     pub error: io::Error,
 }
 
@@ -61,13 +62,13 @@ impl NotWritten {
 }
 
 impl OutputFolder {
-    /// Opens the folder at `path` for files with the given names. Creates the folder if it is
-    /// missing.
+    /// Opens the folder at `path` to write files with the given names into it. Creates the folder
+    /// if it is missing.
     ///
     /// # Errors
     ///
-    /// The folder cannot be created or written to, or one of the names is taken by a file of the
-    /// user. In both cases, no file was written.
+    /// The folder cannot be created or written to, or the user has a file with one of these names.
+    /// No file has then been written.
     pub fn open<'n>(
         path: &Path,
         names: impl IntoIterator<Item = &'n str>,
@@ -101,21 +102,22 @@ impl OutputFolder {
         Ok(folder)
     }
 
-    /// Writes files, after checking that none of them would replace a file of the user.
+    /// Writes files into the folder. Checks first that no file of the user would be replaced.
     ///
     /// # Errors
     ///
-    /// A file of the user is in the way, or a file cannot be written. All files of the user are
-    /// usually found before any file is written. Otherwise, the files after the failing one are
-    /// missing.
+    /// The user has a file with one of the names, or a file cannot be written. This is usually
+    /// found before any file is written. Otherwise, the files before the failing one have been
+    /// written.
     pub fn write<T: AsRef<[u8]>>(&mut self, files: &[(String, T)]) -> Result<(), NotWritten> {
-        // Another run may have written other files here since the folder was opened.
+        // Another process may have written files into the folder since it was opened, so the list
+        // is read again.
         let list = self.read_list()?;
         for (name, _) in files {
             self.check(name)?;
         }
-        // The new hashes are added to the list before any file is written. If this process is ended
-        // at any time, the list therefore contains the hash of each file's content, old or new.
+        // The new hashes are added to the list before any file is written. Whenever this process is
+        // ended, each file then has its old or its new hash in the list.
         for (name, text) in files {
             let hashes = self.hashes.entry(name.clone()).or_default();
             let hash = hash(text.as_ref());
@@ -125,7 +127,7 @@ impl OutputFolder {
         }
         self.write_list(&list)?;
         for (name, text) in files {
-            // Another program may have created a file of this name while other files were written.
+            // The file is checked again, since another program may have created it meanwhile.
             let original = self.check(name)?;
             let path = self.path.join(name);
             let folder = folder(&path);
@@ -139,7 +141,7 @@ impl OutputFolder {
         self.write_list(&list)
     }
 
-    /// Writes the file `name` if the file at its path is still `original`.
+    /// Writes the file `name`, unless it has changed since it was read as `original`.
     fn write_one(&self, name: &str, original: &Original, bytes: &[u8]) -> Result<(), NotWritten> {
         let path = self.path.join(name);
         let go_on = AtomicBool::new(false);
@@ -151,8 +153,8 @@ impl OutputFolder {
             .map_err(|error| NotWritten { path, error })
     }
 
-    /// Reads `.pinhole`, the list of the files that Pinhole wrote into the folder, and sets
-    /// `hashes` to the hashes in it. Returns `.pinhole` as it was read.
+    /// Reads the list [`LIST`] and sets `hashes` to its content. Returns the list's file as it was
+    /// read.
     fn read_list(&mut self) -> Result<Original, NotWritten> {
         let path = self.path.join(LIST);
         let list = read_list_file(&path).map_err(|error| NotWritten::new(&path, error))?;
@@ -160,8 +162,8 @@ impl OutputFolder {
         Ok(list)
     }
 
-    /// Writes `hashes` into the list `.pinhole`, unless the file already contains them. Fails if
-    /// the file is no longer `original`.
+    /// Writes `hashes` into the list [`LIST`], unless they are its content already. Fails if the
+    /// file has changed since it was read as `original`.
     fn write_list(&self, original: &Original) -> Result<(), NotWritten> {
         let text = self.list();
         if original.bytes() == Some(text.as_bytes()) {
@@ -178,8 +180,8 @@ impl OutputFolder {
         HEAD.to_owned() + &lines.collect::<String>()
     }
 
-    /// Reads the file `name`, if it exists. Fails if Pinhole did not write the file, if it was
-    /// changed since, or if a part of its path is not a folder.
+    /// Reads the file `name`, if it exists. Fails if it belongs to the user, or if a part of its
+    /// path is not a folder.
     fn check(&self, name: &str) -> Result<Original, NotWritten> {
         let mut path = self.path.clone();
         let mut parts = name.split('/').peekable();
@@ -239,7 +241,7 @@ fn refused(message: &str) -> io::Error {
 
 const LINK: &str = "it is a symbolic link, and nothing is written outside of the folder";
 
-/// Reads the file [`LIST`] at `path`, if it exists. Fails if the path is a symbolic link.
+/// Reads the list [`LIST`] at `path`, if it exists. Fails if it is a symbolic link.
 fn read_list_file(path: &Path) -> io::Result<Original> {
     match fs::symlink_metadata(path) {
         Ok(found) if found.is_symlink() => return Err(io::Error::other(LINK)),
@@ -250,8 +252,7 @@ fn read_list_file(path: &Path) -> io::Result<Original> {
     Original::read(path, |path| read(path, LIST_LIMIT))
 }
 
-/// Parses the content of the file [`LIST`]. Returns the hashes of each file in the list, by its
-/// name.
+/// Parses the list [`LIST`]. Returns the hashes of each file, by the file's name.
 fn parse_list(list: &Original) -> io::Result<BTreeMap<String, Vec<String>>> {
     let Some(bytes) = list.bytes() else {
         return Ok(BTreeMap::new());

@@ -1,12 +1,12 @@
-//! The folder in which programs store a user's state, such as `~/.local/state`.
+//! The folder for Pinhole's private files of a user, usually `~/.local/state/pinhole`.
 
 use std::{
     env, fs, io,
     path::{Path, PathBuf},
 };
 
-/// Returns the path of Pinhole's folder in the user's state folder; `None` if the environment has
-/// no absolute path for it.
+/// Returns the path of Pinhole's state folder, in which it keeps private files of the user. Returns
+/// `None` if the environment names no absolute path for it.
 pub(super) fn state_folder() -> Option<PathBuf> {
     let absolute = |name| {
         env::var_os(name)
@@ -21,8 +21,8 @@ pub(super) fn state_folder() -> Option<PathBuf> {
     Some(base.join("pinhole"))
 }
 
-/// Creates the state folder, or a folder in it, if it is missing. No other user can read the
-/// folder.
+/// Creates the state folder, or a folder in it, if it is missing. Other users can neither read nor
+/// list it.
 pub(super) fn make(folder: &Path) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
     builder.recursive(true);
@@ -31,8 +31,8 @@ pub(super) fn make(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
-/// Returns a short text for `long`, to be used in a file's name: the first 128 bits of its SHA-256
-/// in hexadecimal.
+/// Returns a short text for `long`, for use in a file name: the first 128 bits of its SHA-256, in
+/// hexadecimal.
 pub(super) fn digest(long: &[u8]) -> String {
     let digest = hmac_sha256::Hash::hash(long);
     let digits = digest[..16].iter().map(|byte| format!("{byte:02x}"));

@@ -1,5 +1,5 @@
-//! Temporary files, which lie beside the final ones until their content is complete. Each is locked
-//! as long as it is open. Therefore, one without a lock was left by a process that was killed.
+//! Temporary files. Each lies beside the final file until its content is complete. A process locks
+//! its temporary files, so an unlocked one was left by a process that was killed.
 
 use std::{
     ffi::OsString,
@@ -12,20 +12,21 @@ use tempfile::NamedTempFile;
 
 use super::kind;
 
-/// Maximum number of files that are created until one of them can be locked; then writing fails.
-/// Other processes may lock a new file while they look for leftovers, but not this many times in a
-/// row.
+/// Maximum number of files that are created in the attempt to lock one; after that, writing fails.
+/// Other processes may lock a new file for a moment, while they look for leftover files, but hardly
+/// a hundred times in a row. Without a limit, a program that removes every new file would make the
+/// loop endless.
 const MOST_TRIES: usize = 100;
 
-/// Calls `make` until it creates a file that can be locked, at most [`MOST_TRIES`] times. Does not
-/// wait for the locks of other processes.
+/// Calls `make`, which creates a file, until the file can be locked, at most [`MOST_TRIES`] times.
+/// Does not wait for locks of other processes.
 pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result<NamedTempFile> {
     for _ in 0..MOST_TRIES {
         let file = make()?;
-        // On a file system without locks, no process can lock the file as a leftover, so it counts
-        // as locked.
+        // If the file system has no locks, other processes cannot lock the file either, so it
+        // counts as locked.
         let is_locked = !matches!(file.as_file().try_lock(), Err(TryLockError::WouldBlock));
-        // Another process may have removed the file as a leftover before it was locked.
+        // Before the file was locked, another process may have removed it as a leftover.
         if is_locked && file.path().exists() {
             return Ok(file);
         }
@@ -34,8 +35,9 @@ pub fn locked(mut make: impl FnMut() -> io::Result<NamedTempFile>) -> io::Result
     Err(io::Error::other(message))
 }
 
-/// Returns the unlocked files in a folder whose names consist of `prefix`, six random characters,
-/// and `suffix`, each with its name. The returned files are locked until they are closed.
+/// Returns the unlocked files in a folder, with their names. They were left by processes that were
+/// killed. Only names of the form `prefix`, six random characters, `suffix` count. The returned
+/// files are locked until they are closed.
 pub fn left(folder: &Path, prefix: &str, suffix: &str) -> Vec<(OsString, File)> {
     let is_ours = |name: &OsString| {
         let name = name.to_str();

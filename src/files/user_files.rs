@@ -1,4 +1,4 @@
-//! Small files in the user's state folder that no other user can read.
+//! Small private files of the user, in Pinhole's state folder. Other users cannot read them.
 
 use std::{
     fs, io,
@@ -14,14 +14,14 @@ use super::{
     write::{Purpose, write},
 };
 
-/// Returns the path of the folder `name` in the state folder; `None` if the system has no state
-/// folder.
+/// Returns the path of the folder `name` in Pinhole's state folder, or `None` if the system has no
+/// state folder.
 pub fn kept_folder(name: &str) -> Option<PathBuf> {
     Some(state_folder()?.join(name))
 }
 
-/// Writes a text to a file in a folder from [`kept_folder`], so that no other user can read it.
-/// Creates the folder if it is missing.
+/// Writes a text to a private file, which no other user can read. Creates its folder if it is
+/// missing. The folder should come from [`kept_folder`].
 pub fn keep(path: &Path, text: &str) -> io::Result<()> {
     let folder = folder(path);
     state::make(folder).map_err(in_words)?;
@@ -36,7 +36,7 @@ pub fn forget(path: &Path) {
     let _ = fs::remove_file(path);
 }
 
-/// Removes the files in a folder that were last changed more than `age` ago. Errors are ignored.
+/// Removes the files in a folder that were last changed longer than `age` ago. Errors are ignored.
 pub fn forget_older(folder: &Path, age: Duration) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let changed = entry.metadata().and_then(|found| found.modified());
@@ -46,7 +46,7 @@ pub fn forget_older(folder: &Path, age: Duration) {
     }
 }
 
-/// Returns a short file name for a key of any length.
+/// Returns a short file name for a key of any length, made from a hash of the key.
 pub fn name_of(long: &[u8]) -> String {
     digest(long) + ".json"
 }

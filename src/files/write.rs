@@ -1,5 +1,5 @@
-//! The only function that writes files. It writes a file completely or not at all, and only to a
-//! place that the file's purpose allows.
+//! The only function that writes files. It writes a file completely or not at all, and only where
+//! the file's purpose allows it.
 
 use std::{
     fs::{self, File, Metadata, OpenOptions},
@@ -18,39 +18,41 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Destination of a file's content, which can be written at any position.
+/// Destination to which bytes can be written at any position, such as a file.
 pub trait Sink: Write + Seek {}
 
 impl<T: Write + Seek> Sink for T {}
 
-/// Purpose of a file. It decides which existing file may be replaced.
+/// Purpose of a file that is written. It decides which existing file may be replaced.
 #[derive(Clone, Copy, Debug)]
 pub enum Purpose<'a> {
-    /// The user named the file. An existing file is replaced, and a link is followed. A pipe or a
-    /// device gets the content once the content is complete.
+    /// The user named the file. An existing file is replaced, and links are followed. If it is a
+    /// pipe or a device, the whole content is written to it at once.
     Named,
-    /// Pinhole chose the name, in or below a folder. An existing file is replaced, also at the end
-    /// of a link, but never outside of the folder.
+    /// Pinhole chose the name of a file in this folder. An existing file is replaced. Links are
+    /// followed, unless they lead out of the folder.
     Within(&'a Path),
-    /// Pinhole chose the name, in or below a folder. The file is replaced only if it is still what
-    /// was read, or created if there was none.
+    /// Pinhole chose the name of a file in a folder, and has tried to read the file before. An
+    /// existing file is replaced only if it has not changed since. If there was none, the file must
+    /// be new.
     Again {
         /// The folder that a link must not lead out of.
         within: &'a Path,
         /// The file as it was read.
         original: &'a Original,
     },
-    /// As [`Within`](Self::Within), but no other user can read the file.
+    /// Pinhole chose the name of a private file in this folder, which no other user can read. An
+    /// existing file is replaced. Links are followed, unless they lead out of the folder.
     Private(&'a Path),
-    /// The file is new. If a file exists, it is left unchanged, and writing fails.
+    /// The file must be new. If a file exists already, it stays unchanged, and writing fails.
     New,
-    /// The file was read, and its text is changed. The file is replaced only if it is still what
-    /// was read; a link is followed.
+    /// The file was read, and its content is changed. It is replaced only if no other program has
+    /// changed it since. Links are followed.
     Change(&'a Original),
 }
 
 impl<'a> Purpose<'a> {
-    /// Returns the folder that a link must not lead out of, or `None` if links may lead anywhere.
+    /// Returns the folder that links must not lead out of, or `None` if they may lead anywhere.
     fn outer(self) -> Option<&'a Path> {
         match self {
             Self::Within(outer) | Self::Private(outer) | Self::Again { within: outer, .. } => {
@@ -60,8 +62,8 @@ impl<'a> Purpose<'a> {
         }
     }
 
-    /// Returns the original that the file at the path must still be equal to, or `None` if the file
-    /// was not read.
+    /// Returns the file as it was read before, or `None` if it was not read. If it has changed
+    /// since, it is not replaced.
     fn original(self) -> Option<&'a Original> {
         match self {
             Self::Change(original) | Self::Again { original, .. } => Some(original),
@@ -73,12 +75,14 @@ impl<'a> Purpose<'a> {
 /// Writes the file at `path` with the content that the function `write` produces. The old file
 /// stays unchanged until the new content is complete.
 ///
-/// The content goes into a temporary file in the same folder, which then replaces the old file. The
-/// new file gets the old permissions, except setuid, setgid and the sticky bit, and the old owner
-/// if the system allows that. Other hard links keep the old content. If a file that was read cannot
-/// be replaced in this way, it is written in place, and a complete copy exists elsewhere meanwhile.
-/// If `cancel` is set or an error occurs, the temporary file is removed. If this process is killed,
-/// the next process that writes the file removes it.
+/// The content goes into a temporary file in the same folder, which then replaces the old file. It
+/// gets the old owner, if the system allows that, and the old permissions except setuid, setgid and
+/// the sticky bit. Other hard links keep the old content.
+///
+/// If a file that was read cannot be replaced in this way, it is overwritten in place, and a copy
+/// of the new content exists meanwhile. If `cancel` is set or an error occurs, the temporary file
+/// is removed. If this process is killed, the temporary file is removed when the file is next
+/// written.
 pub fn write(
     path: &Path,
     purpose: Purpose<'_>,
@@ -116,8 +120,8 @@ fn write_at_once(
     }
 }
 
-/// Writes the content that the function `write` produces to a stream, such as standard output.
-/// Fails once `cancel` is set; the bytes written before then stay written.
+/// Writes the content that the function `write` produces to a stream, such as standard output. If
+/// `cancel` is set meanwhile, fails; bytes that were already written stay written.
 pub fn write_stream(
     sink: impl Write,
     cancel: &AtomicBool,
@@ -128,7 +132,7 @@ pub fn write_stream(
     out.flush()
 }
 
-/// Checks that a file can be written at `path`, as far as that can be known beforehand, so that the
+/// Checks whether a file can be written at `path`, as far as that can be known before, so that the
 /// user learns of an error before a long render.
 pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     let is_writable = match target(path, purpose) {
@@ -139,7 +143,7 @@ pub fn check_writable(path: &Path, purpose: Purpose<'_>) -> io::Result<()> {
     is_writable.map_err(|error| writing_error(path, error))
 }
 
-/// Expresses an error of writing to a path in plain words.
+/// Converts an error of writing to `path` to one in plain words.
 fn writing_error(path: &Path, error: io::Error) -> io::Error {
     match error.kind() {
         kind @ io::ErrorKind::NotFound if !folder(path).exists() => {
@@ -149,15 +153,15 @@ fn writing_error(path: &Path, error: io::Error) -> io::Error {
     }
 }
 
-/// Kind of destination to which a file's content is written.
+/// Kind of the destination at a path.
 enum WriteTarget {
     File(FileTarget),
-    /// A pipe or a device, to which the content is written.
+    /// A pipe or a device.
     Stream,
 }
 
-/// A file that is created or replaced: its path after all links are followed, and the metadata of
-/// the existing file, if there is one.
+/// A file that will be created or replaced: its path after links are followed, and the metadata of
+/// the old file if there is one.
 struct FileTarget {
     path: PathBuf,
     found: Option<Metadata>,
@@ -187,8 +191,8 @@ fn target(path: &Path, purpose: Purpose<'_>) -> io::Result<WriteTarget> {
     Ok(target)
 }
 
-/// Fails if the target lies outside of the folder that `purpose` allows. A link may have been
-/// changed since the last check.
+/// Fails if the file lies outside of the folder that `purpose` allows. This is checked more than
+/// once, since a link may be changed meanwhile.
 fn check_folder(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<()> {
     let Some(outer) = purpose.outer() else {
         return Ok(());
@@ -205,9 +209,9 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
     match fs::metadata(path) {
         Ok(found) => match FileKind::of(&found) {
             FileKind::File => {
-                // To replace a file, only the permission to write to its folder is needed. However,
-                // the owner of a write-protected file expects that it is not changed, so the file
-                // itself must be writable.
+                // The system lets anyone who may write to the folder replace the file. Its owner,
+                // however, may have made the file read-only to protect it, so the file itself must
+                // be writable.
                 without_waiting(OpenOptions::new().write(true)).open(path)?;
                 Ok(WriteTarget::File(FileTarget {
                     path: fs::canonicalize(path)?,
@@ -218,8 +222,8 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
             kind => Err(kind.refused()),
         },
         Err(error) if error.kind() == io::ErrorKind::NotFound => match fs::read_link(path) {
-            // A dangling link is followed: the file that it names is created. A cycle of links
-            // causes another error.
+            // The link leads to a file that does not exist, which is created. If links form a
+            // cycle, the system reports another error.
             Ok(target) => behind_links(&folder(path).join(target)),
             Err(_) => Ok(WriteTarget::File(FileTarget {
                 path: path.to_owned(),
@@ -230,7 +234,7 @@ fn behind_links(path: &Path) -> io::Result<WriteTarget> {
     }
 }
 
-/// Writes a temporary file, which then replaces the target.
+/// Writes the content to a temporary file, which then replaces the target.
 fn replace(
     target: &FileTarget,
     purpose: Purpose<'_>,
@@ -238,18 +242,18 @@ fn replace(
     write: impl FnOnce(&mut dyn Sink) -> io::Result<()>,
 ) -> io::Result<()> {
     let temporary = temporary(target, purpose)?;
-    // The sink is the [`File`], since errors of the [`NamedTempFile`] would name the temporary
-    // path.
+    // The bytes are written to the [`File`], not to the [`NamedTempFile`], whose error messages
+    // would contain the temporary path.
     let sink = temporary.as_file();
     let mut out = BufWriter::with_capacity(1 << 16, Checked { sink, cancel });
     write(&mut out)?;
     out.flush()?;
     drop(out);
-    // Only syncing shows whether the disk had room for all of the content.
+    // Some systems report a full disk only when the file is synchronised.
     temporary.as_file().sync_all()?;
     check(cancel)?;
     check_folder(target, purpose)?;
-    // Other programs may have changed the target while the content was written.
+    // If the file was read, another program may have changed it while the content was written.
     let (must_be_new, refused) = match purpose.original() {
         Some(original) if original.bytes().is_some() => {
             return exchange::replace(temporary, &target.path, original);
@@ -274,8 +278,8 @@ fn exists() -> io::Error {
     io::Error::new(io::ErrorKind::AlreadyExists, message)
 }
 
-/// Writes to a pipe or a device once the content is complete. Fails if no program has opened the
-/// other end of a pipe. Otherwise, writing takes as long as that program reads.
+/// Writes the content to a pipe or a device once it is complete. Fails if no program has opened the
+/// pipe's other end. Writing waits until the other program has read everything.
 fn write_device(
     path: &Path,
     cancel: &AtomicBool,
@@ -306,24 +310,24 @@ fn write_device(
 /// Suffix of the name of a temporary file.
 const SUFFIX: &str = ".tmp";
 
-/// Creates a temporary file in the target's folder, after removing leftover ones of the same
-/// target.
+/// Creates a temporary file in the target's folder. First removes temporary files that killed
+/// processes left for the same target.
 fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempFile> {
     let FileTarget { path, found } = target;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    // On most systems, a name has at most 255 bytes. Each of the 50 characters may take four bytes.
+    // Most systems allow 255 bytes for a name. A character takes at most four bytes, so 50 of them
+    // leave room for the rest of the name.
     let name: String = name.chars().take(50).collect();
     let prefix = format!(".pinhole-{name}-");
     remove_leftovers(folder(path), &prefix);
-    // Temporary files are created so that no other user can read them, unless `permissions` is
-    // called.
+    // By default, other users cannot read a temporary file.
     let is_private = matches!(purpose, Purpose::Private(_));
     let mut builder = Builder::new();
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     if found.is_none() && !is_private {
-        // These are the usual permissions of a new file, from which the system removes those in the
-        // umask.
+        // These are the usual permissions of a new file. The system removes those that the user's
+        // umask forbids.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = locked(|| builder.tempfile_in(folder(path)))?;
@@ -335,7 +339,8 @@ fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempF
     Ok(temporary)
 }
 
-/// Removes temporary files that killed processes left in the folder. Errors are ignored.
+/// Removes temporary files that killed processes left in the folder. Their names begin with
+/// `prefix`. Errors are ignored.
 fn remove_leftovers(folder: &Path, prefix: &str) {
     // Each file stays locked until it is removed, so that no other process starts to write to it.
     for (name, _lock) in temporary::left(folder, prefix, SUFFIX) {
@@ -343,8 +348,8 @@ fn remove_leftovers(folder: &Path, prefix: &str) {
     }
 }
 
-/// Gives a file the owner and the permissions of the file that `found` describes, as far as the
-/// system allows. Only root may change the owner; other users may choose among their own groups.
+/// Gives a file the owner and the permissions of another file, described by `found`, as far as the
+/// system allows. Only root may change owners; other users may choose among their groups.
 #[cfg(unix)]
 fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     use std::{
@@ -357,7 +362,7 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
         .or_else(|_| fchown(file, None, group))
         .is_ok();
     let mode = found.mode() & 0o777;
-    // If the file has another group than before, this group gets no more permissions than all other
+    // If the group could not be kept, the new group gets at most the permissions that all other
     // users have.
     let allowed = if has_group {
         mode
@@ -372,7 +377,7 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
     file.set_permissions(found.permissions())
 }
 
-/// A sink whose writes fail once `cancel` is set.
+/// A destination whose writes fail once `cancel` is set.
 struct Checked<'a, S> {
     sink: S,
     cancel: &'a AtomicBool,
@@ -380,7 +385,7 @@ struct Checked<'a, S> {
 
 fn check(cancel: &AtomicBool) -> io::Result<()> {
     if cancel.load(Ordering::Relaxed) {
-        // The error's kind is not `Interrupted`, since writers would try again.
+        // The error must not have the kind `Interrupted`, after which callers would write again.
         return Err(io::Error::other("interrupted"));
     }
     Ok(())

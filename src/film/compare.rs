@@ -1,9 +1,9 @@
 //! The differences between two pictures, and the position of the largest.
 //!
 //! In: two films. Out: the root mean square of their differences in linear light, the largest
-//! difference, and the number of pixels that differ by more than a tolerance. The largest
-//! difference and the tolerance are in steps of 8-bit sRGB, since equal steps look about equally
-//! large. A step is 1/255 of the way from black to white.
+//! difference, and the number of pixels that differ by more than a tolerance. The last two are
+//! measured in steps of 8-bit sRGB, since equal steps look about equally large. A step is 1/255 of
+//! the way from black to white.
 
 use thiserror::Error;
 
@@ -13,32 +13,33 @@ use crate::color::linear_to_srgb;
 /// Number of steps of 8-bit sRGB between black and white.
 const STEPS: f64 = 255.0;
 
-/// Bound of the rounding errors of decoding and encoding a channel, in steps of 8-bit sRGB. A
-/// difference counts as larger than a tolerance only if it exceeds the tolerance by more than this
-/// bound. The bound covers a few roundings of numbers up to 255, and the gap between the two pieces
-/// of the sRGB curve, which is at most 3e-8 of the range.
+/// Bound on the rounding errors of converting a channel to sRGB and back, in steps of 8-bit sRGB. A
+/// difference exceeds a tolerance only if it does so by more than this bound, so that rounding
+/// alone never decides. The linear part and the power part of the sRGB curve do not meet exactly:
+/// their gap is up to 3e-8 of the range from black to white, i.e. 8e-6 steps. Other roundings are
+/// below 1e-12 steps.
 const SLACK: f64 = 1e-5;
 
 /// Slope of the sRGB curve at black, where it is steepest, in steps of 8-bit sRGB per unit of
-/// linear light. An error bound in linear light, multiplied by it, is a bound in steps.
+/// linear light. It converts an error bound in linear light to one in steps.
 const STEEPEST: f64 = 12.92 * STEPS;
 
 /// Names of a pixel's channels, in the order in which a film stores them.
 pub const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
-/// Largest difference of a channel that still counts as equal.
+/// Greatest difference between two pixels that still counts as equal, in each channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Tolerance<'a> {
-    /// Tolerance of every channel, in steps of 8-bit sRGB.
+    /// Tolerance that is the same for all pixels, in steps of 8-bit sRGB.
     pub steps: f64,
-    /// Error bound of each pixel's mean, in linear light, row by row; `None` if it is unknown. The
-    /// bound of a pixel, converted to steps, is added to `steps`.
+    /// Error bound of each pixel's mean, in linear light, row by row. It is converted to steps and
+    /// added to `steps`. `None` if the pictures have no error bounds.
     pub bounds: Option<&'a [f32]>,
 }
 
 impl Tolerance<'_> {
-    /// Returns the extra tolerance of the pixel with index `at`, in steps of 8-bit sRGB, from its
-    /// error bound.
+    /// Returns the extra tolerance of the pixel with index `at`, in steps of 8-bit sRGB. It is the
+    /// pixel's error bound, converted to steps.
     fn slack(&self, at: usize) -> f64 {
         let bound = self.bounds.map_or(0.0, |bounds| f64::from(bounds[at]));
         bound * STEEPEST
@@ -53,14 +54,16 @@ pub struct Comparison {
     pub width: u32,
     /// Number of rows of both pictures.
     pub height: u32,
-    /// Root mean square of the differences of all channels of all pixels, in linear light, 0 to 1.
+    /// Root mean square of the differences over all channels of all pixels. It is in linear light
+    /// and from 0 to 1.
     pub rmse: f64,
-    /// The largest difference. If several are equally large, it is the first of them, row by row.
+    /// The largest difference. If several are equally large, it is the first of them in the order
+    /// of rows.
     pub largest: Largest,
     /// Number of pixels that differ by more than the tolerance.
     pub beyond: u64,
-    /// Number of pixels whose error bounds leave open whether they differ by more than the
-    /// tolerance.
+    /// Number of pixels that may or may not differ by more than the tolerance, since their error
+    /// bounds are too large to decide.
     pub undecided: u64,
 }
 
@@ -101,26 +104,26 @@ impl SizesDiffer {
 }
 
 impl Comparison {
-    /// Returns whether `beyond` is 0. Pixels that are only `undecided` do not count.
+    /// Returns whether no pixel is known to differ by more than the tolerance.
     pub fn is_equal(&self) -> bool {
         self.beyond == 0
     }
 
-    /// Returns the share of pixels that differ by more than the tolerance, 0 to 1.
+    /// Returns the share of pixels, from 0 to 1, that differ by more than the tolerance.
     pub fn share(&self) -> f64 {
         self.beyond as f64 / (f64::from(self.width) * f64::from(self.height))
     }
 }
 
-/// Compares two pictures. A number that is NaN differs from any other by infinitely many steps.
+/// Compares two pictures. NaN differs from every number by infinitely many steps.
 ///
 /// # Errors
 ///
-/// Their sizes differ.
+/// The sizes of the pictures differ.
 ///
 /// # Panics
 ///
-/// The tolerance has bounds for fewer pixels.
+/// The tolerance has fewer error bounds than the pictures have pixels.
 pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, SizesDiffer> {
     let rmse = rmse(a, b)?;
     let (width, height) = (a.width(), a.height());
@@ -161,7 +164,8 @@ pub fn compare(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Comparison, S
 fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
     let differences = [0, 1, 2].map(|channel| {
         let difference = (steps(p[channel]) - steps(q[channel])).abs();
-        // Every comparison with NaN is false, as if the pixels were equal.
+        // The difference is NaN if a channel is. It is replaced by infinity, since NaN would
+        // compare as if the pixels were equal.
         if difference.is_nan() {
             f64::INFINITY
         } else {
@@ -177,7 +181,7 @@ fn difference(p: [f64; 3], q: [f64; 3]) -> (usize, f64) {
 ///
 /// # Errors
 ///
-/// Their sizes differ.
+/// The sizes of the pictures differ.
 pub fn rmse(a: &Film, b: &Film) -> Result<f64, SizesDiffer> {
     SizesDiffer::unless_equal(a, b)?;
     let squares = a.pixels().iter().zip(b.pixels());
@@ -187,10 +191,9 @@ pub fn rmse(a: &Film, b: &Film) -> Result<f64, SizesDiffer> {
     Ok((sum / (3.0 * a.pixels().len() as f64)).sqrt())
 }
 
-/// Draws the differences of two pictures of one size as a picture. Each pixel shows the largest
-/// difference of its channels. Differences within the tolerance are black. Beyond it, the colour
-/// goes through red and yellow to white at 255 steps, linearly in the difference, so that noise
-/// stays dark.
+/// Draws the differences of two pictures of one size. Differences within the tolerance are black.
+/// Larger ones go through red and yellow to white at 255 steps of 8-bit sRGB. The colour is linear
+/// in the largest difference of a pixel's channels, so that noise stays dark.
 ///
 /// # Errors
 ///
@@ -198,7 +201,7 @@ pub fn rmse(a: &Film, b: &Film) -> Result<f64, SizesDiffer> {
 ///
 /// # Panics
 ///
-/// The sizes differ, or the tolerance has bounds for fewer pixels.
+/// The sizes differ, or the tolerance has fewer error bounds than the pictures have pixels.
 pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLarge> {
     if let Err(error) = SizesDiffer::unless_equal(a, b) {
         panic!("{error}");
@@ -214,11 +217,12 @@ pub fn heat_map(a: &Film, b: &Film, tolerance: Tolerance) -> Result<Film, TooLar
     Ok(map)
 }
 
-/// Text that explains the colours of a heat map ([`heat_map`]) to users.
+/// Explanation, for users, of the colours that [`heat_map`] draws.
 pub const HEAT_LEGEND: &str =
     "black: within the tolerance; red: 85 steps of 255; yellow: 170; white: 255 (linear)";
 
-/// Returns the linear light of a heat map's colour for a difference in steps of 8-bit sRGB.
+/// Returns the colour of a heat map, in linear light, for a difference of `steps` steps of 8-bit
+/// sRGB.
 fn heat(steps: f64) -> [f64; 3] {
     let t = 3.0 * steps / STEPS;
     [t, t - 1.0, t - 2.0].map(|encoded| crate::color::srgb_to_linear(encoded.clamp(0.0, 1.0)))

@@ -1,4 +1,4 @@
-//! Pictures embedded in an HTML page.
+//! Reduces pictures and encodes them as `data:` URIs, so that an HTML page can contain them.
 
 use std::io;
 
@@ -7,7 +7,7 @@ use base64::{Engine, prelude::BASE64_STANDARD};
 use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_png};
 use crate::area::Area;
 
-/// Shrinks a picture to at most `columns` and `rows`, by averaging squares of pixels in linear
+/// Reduces a picture to at most `columns` × `rows` pixels, by averaging squares of pixels in linear
 /// light.
 ///
 /// # Errors

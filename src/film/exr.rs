@@ -1,7 +1,7 @@
-//! OpenEXR: linear means, rounded to 32-bit floats, in the channels R, G and B.
+//! OpenEXR files: pixels' means in linear light, as 32-bit floats in the channels R, G and B.
 //!
-//! The display window is the whole picture. The data window is the part of it that the file
-//! contains.
+//! The format's display window is the area of the whole picture. Its data window is the part that
+//! the file contains.
 
 use std::io;
 
@@ -19,12 +19,12 @@ use exr::{
 use super::pixels::Film;
 use crate::{area::Area, files::Sink};
 
-/// A film of linear light, in 64-bit or in 32-bit floats.
+/// A picture in memory, in linear light, with 64-bit or 32-bit floats.
 #[derive(Clone, Copy, Debug)]
 pub enum LinearFilm<'a> {
-    /// Means of the pixels as `f64`.
+    /// Pixels with 64-bit floats.
     Means(&'a Film),
-    /// Means of the pixels, rounded to 32-bit floats.
+    /// Pixels with 32-bit floats.
     Floats(&'a Film<[f32; 3]>),
 }
 
@@ -63,12 +63,12 @@ impl LinearFilm<'_> {
     }
 }
 
-/// Writes `film` as an OpenEXR file. `part` is the area of the picture `whole` that `film` shows;
-/// it may be all of it.
+/// Writes `film` as an OpenEXR file. The film shows the area `part` of a picture with the area
+/// `whole`. Both are equal if the picture was not cropped.
 ///
 /// # Errors
 ///
-/// `out` cannot be written to, or `part` has another size than the film or does not lie in `whole`.
+/// `out` cannot be written to, or `part` does not have the film's size or does not lie in `whole`.
 pub fn write_exr<'a>(
     film: impl Into<LinearFilm<'a>>,
     part: Area,
@@ -90,12 +90,13 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
     let channels = SpecificChannels::rgb(|Vec2(x, y): Vec2<usize>| {
-        // Columns and rows are below 2^20, so the conversions to `u32` are exact.
+        // A picture has at most 2^20 columns and rows, so the conversions to `u32` are exact.
         <(f32, f32, f32)>::from(film.pixel(x as u32, y as u32))
     });
     let encoding = Encoding {
-        // A block of 16 rows is in memory several times at once. For the widest pictures, that
-        // would take more memory than the film, so their blocks have one row.
+        // Blocks of 16 rows compress better. For very wide pictures, they would take more memory
+        // than the film, since each block is in memory several times, so these have blocks of one
+        // row.
         compression: match film.width() {
             0..=0x1_0000 => Compression::ZIP16,
             _ => Compression::ZIP1,
@@ -111,7 +112,8 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
         ..LayerAttributes::default()
     };
     image.attributes = ImageAttributes {
-        // These are the primaries of sRGB, which readers also assume if a file has none.
+        // These are the colours of sRGB's red, green, blue and white. OpenEXR also assumes them if
+        // a file does not name any.
         chromaticities: Some(Chromaticities {
             red: Vec2(0.64, 0.33),
             green: Vec2(0.3, 0.6),
@@ -123,7 +125,7 @@ fn write(film: LinearFilm, part: Area, whole: Area, out: &mut dyn Sink) -> io::R
             whole.height as usize,
         )))
     };
-    // The file is written block by block, so that at most one block is in memory.
+    // The blocks are written one by one, so that at most one is in memory.
     image
         .write()
         .non_parallel()

@@ -1,47 +1,48 @@
-//! The compression of a JPEG file, and its effect on another picture.
+//! The compression of a JPEG file, and its effect on other pictures.
 //!
-//! In: a file. Out: its quantization tables of luma and of chroma, and its chroma subsampling. The
-//! tables are the first two in the file, in the order in which programs write them; a single table
-//! counts for both. A lossy WebP is treated as a JPEG with 2 × 2 subsampling whose steps are all
-//! [`WEBP_STEP`].
+//! In: a file. Out: its quantization tables for luma (brightness) and chroma (colour), and its
+//! chroma subsampling. Luma has the first table in the file, and chroma the second, as programs
+//! write them; a single table serves both. A lossy WebP is treated as a JPEG with 2 × 2 subsampling
+//! and the quantization step [`WEBP_STEP`].
 
 use image::ImageFormat;
 use jpeg_encoder::{
     ChromaSubsamplingMethod, ColorType, Encoder, QuantizationTableType, SamplingFactor,
 };
 
-/// Quantization step that is assumed for every coefficient of a lossy WebP. It is about the step of
-/// a JPEG of quality 75.
+/// Quantization step that is assumed for every coefficient of a lossy WebP, since its own steps are
+/// not read. The value is a guess: about the typical step of a JPEG of quality 75.
 const WEBP_STEP: u16 = 16;
 
-/// The lossy coding of a JPEG file (ITU-T T.81).
+/// The lossy compression of a JPEG file (ITU-T T.81).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jpeg {
     /// Quantization table of luma.
     pub luma: JpegTable,
     /// Quantization table of chroma.
     pub chroma: JpegTable,
-    /// Number of columns and number of rows of pixels that share one chroma sample.
+    /// Chroma subsampling: the numbers of columns and of rows of pixels that share one chroma
+    /// sample.
     pub shared: [u8; 2],
 }
 
-/// A quantization table: a step for each of the 64 coefficients of a block of 8 × 8 pixels. Each
-/// coefficient is rounded to a multiple of its step. The first step belongs to the block's mean.
+/// A quantization table: the steps of the 64 cosine coefficients of a block of 8 × 8 pixels. Each
+/// coefficient is rounded to a multiple of its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JpegTable {
-    /// Square of the first step, by which the mean of a block is quantized.
+    /// Square of the step by which the mean of a block is rounded.
     pub first: f64,
     /// Mean of the squares of all 64 steps.
     pub mean: f64,
-    /// The steps, row by row.
+    /// The 64 steps, row by row. The first step is that of the block's mean.
     pub steps: [u16; 64],
 }
 
 impl JpegTable {
-    /// Builds a table from its steps in zigzag order, as files contain them.
+    /// Makes a table from its steps in zigzag order, in which files contain them.
     fn new(zigzag: [u16; 64]) -> Self {
         let mut order: Vec<usize> = (0..64).collect();
-        // The zigzag runs along the diagonals of the block, in alternating directions.
+        // Zigzag order follows the diagonals of the block, in alternating directions.
         order.sort_by_key(|at| {
             let (x, y) = (at % 8, at / 8);
             (x + y, if (x + y) % 2 == 0 { x } else { y })
@@ -61,8 +62,8 @@ impl JpegTable {
 }
 
 impl Jpeg {
-    /// Returns the coding of a JPEG, or an assumed one for a lossy WebP. Returns `None` for other
-    /// files, and for a JPEG without tables.
+    /// Returns the compression of a JPEG, or an assumed one for a lossy WebP. Returns `None` for
+    /// other files, and for a JPEG without quantization tables.
     pub fn of(bytes: &[u8]) -> Option<Self> {
         if bytes.starts_with(b"RIFF") && bytes.windows(4).take(64).any(|name| name == b"VP8 ") {
             let table = JpegTable::new([WEBP_STEP; 64]);
@@ -87,8 +88,8 @@ impl Jpeg {
             let segment = rest.get(4..2 + length)?;
             match marker {
                 0xdb => read_tables(segment, &mut tables)?,
-                // The frame header contains for each component its number, its sampling factors
-                // (horizontal and vertical), and its table.
+                // For each channel, the frame header contains its number, its horizontal and
+                // vertical sampling factors, and the number of its quantization table.
                 0xc0..=0xc2 => {
                     let components = segment.get(6..)?.chunks_exact(3);
                     let factors: Vec<[u8; 2]> = components
@@ -98,7 +99,7 @@ impl Jpeg {
                         shared = [0, 1].map(|i| luma[i] / chroma[i].max(1));
                     }
                 }
-                // The scan, which contains the pixels, follows this marker.
+                // This marker precedes the compressed pixels, so all tables have been read.
                 0xda => {
                     let mut tables = tables.into_iter().flatten();
                     let luma = tables.next()?;
@@ -115,9 +116,8 @@ impl Jpeg {
         }
     }
 
-    /// Encodes and decodes a picture with this coding. `bytes` are its red, green and blue bytes,
-    /// row by row. Returns the decoded bytes, or `None` if the picture cannot be encoded in this
-    /// way.
+    /// Compresses a picture as this JPEG was, and decodes the result. `bytes` are its red, green
+    /// and blue bytes, row by row. Returns `None` if the encoder does not support the compression.
     pub fn coded(&self, bytes: &[u8], [width, height]: [u32; 2]) -> Option<Vec<u8>> {
         let mut file = Vec::new();
         let mut encoder = Encoder::new(&mut file, 100);
@@ -137,17 +137,17 @@ impl Jpeg {
     }
 }
 
-/// Returns whether a JPEG continues to its end marker. Decoders fill a truncated file with gray
-/// below the cut, which looks like a picture.
+/// Returns whether a JPEG has its end marker. If it is cut off, decoders fill the rest with gray,
+/// which would look like a part of the picture.
 pub fn is_whole(bytes: &[u8]) -> bool {
-    /// Second byte of the marker (start of scan) that precedes the entropy-coded data.
+    /// Second byte of the marker before the compressed pixels (start of scan).
     const SCAN: u8 = 0xda;
     const END: u8 = 0xd9;
-    // This is the position after the start marker of the file.
+    // The position starts after the two bytes that begin every JPEG.
     let mut at = 2;
     loop {
-        // In entropy-coded data, a byte of 255 is followed by a 0. The markers 0xd0 to 0xd7, which
-        // restart the decoder, may also occur there.
+        // In compressed pixels, 0 follows a byte of 255 that is not a marker. The markers 0xd0 to
+        // 0xd7, which let a decoder restart, are part of the compressed pixels.
         let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 0xd0..=0xd7 | 0xff);
         let rest = bytes.get(at..).unwrap_or_default();
         let Some(found) = rest.windows(2).position(is_marker) else {

@@ -1,13 +1,13 @@
-//! The mean of a pixel's samples, rounded once.
+//! The mean colour of a pixel's samples, computed with a single rounding.
 
 use crate::math::{Double, Real, two_product};
 
-/// Returns the mean of a pixel's samples, Σ count · colour / n, rounded once, where n is the sum of
-/// the counts.
+/// Returns the mean colour of a pixel's samples, Σ count · colour / n, rounded once. The iterator
+/// `seen` yields each colour with the count of its samples, and n is the sum of the counts.
 ///
-/// `seen` contains the count of each colour. Its order is always that of the palette, so that the
-/// same counts give the same bits. The sum and the quotient are double-doubles with errors of about
-/// 2^−100 of the mean. A single colour is returned unchanged.
+/// Sums and quotients are computed with double-doubles, i.e. sums of two `f64`, with relative
+/// errors of about 2^−100. The colours come in the order of the palette, so that equal counts give
+/// equal bits. A single colour is returned unchanged.
 pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     let mut samples = 0;
     let mut sums = [Double::from_f64(0.0); 3];
@@ -21,9 +21,9 @@ pub fn mean(seen: impl Iterator<Item = (u64, [f64; 3])>) -> [f64; 3] {
     sums.map(|sum| quotient(&sum, samples as f64))
 }
 
-/// Returns sum/count by two steps of long division. The remainder of the first step is exact,
-/// except for the rounding when `lo` is added. Therefore, a quotient halfway between two `f64` is
-/// exact before it is rounded for the only time.
+/// Returns `sum`/`count`, rounded only by the last addition. It is computed in two steps of long
+/// division. The first step divides the leading part of `sum`. The second divides the remainder of
+/// the first, which is exact except for the rounding when the trailing part, `sum.lo`, is added.
 fn quotient(sum: &Double, count: f64) -> f64 {
     let first = sum.hi / count;
     let product = two_product(first, count);

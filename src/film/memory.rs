@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::files::read_system_text;
 
-/// Error of a picture for which there is not enough memory.
+/// Error: there is not enough memory for a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "a picture of {width} × {height} pixels needs {} of memory, {}",
@@ -21,12 +21,12 @@ pub struct TooLarge {
     pub height: u32,
     /// Number of bytes that the picture needs.
     pub needed: u64,
-    /// Number of bytes of memory that are available; `None` if it is unknown.
+    /// Number of bytes of memory that are available, if known.
     pub available: Option<u64>,
 }
 
-/// Returns the number of bytes that a picture needs. Fails if more than the available memory is
-/// needed.
+/// Returns the number of bytes that a picture needs. Fails if this is more than the available
+/// memory.
 pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLarge> {
     let pixels = u64::from(width) * u64::from(height);
     let needed = pixels.saturating_mul(bytes_per_pixel);
@@ -41,7 +41,8 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
     }
 }
 
-/// Checks the available memory, then tries to allocate the needed bytes, and frees them at once.
+/// Checks that a picture's memory is available. In addition, tries to allocate it, and frees it at
+/// once, since the system may refuse the allocation.
 ///
 /// # Errors
 ///
@@ -60,10 +61,10 @@ pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooL
     })
 }
 
-/// Returns the number of bytes that this process may still allocate: the smaller of the machine's
-/// available memory and the rest of its control group's limit. Without this check, a system that
-/// overcommits memory would kill the process later. Returns `None` if neither is known, as on
-/// systems other than Linux; there, only a failing allocation shows that memory is short.
+/// Returns the number of bytes that this process may still allocate: the machine's available
+/// memory, or less if the process's control group has a limit. Returns `None` if this is not known,
+/// as on systems other than Linux. Without this check, a system that promises more memory than it
+/// has could later kill the process.
 fn available() -> Option<u64> {
     [machine(), control_group()].into_iter().flatten().min()
 }
@@ -74,8 +75,8 @@ fn machine() -> Option<u64> {
     Some(entry(&table, "MemAvailable:")? * 1024)
 }
 
-/// Returns how many bytes the control groups around this process still allow it to allocate: the
-/// least number of all groups. Returns `None` if no group has a limit.
+/// Returns the number of bytes that this process may still allocate within the limits of its
+/// control groups, which are nested. Returns `None` if there is no limit.
 fn control_group() -> Option<u64> {
     const ROOT: &str = "/sys/fs/cgroup";
     let groups = read_system_text("/proc/self/cgroup")?;
@@ -88,20 +89,21 @@ fn control_group() -> Option<u64> {
         .min()
 }
 
-/// Returns the number of bytes that a control group may still allocate. Cached file pages count as
-/// its usage, but are reclaimed on demand, so they are added. Returns `None` if the group has no
-/// limit.
+/// Returns the number of bytes that a control group may still allocate, or `None` if it has no
+/// limit. Its usage includes cached file pages, which the system frees on demand, so they do not
+/// count.
 fn left(group: &Path) -> Option<u64> {
     let read = |name| read_system_text(group.join(name));
-    // Without a limit, the file contains the word `max`, which is not a number.
+    // A group without a limit has the word `max` in the file `memory.max`. It is not a number, so
+    // `None` is returned.
     let limit: u64 = read("memory.max")?.trim().parse().ok()?;
     let usage: u64 = read("memory.current")?.trim().parse().ok()?;
     let cache = entry(&read("memory.stat").unwrap_or_default(), "inactive_file ").unwrap_or(0);
     Some(limit.saturating_sub(usage.saturating_sub(cache)))
 }
 
-/// Returns the number after `name` in the first line of `table` that begins with `name`. `table` is
-/// the text of a system file such as `/proc/meminfo`.
+/// Returns the number after `name` in the first line that begins with `name`. `table` is the text
+/// of a system file such as `/proc/meminfo`.
 fn entry(table: &str, name: &str) -> Option<u64> {
     let entry = table.lines().find_map(|line| line.strip_prefix(name))?;
     entry.split_whitespace().next()?.parse().ok()

@@ -1,9 +1,9 @@
-//! Pixels in memory, and the files they are written to and read from.
+//! Pictures in memory, and the files that they are written to and read from.
 //!
-//! In: how often each colour was seen in a pixel. Out: its mean in linear light (`mean`), the
-//! `pixels` in memory, and a picture file: `png`, which contains the scene, or `exr`. `read` reads
-//! a `picture` from a file, also from files of other programs (`read_exr`, `pnm`, `jpeg`). `compare` measures how much two
-//! films differ, and `embed` puts a film into a page.
+//! In: the number of samples of each colour in a pixel. Out: their mean in linear light (`mean`),
+//! `pixels` in memory, and picture files (`png`, which also contains the scene, and `exr`). `read`
+//! reads a `picture` from a file of any program, with a module for each format that needs one.
+//! `compare` measures the differences of two pictures, and `embed` encodes them for an HTML page.
 
 mod compare;
 #[cfg(feature = "pages")]

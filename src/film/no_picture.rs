@@ -1,7 +1,7 @@
-//! Files that are no pictures although one is expected: what they are, and what to do about it.
+//! Recognises files that were given instead of a picture, such as web pages, and says what to do.
 
-/// Kinds of files that users may give in place of a picture: the first bytes of the file, and what
-/// the error message says about it.
+/// Kinds of files that users may give instead of a picture. Each has the first bytes of such files
+/// and the description for the error message.
 const BEGINNINGS: [(&[u8], &str); 8] = [
     (
         b"version https://git-lfs",
@@ -22,11 +22,11 @@ const BEGINNINGS: [(&[u8], &str); 8] = [
 const WEB: &str = "a web page: the download was of a page around the picture, or failed";
 const PFM: &str = "a PFM: OpenEXR is the format of floats that is read here";
 
-/// Brands of HEIC pictures, from telephones and cameras. They follow the eight bytes that begin an
-/// ISO base media file.
+/// Format names in the header of HEIC pictures, which telephones and cameras make. They are at byte
+/// 8 of the file.
 const CAMERAS: [&[u8]; 5] = [b"heic", b"heix", b"hevc", b"mif1", b"msf1"];
 
-/// Returns a description of a file that is no picture. Returns `None` if its kind is unknown.
+/// Returns a description of a file that is not a picture, or `None` if its kind is unknown.
 pub(super) fn of(bytes: &[u8]) -> Option<&'static str> {
     if bytes.is_empty() {
         return Some("an empty file");

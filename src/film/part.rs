@@ -1,24 +1,26 @@
-//! The position of a cropped part in a whole picture, for parts whose file does not contain it.
+//! Finds where a cropped picture lies in the whole one, if its file does not say so.
 
 use super::pixels::Film;
 use crate::area::Area;
 
-/// Maximum number of pixel comparisons in the search for a part's position: pixels of the part
-/// times positions in the whole picture. If all pixels would be more, only some of the part's
-/// pixels are compared, at equal distances.
+/// Approximate maximum number of pixel comparisons in the search for a part's position. It bounds
+/// the time of the search. With fewer comparisons, a wrong position could be found. At each
+/// position, between 16 and 400 pixels are compared, at equal distances in the part.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum ratio of the squared difference between the part and the whole picture at the best
-/// position to the mean squared difference over all positions. Above it, the position counts as
-/// unknown. Sampling noise leaves a smaller ratio at the right position.
+/// Maximum ratio of the part's squared difference from the whole picture at the best position to
+/// the mean over all positions. Above it, the position counts as unknown. At the right position,
+/// usual sampling noise leaves a far smaller ratio; at a wrong one, the ratio is near 1. Any value
+/// well between the two works.
 const MAX_LEFT: f64 = 0.2;
 
-/// Minimum ratio of the part's area to that of the whole picture. The position of a smaller part
-/// counts as unknown, since so few pixels resemble the whole picture at many positions.
+/// Minimum share of the whole picture's area that a part must have. The position of a smaller part
+/// counts as unknown, since few pixels may also fit at a wrong position. The value is a guess at
+/// how many pixels are enough.
 const MIN_SHARE: f64 = 0.05;
 
-/// Finds the position in a whole picture where a part differs far less than elsewhere. Returns the
-/// part's area there, or `None` if there is no such position.
+/// Finds the position in the whole picture at which a part fits far better than elsewhere. Returns
+/// the part's area there, or `None` if there is no such position.
 pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     let area = Area::whole(part.width(), part.height());
     let columns = whole.width().checked_sub(area.width)? + 1;
@@ -29,8 +31,8 @@ pub fn place_of_part(part: &Film, whole: &Film) -> Option<Area> {
     }
     let places = u64::from(columns) * u64::from(rows);
     let compared = (MAX_COMPARED / places).clamp(16, 400).min(area.pixels());
-    // Of the part's pixels, row by row, one of every `step` is compared. The step is odd, so that
-    // it rarely divides the width; then, the compared columns vary from row to row.
+    // Pixels at equal distances in the part, counted row by row, are compared. The distance is odd,
+    // so that it rarely divides the width; otherwise, all compared pixels would be in few columns.
     let step = (area.pixels() / compared).max(1) | 1;
     let points: Vec<(u32, u32)> = (0..area.pixels())
         .step_by(step as usize)

@@ -1,26 +1,26 @@
-//! A picture as a file contains it.
+//! A picture that was read from a file.
 
 use super::pixels::Film;
 use crate::area::Area;
 
-/// A picture as a file contains it.
+/// A picture that was read from a file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Picture {
-    /// Mean of each pixel, in linear light.
+    /// Pixels in linear light.
     pub film: Film,
-    /// Format to which the file's numbers are rounded.
+    /// Precision to which the file's numbers are rounded.
     pub rounding: Rounding,
-    /// Changes of colours by the file's coding, besides rounding.
+    /// How the file's format changes colours, besides rounding.
     pub coding: Coding,
-    /// Part of a whole picture that the file shows, if the file says so.
+    /// Area of the whole picture that the file shows, if the file says so.
     pub crop: Option<Area>,
-    /// Opacity of the pixels; `None` for an opaque picture.
+    /// Opacity of the pixels; `None` if all are opaque.
     pub opacity: Option<Opacity>,
 }
 
 impl Picture {
-    /// Makes an opaque picture of a whole film, whose numbers are rounded so.
+    /// Makes an opaque, uncropped picture from a film whose numbers are rounded as `rounding` says.
     pub fn new(film: Film, rounding: Rounding) -> Self {
         Self {
             film,
@@ -38,17 +38,17 @@ impl Picture {
 pub struct Opacity {
     /// Least and greatest opacity of the pixels, from 0 to 1.
     pub range: [f64; 2],
-    /// Colours of the picture, in linear light, without regard to the opacity.
+    /// Colours before they are mixed with black according to the opacity, in linear light.
     pub film: Film,
 }
 
-/// Format to which a file's values are rounded.
+/// Precision to which the numbers in a file are rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Rounding {
-    /// Bytes of sRGB, or numbers of fewer bits.
+    /// Whole numbers of at most 8 bits, in sRGB.
     Byte,
-    /// Words of sRGB, which have 16 bits.
+    /// Whole numbers of 16 bits, in sRGB.
     Word,
     /// Floats of 16 bits, in linear light.
     Half,
@@ -57,12 +57,12 @@ pub enum Rounding {
 }
 
 impl Rounding {
-    /// Returns the maximum rounding error of a number between 0 and 1, in steps of 8-bit sRGB; a
-    /// step is 1/255 of the way from black to white.
+    /// Returns the maximum rounding error of a number between 0 and 1, in steps of 8-bit sRGB, i.e.
+    /// in 1/255 of the way from black to white.
     ///
-    /// A float has a relative rounding error of 2^−11 or 2^−24. The error in steps is greatest at
-    /// white, where the sRGB curve has 255 · 1.055/2.4 steps per unit of light. The product is
-    /// rounded up.
+    /// Floats have relative rounding errors of 2^−11 (16 bits) or 2^−24 (32 bits). In steps, the
+    /// error is greatest at white, where the sRGB curve has the slope 255 · 1.055/2.4 steps per
+    /// unit of light. The products are rounded up.
     pub fn steps(self) -> f64 {
         match self {
             Self::Byte => 0.5,
@@ -73,32 +73,34 @@ impl Rounding {
     }
 }
 
-/// The effect of a file's coding on colours besides rounding.
+/// Change of colours by a file's format, besides rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Coding {
-    /// No effect: apart from rounding, the file has the colours that the program computed.
+    /// No change: the colours are those that the program computed.
     Exact,
-    /// JPEG or lossy WebP: colours are changed where this is hardly visible.
+    /// Lossy compression, as in a JPEG or in some WebP files: colours are changed where this is
+    /// hardly visible.
     Lossy,
-    /// GIF: colours are replaced by the nearest of at most 256.
+    /// A palette, as in a GIF: each colour is replaced by the nearest of at most 256.
     Palette,
-    /// The file declares a curve other than sRGB's, by a PNG's `gAMA` or `iCCP`, but is read as
-    /// sRGB.
+    /// The file declares another brightness curve than sRGB's, by a PNG's chunk `gAMA` or `iCCP`,
+    /// but is read as sRGB.
     OtherCurve,
-    /// A PNM behind a byte order mark or lines of text, which are skipped.
+    /// A PNM with a byte order mark or lines of text before it, which are skipped.
     TextBefore,
     /// A PNM in UTF-16, as some shells write the output of a program.
     Utf16,
-    /// A binary PNM in which every line feed was replaced by two bytes, as in a text file.
+    /// A binary PNM in which a carriage return was inserted before every line feed, as Windows does
+    /// in text files.
     TextMode,
-    /// A binary PNM in which each byte above 127 was replaced by two bytes, as in UTF-8 text.
+    /// A binary PNM in which each byte above 127 became two bytes, because the program wrote it as
+    /// UTF-8 text.
     Utf8,
 }
 
 impl Coding {
-    /// Returns a warning for users who compare a picture with this coding. Returns `None` for
-    /// [`Exact`](Self::Exact).
+    /// Returns a warning for users about the change of colours, or `None` if there is none.
     pub fn warning(self) -> Option<&'static str> {
         match self {
             Self::Exact => None,

@@ -6,22 +6,21 @@ use super::{
 };
 use crate::area::Area;
 
-/// The value that a film stores for a pixel: its mean in linear light, the mean rounded to 32-bit
-/// floats, or the bytes of sRGB, which take an eighth of the memory.
+/// Type of a pixel in a film: its mean in linear light as 64-bit floats, the mean as 32-bit floats,
+/// or bytes of sRGB, which take an eighth of the memory of 64-bit floats.
 pub trait Pixel: Copy + Default + Send + Sync {
-    /// Converts the mean `light`, in linear light, to this kind of pixel.
+    /// Converts the mean `light`, in linear light, to this type.
     fn of(light: [f64; 3], encoder: &Encoder) -> Self;
 
-    /// Returns whether all means that differ from `light` by at most `bound` in each channel are
-    /// converted to the same value. For means in `f64`, the value is the 32-bit float that an EXR
-    /// file stores.
+    /// Returns whether the pixel's value is certain, i.e. whether all means within `bound` of
+    /// `light` in each channel are converted to the same value. Means as 64-bit floats count as
+    /// certain if they give the same 32-bit floats, because EXR files contain those.
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool;
 }
 
-/// A pixel that can be converted to bytes of sRGB.
+/// Type of pixel that can be converted to bytes of sRGB.
 pub trait AsBytes: Pixel {
-    /// Returns the bytes of sRGB of a row of pixels. If they have to be computed, they are stored
-    /// in `buffer`.
+    /// Returns a row of pixels as bytes of sRGB. Uses `buffer` if the bytes have to be computed.
     fn bytes<'a>(row: &'a [Self], encoder: &Encoder, buffer: &'a mut Vec<u8>) -> &'a [u8];
 }
 
@@ -31,7 +30,8 @@ impl Pixel for [f64; 3] {
     }
 
     fn is_certain(light: [f64; 3], bound: f64, encoder: &Encoder) -> bool {
-        // An EXR file stores the mean as a 32-bit float, so this rounding must be certain.
+        // In an EXR file, these means become 32-bit floats, so it suffices that the floats are
+        // certain.
         <[f32; 3]>::is_certain(light, bound, encoder)
     }
 }
@@ -52,7 +52,8 @@ impl AsBytes for [f64; 3] {
         buffer.clear();
         let (mut before, mut last) = ([0.0; 3], encoder.pixel([0.0; 3]));
         for &light in row {
-            // Most pixels equal the pixel before, so the last conversion is used again.
+            // Neighbouring pixels are often equal, so the last result is used again if the pixel is
+            // the same.
             if light != before {
                 (before, last) = (light, encoder.pixel(light));
             }
@@ -82,7 +83,7 @@ impl AsBytes for [u8; 3] {
     }
 }
 
-/// A picture: for each pixel its mean in linear light, or another kind of [`Pixel`].
+/// A picture in memory. By default, its pixels are means in linear light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film<P = [f64; 3]> {
     width: u32,
@@ -92,15 +93,15 @@ pub struct Film<P = [f64; 3]> {
 }
 
 impl<P: Pixel> Film<P> {
-    /// Creates a black picture.
+    /// Makes a black picture.
     ///
     /// # Errors
     ///
-    /// There is not enough memory for it.
+    /// There is not enough memory for the picture.
     pub fn new(width: u32, height: u32) -> Result<Self, TooLarge> {
         memory::reserve(width, height, size_of::<P>() as u64)?;
-        // The system provides zeroed memory, in which a page takes no memory before something is
-        // written to it.
+        // This zeroed memory comes from the system, which allocates each memory page only when
+        // something is written to it.
         Ok(Self {
             width,
             height,
@@ -108,11 +109,11 @@ impl<P: Pixel> Film<P> {
         })
     }
 
-    /// Creates a picture from a function of column and row.
+    /// Makes a picture from a function of column and row.
     ///
     /// # Errors
     ///
-    /// There is not enough memory for it.
+    /// There is not enough memory for the picture.
     pub fn from_fn(
         width: u32,
         height: u32,
@@ -129,15 +130,15 @@ impl<P: Pixel> Film<P> {
         Ok(film)
     }
 
-    /// Copies a part of the picture.
+    /// Copies the area `part` of the picture.
     ///
     /// # Errors
     ///
-    /// There is not enough memory for it.
+    /// There is not enough memory for the copy.
     ///
     /// # Panics
     ///
-    /// The part does not lie in the picture.
+    /// The area does not lie in the picture.
     pub fn part(&self, part: Area) -> Result<Self, TooLarge> {
         Self::from_fn(part.width, part.height, |x, y| {
             self.pixel(part.x + x, part.y + y)
@@ -158,16 +159,16 @@ impl<P: Pixel> Film<P> {
     ///
     /// # Panics
     ///
-    /// There is no such pixel.
+    /// The column or the row is outside of the picture.
     pub fn pixel(&self, x: u32, y: u32) -> P {
         self.row(y)[x as usize]
     }
 
-    /// Returns the pixels of a row, from the left.
+    /// Returns the pixels of row `y`, from the left.
     ///
     /// # Panics
     ///
-    /// There is no such row.
+    /// The row is outside of the picture.
     pub fn row(&self, y: u32) -> &[P] {
         let width = self.width as usize;
         &self.pixels[y as usize * width..][..width]
@@ -188,11 +189,11 @@ impl<P: Pixel> Film<P> {
         self.pixels
     }
 
-    /// Overwrites the pixels of a part of the picture with `pixels`, row by row.
+    /// Overwrites the area `part` of the picture with `pixels`, row by row.
     ///
     /// # Panics
     ///
-    /// The part does not lie in the picture, or `pixels` are not as many as it has.
+    /// The area does not lie in the picture, or `pixels` has another number of pixels.
     pub fn put(&mut self, part: Area, pixels: &[P]) {
         assert!(
             part.lies_in(Area::whole(self.width, self.height))
@@ -210,8 +211,8 @@ impl<P: Pixel> Film<P> {
     }
 }
 
-/// Counts the pixels of `film` whose bytes of sRGB are certainly those of the exact mean. `bounds`
-/// contains the error bound of each pixel's mean, in linear light.
+/// Returns the number of pixels whose bytes of sRGB are certain, i.e. the same for all means within
+/// the error bound. `bounds` contains the error bound of each pixel's mean, in linear light.
 pub fn certified(film: &Film, bounds: &[f32]) -> u64 {
     let encoder = Encoder::default();
     let is_certain = |&(&light, &bound): &(&[f64; 3], &f32)| {

@@ -1,9 +1,9 @@
-//! Portable Network Graphics: 8 bits of sRGB per channel, and the scene that the picture shows.
+//! PNG files: pixels in 8-bit sRGB, and the text of the scene that the picture shows.
 //!
-//! The text is stored in compressed iTXt chunks before the pixels: `Software`, a keyword of PNG
-//! itself; `pinhole:scene`; one `pinhole:set` for each override, in order; and `pinhole:crop` as
-//! `X,Y,W,H`. The file contains no date and nothing about the machine, so that the same scene gives
-//! the same file.
+//! Before the pixels, the file contains compressed iTXt chunks with these keywords: `Software`;
+//! `pinhole:scene`, the scene's text; `pinhole:set` for each `--set` argument; and `pinhole:crop`,
+//! the rendered part as `X,Y,W,H`. It contains no date and nothing about the machine, so that equal
+//! scenes give equal files.
 
 use std::io::{self, Write};
 
@@ -17,14 +17,17 @@ use super::{
 };
 use crate::area::Area;
 
-/// The first bytes of every PNG.
+/// The first eight bytes of every PNG file.
 pub const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
-/// Maximum number of bytes of all texts of a [`Recipe`]. A longer recipe is not stored in a
-/// picture.
+/// Maximum length, in bytes, of all texts that a PNG stores about its scene. Longer texts are not
+/// stored, and not read from a PNG, so that a small file cannot be unpacked to a huge one. Usual
+/// scenes are far shorter.
 pub const TEXT_LIMIT: usize = 1 << 20;
 
-/// Maximum number of overrides of a [`Recipe`]. A recipe with more is not stored in a picture.
+/// Maximum number of overrides (`--set` arguments) that a PNG stores. If a picture has more,
+/// nothing about its scene is stored, and a file that contains more is rejected. Users give far
+/// fewer.
 pub const OVERRIDES_LIMIT: usize = 1000;
 
 const SOFTWARE: &str = "Software";
@@ -32,45 +35,46 @@ const SCENE: &str = "pinhole:scene";
 const SET: &str = "pinhole:set";
 const CROP: &str = "pinhole:crop";
 
-/// The scene, the overrides and the crop from which a picture was made.
+/// Everything from which a picture was made. A PNG stores it, so that the picture can be rendered
+/// again.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recipe {
     /// The text of the scene.
     pub scene: String,
-    /// The `--set` arguments, in order.
+    /// The overrides of the scene's values, i.e. the `--set` arguments, in order.
     pub overrides: Vec<String>,
-    /// The part of the picture that was rendered; `None` for the whole.
+    /// Area of the whole picture that was rendered; `None` for all of it.
     pub crop: Option<Area>,
 }
 
-/// Why a picture's recipe cannot be read.
+/// Why the scene of a picture cannot be read from its PNG file.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum NotOurs {
-    /// The file does not follow the PNG format.
+    /// The file is not a valid PNG.
     #[error("it begins as a PNG does, but is damaged or no picture")]
     Damaged,
-    /// The picture contains no scene.
+    /// The file contains no scene, so another program wrote it, or the scene was too long.
     #[error(
         "the picture carries no scene: another program wrote it, or its scene had more than 1 MiB of text"
     )]
     NoScene,
-    /// The picture contains more text than Pinhole writes.
+    /// The file contains more text about a scene than Pinhole writes.
     #[error("the picture carries more than 1 MiB of text")]
     TooMuchText,
-    /// The picture contains more overrides than Pinhole writes.
+    /// The file contains more overrides of a scene's values than Pinhole writes.
     #[error("the picture carries more than 1000 overrides")]
     TooManyOverrides,
-    /// A text of the picture is not UTF-8.
+    /// A text in the file is not UTF-8.
     #[error("the picture carries a scene or an override that is not UTF-8 text")]
     NotUtf8,
-    /// The crop in the picture is not a valid area.
+    /// The crop in the file is not a valid area. The field has the crop's text from the file.
     #[error("the picture carries a crop that makes no sense, `{0}`")]
     Crop(String),
 }
 
 impl Recipe {
-    /// Returns whether the recipe is short enough to be stored in a picture.
+    /// Returns whether a PNG stores these texts, i.e. whether they are within the limits.
     pub fn fits(&self) -> bool {
         let overrides: usize = self.overrides.iter().map(String::len).sum();
         let crop = self.crop.map_or(0, |crop| crop.to_string().len());
@@ -87,7 +91,8 @@ impl Recipe {
     }
 }
 
-/// Writes a picture as a PNG. Also stores `recipe` if it is given and [`fits`](Recipe::fits).
+/// Writes a picture as a PNG. Also stores `recipe`, unless its texts are too long
+/// ([`fits`](Recipe::fits)).
 ///
 /// # Errors
 ///
@@ -101,9 +106,9 @@ pub fn write_png<P: AsBytes>(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
-    // The rows of flat colours repeat. They compress better unfiltered than as the differences of
-    // neighbours that the format's filters store. Compression levels above 3 make the files of such
-    // pictures smaller by a few hundredths, but take three times as long.
+    // Pictures of scenes have flat colours, so their rows repeat. Such rows compress better without
+    // PNG's filters, which store differences of neighbours. Compression levels above 3 make files
+    // smaller by a few hundredths, but take three times as long.
     encoder.set_filter(Filter::NoFilter);
     encoder.set_deflate_compression(DeflateCompression::Level(3));
     let mut writer = encoder.write_header()?;
@@ -117,8 +122,8 @@ pub fn write_png<P: AsBytes>(
         writer.write_text_chunk(&chunk)?;
     }
 
-    // Rows are written one by one, so that the bytes of the whole picture are never in memory at
-    // once.
+    // Rows are converted and written one by one, so that the bytes of the whole picture are never
+    // in memory at once.
     let mut rows = writer.stream_writer_with_size(1 << 16)?;
     let encoder = srgb::Encoder::default();
     let mut buffer = Vec::new();
@@ -130,13 +135,13 @@ pub fn write_png<P: AsBytes>(
     Ok(())
 }
 
-/// Reads the recipe from the bytes of a PNG file. Only the chunks before the pixels are read, and
-/// at most [`TEXT_LIMIT`] bytes are decompressed.
+/// Reads the scene and its overrides from a PNG file. Stops at the pixels. At most [`TEXT_LIMIT`]
+/// bytes of text are unpacked.
 ///
 /// # Errors
 ///
-/// The file is damaged, contains no scene or an invalid text, or contains more text or overrides
-/// than a recipe may have.
+/// The file is damaged, contains no scene or an invalid text, or contains too much text or too many
+/// overrides.
 pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     let mut rest = picture.strip_prefix(&SIGNATURE).ok_or(NotOurs::Damaged)?;
     let (mut scene, mut overrides, mut crop) = (None, Vec::new(), None);
@@ -176,13 +181,14 @@ pub fn read_recipe(picture: &[u8]) -> Result<Recipe, NotOurs> {
     })
 }
 
-/// Returns a chunk's kind, its content, and the bytes after it. Returns `None` if the chunk is cut
-/// off or its checksum is wrong. For the pixels, only the kind is returned.
+/// Reads a chunk of a PNG. Returns its type, its content, and the bytes after it. For the chunk of
+/// pixels, only the type is returned. Returns `None` if the chunk is cut off or its checksum is
+/// wrong.
 fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk::<4>()?;
     let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;
     if rest.starts_with(b"IDAT") {
-        // The chunk of pixels may extend beyond the bytes that were read of the file.
+        // Only the start of the file may have been read, so the chunk of pixels may be incomplete.
         return Some((&rest[..4], &[], &[]));
     }
     let (checked, rest) = rest.split_at_checked(length.checked_add(4)?)?;
@@ -191,8 +197,8 @@ fn chunk(bytes: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
     (crc32fast::hash(checked) == u32::from_be_bytes(*checksum)).then_some((kind, content, rest))
 }
 
-/// Returns the keyword of an iTXt chunk, whether its text is compressed, and the text. Returns
-/// `None` if the chunk is malformed.
+/// Reads an iTXt chunk of a PNG. Returns its keyword, whether its text is compressed, and the text.
+/// Returns `None` if the chunk does not follow the format.
 fn international_text(content: &[u8]) -> Option<(&[u8], bool, &[u8])> {
     let (keyword, rest) = before_zero(content)?;
     let (&[is_packed, _method], rest) = rest.split_first_chunk()?;

@@ -1,9 +1,10 @@
-//! PNM files, as students' first programs write them: P1 to P6, in numbers or in bytes.
+//! PNM files (PBM, PGM and PPM), the simplest picture formats, which students' first programs often
+//! write. The types P1 to P6 are read.
 //!
-//! Damage that a shell or a system may have done to a file is repaired if it can be recognised for
-//! certain: a byte order mark or lines of text in front, UTF-16 instead of bytes, a carriage return
-//! before every line feed. Missing numbers and numbers out of range are reported with their
-//! position. PAM is left to `image`.
+//! Shells and systems may damage such files. The damage is repaired if it can be recognised for
+//! certain: a byte order mark or lines of text in front, UTF-16 instead of bytes, or a carriage
+//! return inserted before every line feed. Missing numbers and numbers out of range are reported
+//! with their position. The crate `image` reads PAM files.
 
 use super::{
     memory,
@@ -13,29 +14,30 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Number of bytes at the start of a file in which a picture is searched for. Text that a program
-/// printed before its picture may be at most this long.
+/// Number of bytes at the start of a file in which a picture is searched for. A program may print
+/// messages before its picture; if they are longer than this, the picture is not found. Usual
+/// messages are far shorter.
 const LINES_BEFORE: usize = 1 << 16;
 
 const BOM: &[u8] = b"\xef\xbb\xbf";
 
-/// How a PNM file begins.
+/// Encoding of a PNM file, recognised by its first bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// One byte for each character. The number of bytes before the letter P is 0, or 3 if the file
-    /// begins with a byte order mark.
+    /// One byte per character, as usual. The number is the length of the byte order mark before the
+    /// picture: 0 or 3 bytes.
     Plain(usize),
-    /// UTF-16: two bytes for each character.
+    /// UTF-16, i.e. two bytes per character.
     Utf16 {
         /// Length of the byte order mark, in bytes.
         mark: usize,
-        /// Whether the encoding is big-endian.
+        /// Whether the high byte of each character comes first.
         is_big: bool,
     },
 }
 
-/// Returns how a PNM file begins. Returns `None` for other files, and for a PNM after lines of
-/// text.
+/// Recognises the encoding of a PNM file. Returns `None` for other files, and for a PNM after lines
+/// of text.
 pub fn start(bytes: &[u8]) -> Option<Start> {
     let mark = if bytes.starts_with(BOM) { 3 } else { 0 };
     if is_head(&bytes[mark..]) {
@@ -51,20 +53,20 @@ pub fn start(bytes: &[u8]) -> Option<Start> {
     is_head(&text).then_some(Start::Utf16 { mark, is_big })
 }
 
-/// Returns the position at which a PNM begins after lines of other text. Returns `None` if there is
-/// none.
+/// Returns the position of a PNM that begins after lines of other text, or `None` if there is none.
 pub fn after_lines(bytes: &[u8]) -> Option<usize> {
     let start = &bytes[..bytes.len().min(LINES_BEFORE)];
     let feeds = (0..start.len()).filter(|&at| start[at] == b'\n');
     feeds.map(|at| at + 1).find(|&at| {
-        // The header must contain the picture's size; a line that merely begins as a PNM does is
-        // not enough.
+        // A line of text may also begin with such letters. It counts as a PNM only if two numbers,
+        // the picture's width and height, follow.
         let mut head = PnmReader::new(&start[at..]);
         is_head(&start[at..]) && head.number().is_ok() && head.number().is_ok()
     })
 }
 
-/// Returns whether bytes begin as a PNM does: with its two letters and the end of that word.
+/// Returns whether bytes begin as a PNM does: with `P1` to `P6`, followed by white space or a
+/// comment.
 fn is_head(bytes: &[u8]) -> bool {
     matches!(bytes, [b'P', b'1'..=b'6', end, ..] if end.is_ascii_whitespace() || *end == b'#')
 }
@@ -79,13 +81,13 @@ fn narrowed(bytes: &[u8], is_big: bool) -> Option<Vec<u8>> {
     pairs.iter().map(byte).collect()
 }
 
-/// Reads a PNM, after repairing damage if possible. Rejects one that is decoded to more than
-/// `limit` bytes.
+/// Reads a PNM, after repairing damage if possible. The picture may be decoded to at most `limit`
+/// bytes.
 ///
 /// # Errors
 ///
-/// The file is no PNM, is damaged, or is too large. The message says what is wrong with it, and
-/// where.
+/// The file is no PNM, is damaged, or is too large. The message says what is wrong, and at which
+/// position.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     match start(bytes) {
         Some(Start::Plain(0)) => read_bytes(bytes, limit, Coding::Exact),
@@ -173,7 +175,8 @@ fn read_bytes(bytes: &[u8], limit: u64, coding: Coding) -> Result<Picture, Unrea
     })
 }
 
-/// Size of the picture in a PNM, and the number that stands for white in it.
+/// Size and number format of the picture in a PNM: the number of channels, and the number that
+/// stands for white (`maxval`).
 struct Raster {
     width: usize,
     height: usize,
@@ -186,8 +189,7 @@ impl Raster {
         self.width * self.height * self.channels
     }
 
-    /// Returns the name of the pixel, and of the channel, to which the number with this index
-    /// belongs.
+    /// Describes, for an error message, the pixel and the channel of the number with index `index`.
     fn place(&self, index: usize) -> String {
         let pixel = index / self.channels;
         let (x, y) = (pixel % self.width, pixel / self.width);
@@ -217,8 +219,8 @@ impl Raster {
         ))
     }
 
-    /// Reads numbers with white space between them. Bits (`is_bits`) need no white space; a bit of
-    /// 1 is black.
+    /// Reads numbers that are written as text, separated by white space. If `is_bits` is set, they
+    /// are single digits that need no separation, and 1 is black.
     fn in_text(&self, reader: &mut PnmReader, is_bits: bool) -> Result<Vec<u16>, Unreadable> {
         let mut numbers = Vec::with_capacity(self.count());
         for index in 0..self.count() {
@@ -242,7 +244,8 @@ impl Raster {
         Ok(numbers)
     }
 
-    /// Reads bits, where 1 is black. Each row begins with a new byte.
+    /// Reads the bits of a black-and-white picture, in which 1 is black. Each row begins with a new
+    /// byte.
     fn in_bits(&self, raster: &[u8]) -> Result<Vec<u16>, Unreadable> {
         let row = self.width.div_ceil(8);
         let bit = |index: usize| {
@@ -254,8 +257,8 @@ impl Raster {
         (0..self.count()).map(bit).collect()
     }
 
-    /// Reads numbers of `length` bytes, one or two, with the high byte first. Also returns the kind
-    /// of damage that was repaired.
+    /// Reads binary numbers of `length` bytes, one or two, with the high byte first. If the bytes
+    /// had to be repaired, also returns the kind of damage.
     fn in_bytes(
         &self,
         reader: &PnmReader,
@@ -286,8 +289,8 @@ impl Raster {
     }
 }
 
-/// Repairs a raster that was written as text instead of bytes. Returns the bytes and the kind of
-/// damage, or `None` if no repair gives `wanted` bytes.
+/// Repairs binary numbers that a system changed as if they were text. Returns the bytes and the
+/// kind of damage, or `None` if no repair gives exactly `wanted` bytes.
 fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     let of_lines = |raster: &[u8]| without_returns(raster, wanted);
     if let Some(raster) = of_lines(raster) {
@@ -302,14 +305,14 @@ fn mended(raster: &[u8], wanted: usize) -> Option<(Vec<u8>, Coding)> {
     Some((of_lines(&bytes)?, Coding::Utf8))
 }
 
-/// Returns whether bytes are UTF-8 text in which invalid characters were replaced.
+/// Returns whether bytes are UTF-8 text in which invalid bytes were replaced by U+FFFD, so that
+/// they are lost.
 fn is_text_with_losses(raster: &[u8]) -> bool {
     str::from_utf8(raster).is_ok_and(|text| text.contains(char::REPLACEMENT_CHARACTER))
 }
 
-/// Repairs a raster that was written as text on a system whose lines end in two bytes. Returns
-/// `None` unless every line feed follows a carriage return and the raster has the wanted length
-/// without these.
+/// Removes the carriage returns that a system inserted before line feeds. Returns `None` if a line
+/// feed has none before it, or if the result does not have `wanted` bytes.
 fn without_returns(raster: &[u8], wanted: usize) -> Option<Vec<u8>> {
     let is_feed = |at: usize| raster[at] == b'\n';
     let mut feeds = (0..raster.len()).filter(|&at| is_feed(at));
@@ -324,14 +327,14 @@ fn without_returns(raster: &[u8], wanted: usize) -> Option<Vec<u8>> {
     (kept.len() == wanted).then_some(kept)
 }
 
-/// A reader of the numbers in a PNM, which skips comments.
+/// A reader of the numbers in a PNM file. It skips white space and comments.
 struct PnmReader<'b> {
     bytes: &'b [u8],
     at: usize,
 }
 
 impl<'b> PnmReader<'b> {
-    /// Makes a reader that starts after the two letters of the format.
+    /// Makes a reader that starts after the two letters at the start of the file, such as `P6`.
     fn new(bytes: &'b [u8]) -> Self {
         Self { bytes, at: 2 }
     }
@@ -373,8 +376,8 @@ impl<'b> PnmReader<'b> {
             self.at += word.len();
             return Ok(number);
         }
-        // Lines are counted from the beginning only for an error message, since this would take too
-        // long for every number.
+        // The line number is determined only for an error message, since counting lines for every
+        // number would take too long.
         let line = self.line();
         Err(damaged(match word {
             [] => "it ends before its size and maxval".to_owned(),
@@ -390,7 +393,7 @@ impl<'b> PnmReader<'b> {
         }))
     }
 
-    /// Reads one digit, which must be 0 or 1.
+    /// Reads one digit, 0 or 1.
     fn bit(&mut self) -> Result<u64, Unreadable> {
         let byte = self.bytes[self.at];
         self.at += 1;
@@ -407,12 +410,13 @@ impl<'b> PnmReader<'b> {
         }
     }
 
-    /// Returns the bytes after the single white-space character that ends the header.
+    /// Returns the bytes of the pixels in a binary PNM. Exactly one white-space character separates
+    /// the header from the pixels.
     fn after_one_space(&self) -> &'b [u8] {
         self.bytes.get(self.at + 1..).unwrap_or_default()
     }
 
-    /// Returns the bytes after the header's line. Returns `None` if no line end follows the header.
+    /// Returns the bytes after the header, if a line end follows it; otherwise `None`.
     fn after_line_end(&self) -> Option<&'b [u8]> {
         let rest = self.bytes.get(self.at..)?;
         rest.strip_prefix(b"\r\n").or(rest.strip_prefix(b"\n"))

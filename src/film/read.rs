@@ -1,12 +1,11 @@
-//! Reads picture files of any program into films.
+//! Reads picture files of any program.
 //!
-//! In: the bytes of a picture in PNG, OpenEXR, or any other format that `image` is built to read.
-//! Out: means in linear light, the rounding of the file's numbers, and other effects of the file's
-//! coding on colours.
+//! In: the bytes of a picture in PNG, OpenEXR, or another format that the crate `image` reads. Out:
+//! pixels in linear light, the precision of the file's numbers, and how the format changes colours.
 //!
-//! Whole numbers are read as sRGB, whatever a `gAMA` chunk or a colour profile says: pictures of a
-//! scene are meant as sRGB, and most programs write them so without a declaration. Floats are read
-//! as linear light. Transparent pixels are shown on black, mixed in linear light.
+//! Whole numbers are read as sRGB, even if a PNG declares another curve: pictures of a scene are
+//! meant as sRGB, and most programs declare nothing. Floats are read as linear light. Transparent
+//! pixels are mixed with black in linear light.
 
 use std::{error::Error, io::Cursor};
 
@@ -25,24 +24,25 @@ use super::{
 };
 use crate::color::srgb_to_linear;
 
-/// Maximum number of bytes that the PNG decoder may allocate besides the picture. A picture that
-/// needs more is rejected. The limit is the default of `image`.
+/// Maximum number of bytes that the PNG decoder may allocate in addition to the picture. A picture
+/// that needs more is rejected. It is the default of the crate `image`, and far more than usual
+/// files need.
 const UNPACKING: usize = 512 << 20;
 
-/// Returns whether a file begins as a picture does, even if its format is not supported.
+/// Returns whether a file begins as a picture does, in any format, even one that is not supported.
 pub fn is_picture(bytes: &[u8]) -> bool {
     pnm::start(bytes).is_some() || format(bytes).is_some()
 }
 
-/// Returns whether a PNM begins after lines of text, within the first 64 KiB of a file.
+/// Returns whether a PNM picture begins after lines of text, within the first 64 KiB of a file.
 pub fn is_picture_behind_lines(bytes: &[u8]) -> bool {
     pnm::after_lines(bytes).is_some()
 }
 
 fn format(bytes: &[u8]) -> Option<ImageFormat> {
     let format = image::guess_format(bytes).ok()?;
-    // Only white space or a comment may follow the two letters of a PNM. A word, such as a name in
-    // a scene, may begin with the same letters.
+    // A scene's text may begin with a name that starts with the same two letters as a PNM, for
+    // example `P3`. In a PNM, white space or a comment follows the two letters.
     let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || *byte == b'_';
     if format == ImageFormat::Pnm && bytes.get(2).is_some_and(is_word) {
         return None;
@@ -59,8 +59,8 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
     read_picture_up_to(bytes, DECODED_LIMIT)
 }
 
-/// Reads a picture of at most `limit` decoded bytes. The size is taken from the file's header and
-/// rejected before decoding, also if there is not enough memory.
+/// Reads a picture of at most `limit` decoded bytes. The size in the file's header is checked
+/// before decoding, and so is the available memory.
 ///
 /// # Errors
 ///
@@ -71,8 +71,8 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
         Some(ImageFormat::Png) => read_png(bytes, limit)?,
         Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
-        // A PNM is not recognised by its first bytes if a byte order mark or lines of text come
-        // first, or if it is in UTF-16.
+        // PNM files with a byte order mark or text in front, and those in UTF-16, do not begin as a
+        // picture does, so they are tried last.
         None => pnm::read(bytes, limit).map_err(|error| match (error, no_picture::of(bytes)) {
             (Unreadable::Format(None), Some(what)) => Unreadable::Other(what),
             (error, _) => error,
@@ -98,7 +98,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     }
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     if limit > DECODED_LIMIT {
-        // Instead of the decoder's limit, the available memory is checked below.
+        // The decoder's own limit is removed. The available memory is checked below instead.
         reader.no_limits();
     }
     let decoder = reader.into_decoder().map_err(unreadable)?;
@@ -111,7 +111,7 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
         2 => Rounding::Word,
         _ => Rounding::Float,
     };
-    // Memory is needed for the decoded picture, its copy with four channels, and the film.
+    // The memory must suffice for the decoded picture, its copy with four channels, and the film.
     let channels = match rounding {
         Rounding::Float => size_of::<[f32; 4]>(),
         _ => size_of::<[u16; 4]>(),
@@ -122,7 +122,8 @@ fn read(bytes: &[u8], format: ImageFormat, limit: u64) -> Result<Picture, Unread
     let image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
     let opacity = match rounding {
         Rounding::Float => fill(&mut film, &image.into_rgba32f(), f64::from, f64::from),
-        // As a fraction of its range, the byte k equals the word 257 · k.
+        // A byte k is the same fraction of its range as the 16-bit number 257 · k, since 65535 =
+        // 257 · 255.
         _ => {
             let light = light_of_words();
             let light = |word: u16| light[usize::from(word)];
@@ -158,7 +159,8 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     };
     let limits = png::Limits { bytes: UNPACKING };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    // With these settings, the decoder returns bytes or words of gray or of colours, with opacity.
+    // With these settings, the decoder returns 8-bit or 16-bit numbers of gray and opacity, or of
+    // red, green, blue and opacity.
     decoder.set_transformations(Transformations::EXPAND | Transformations::ALPHA);
     let header = decoder.read_header_info().map_err(unreadable)?;
     let (width, height) = (header.width, header.height);
@@ -186,7 +188,8 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let light = light_of_words();
     let word = |index: usize| match rounding {
         Rounding::Word => u16::from_be_bytes([samples[2 * index], samples[2 * index + 1]]),
-        // As a fraction of its range, the byte k equals the word 257 · k.
+        // A byte k is the same fraction of its range as the 16-bit number 257 · k, since 65535 =
+        // 257 · 255.
         _ => 257 * u16::from(samples[index]),
     };
     let count = film.pixels().len();
@@ -205,8 +208,8 @@ fn read_png(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     })
 }
 
-/// Returns whether a PNG declares a curve other than sRGB's. An `sRGB` chunk overrules `gAMA`, and
-/// `iCCP` overrules both.
+/// Returns whether a PNG declares a brightness curve other than sRGB's. Its colour profile (`iCCP`)
+/// takes precedence over the chunk `sRGB`, which takes precedence over `gAMA`.
 fn says_other_curve(info: &png::Info) -> bool {
     match (&info.icc_profile, info.srgb, info.gama_chunk) {
         (Some(profile), ..) => is_other_profile(profile).unwrap_or(false),
@@ -215,45 +218,46 @@ fn says_other_curve(info: &png::Info) -> bool {
     }
 }
 
-/// Returns whether an ICC profile's curve of red, or of gray, is far from sRGB's (ICC.1:2010, 10.5
-/// and 10.15). Returns `None` if the profile has no such curve.
+/// Returns whether the curve of red (or of gray) in an ICC profile is far from sRGB's. The format
+/// is in ICC.1:2010, sections 10.5 and 10.15. Returns `None` if the profile has no such curve.
 fn is_other_profile(profile: &[u8]) -> Option<bool> {
     let number = |at: usize| Some(u32::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let count = number(128)?.min(100) as usize;
-    // A tag has 12 bytes: its name, its position and its length.
+    // An entry of the profile's table has 12 bytes: name, position and length.
     let tag = (0..count)
         .map(|index| 132 + 12 * index)
         .find(|&at| matches!(profile.get(at..at + 4), Some(b"rTRC" | b"kTRC")))?;
     let at = number(tag + 4)? as usize;
     let word = |at: usize| Some(u16::from_be_bytes(*profile.get(at..)?.first_chunk()?));
     let fixed = |index: usize| Some(f64::from(number(at + 12 + 4 * index)? as i32) / 65536.0);
-    // The curve's light at one half is compared: 0.2140 in sRGB, and 0.2176 for a power of 2.2.
+    // Curves are compared by the light at one half. It is 0.2140 in sRGB, and 0.2176 for a power of
+    // 2.2.
     let light = match (profile.get(at..at + 4)?, number(at + 8)?) {
         (b"curv", 0) => 0.5,
         (b"curv", 1) => libm::pow(0.5, f64::from(word(at + 12)?) / 256.0),
         (b"curv", count) => f64::from(word(at + 12 + 2 * (count as usize / 2))?) / 65535.0,
         (b"para", 0) => libm::pow(0.5, fixed(0)?),
-        // At one half, the parametric functions of types 1 to 4 are (a·x + b)^g. Those of two types
-        // add a constant, which is ignored.
+        // Parametric curves of the types 1 to 4 are (a·x + b)^g at one half, where a, b and g are
+        // their parameters. Two of the types add a constant, which is neglected.
         (b"para", _) => libm::pow(0.5 * fixed(1)? + fixed(2)?, fixed(0)?),
         _ => return None,
     };
     Some((light - srgb_to_linear(0.5)).abs() > 0.01)
 }
 
-/// Converts a 16-bit word to a fraction from 0 to 1.
+/// Converts a 16-bit number to a fraction from 0 to 1.
 fn part(word: u16) -> f64 {
     f64::from(word) / f64::from(u16::MAX)
 }
 
-/// Returns the linear light of every 16-bit word of sRGB.
+/// Returns a table of the linear light of every 16-bit number in sRGB.
 fn light_of_words() -> Vec<f64> {
     let words = 0..=u16::MAX;
     words.map(|word| srgb_to_linear(part(word))).collect()
 }
 
-/// Fills a film as [`mix`] does, from a flat list of samples: red, green, blue and opacity of each
-/// pixel.
+/// Fills a film from a flat list of numbers: red, green, blue and opacity of each pixel. Mixes them
+/// with black as [`mix`] does.
 fn fill<T: Copy>(
     film: &mut Film,
     samples: &[T],
@@ -295,7 +299,7 @@ fn mix<T: Copy>(
 
 fn unreadable(error: &ImageError, format: ImageFormat) -> Unreadable {
     let format = name(format);
-    // The error's own text would repeat the format's name, so its source is used.
+    // The error's own text would repeat the format's name, so the text of its cause is used.
     let cause = error
         .source()
         .map_or_else(|| error.to_string(), ToString::to_string);

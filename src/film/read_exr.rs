@@ -24,15 +24,15 @@ use super::{
 };
 use crate::area::Area;
 
-/// Reads a picture. Rejects one that is decoded to more than `limit` bytes. An alpha channel is
-/// ignored, since colours in OpenEXR are premultiplied, as seen on black.
+/// Reads a picture that is decoded to at most `limit` bytes. The alpha channel is ignored: OpenEXR
+/// stores colours multiplied by it, i.e. as seen on black.
 pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let file = block::read(Cursor::new(bytes), false).map_err(unreadable)?;
     for header in file.headers() {
         // The size is checked before anything is decompressed.
         let Vec2(width, height) = header.layer_size;
         let channels = &header.channels.list;
-        // All channels of the file are decoded, not only R, G, B and A, so all of them count.
+        // The decoder unpacks all channels of the file, not only R, G, B and A, so all are counted.
         let sizes = channels
             .iter()
             .map(|channel| channel.sample_type.bytes_per_sample());
@@ -90,8 +90,8 @@ pub fn read(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     })
 }
 
-/// Returns the names of the channels to read: R, G and B, or those of the only layer that has all
-/// three. Fails if there are no such channels.
+/// Returns the names of the channels to read: R, G and B, or those of a layer, such as `beauty.R`,
+/// if it is the only one with all three. Fails if there are none.
 fn channels(headers: &[Header]) -> Result<[Text; 3], Unreadable> {
     let names = headers.iter().flat_map(|header| &header.channels.list);
     let names: BTreeSet<String> = names.map(|channel| channel.name.to_string()).collect();

@@ -1,26 +1,28 @@
-//! Linear light as bytes of sRGB.
+//! Converts linear light to bytes of sRGB.
 //!
-//! Encoding and rounding are a comparison with thresholds: byte k stands for the range of light
-//! from the threshold k − 1/2 to the threshold k + 1/2, both decoded to linear light. The
-//! thresholds are exact, so every light gets the nearest byte. An unmixed colour of the scene gets
-//! the same bytes as by [`Color::to_bytes`](crate::color::Color::to_bytes), also if a channel is
-//! halfway between two bytes.
+//! The conversion compares the light with thresholds. There is one between any two neighbouring
+//! bytes k and k + 1: the light whose sRGB value is k + 1/2. The thresholds are exact, so that
+//! every light is converted to the nearest byte. A colour from the scene gets the same bytes as by
+//! [`Color::to_bytes`](crate::color::Color::to_bytes), even halfway between two bytes.
 
 use std::array;
 
 use crate::color::half_byte;
 
-/// Number of equal intervals into which the range of linear light is divided. For each interval,
-/// the table [`Encoder::start`] has the byte at which encoding begins its search.
+/// Number of equal intervals of linear light from 0 to 1. For each interval, the table
+/// [`Encoder::start`] contains the byte from which the conversion starts. With 4096, at most one
+/// threshold lies in an interval, even near black, where they are closest, so that one step finds
+/// the byte. It is a power of two, so that multiplying by it is exact.
 const PARTS: usize = 4096;
 
-/// Encoder of linear light as bytes of sRGB.
+/// Converter of linear light to bytes of sRGB.
 #[derive(Clone, Debug)]
 pub struct Encoder {
-    /// For each byte k below 255, the linear light whose sRGB value is k + 1/2, in 8-bit steps.
-    /// From this light on, the byte is k + 1.
+    /// Threshold between each byte k and k + 1: the linear light whose sRGB value is k + 1/2, in
+    /// 8-bit steps. From this light on, the byte is k + 1.
     thresholds: [f64; 255],
-    /// For each interval of linear light, the byte of the light at its dark end.
+    /// Table with the byte of the lower end of each of the equal intervals of linear light. The
+    /// conversion of a light starts from the byte of its interval.
     start: [u8; PARTS + 1],
 }
 
@@ -37,14 +39,16 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Encodes the channels of a pixel as bytes of sRGB.
+    /// Converts a pixel from linear light to bytes of sRGB.
     pub fn pixel(&self, light: [f64; 3]) -> [u8; 3] {
         light.map(|channel| self.encode(channel))
     }
 
-    /// Encodes one channel. Light below 0 is encoded as 0, and light above 1 as 255.
+    /// Converts one channel from linear light to a byte of sRGB. Light below 0 becomes 0, and light
+    /// above 1 becomes 255.
     pub fn encode(&self, light: f64) -> u8 {
-        // The scaling is exact, and the conversion saturates on both sides.
+        // Multiplying by a power of two is exact. The conversion to an integer makes negative light
+        // 0, and `min` limits light above 1.
         let part = ((light * PARTS as f64) as usize).min(PARTS);
         let mut byte = self.start[part];
         while byte < 255 && self.thresholds[usize::from(byte)] <= light {

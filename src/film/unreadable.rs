@@ -6,7 +6,8 @@ use thiserror::Error;
 use super::memory::TooLarge;
 
 /// Maximum number of bytes that a picture is decoded to, unless the caller allows more. A larger
-/// picture is rejected. The limit suffices for 2^26 pixels of four bytes, whose film takes 1.5 GiB.
+/// picture is rejected, so that it cannot fill the memory. The limit allows 2^26 pixels of four
+/// bytes; as a film with 24 bytes per pixel, such a picture takes 1.5 GiB.
 pub const DECODED_LIMIT: u64 = 1 << 28;
 
 /// Why a file cannot be read as a picture.
@@ -19,10 +20,11 @@ pub enum Unreadable {
         .0.as_ref().map_or(String::new(), |format| format!(", but seems to be {format}"))
     )]
     Format(Option<String>),
-    /// The file is no picture, but of another known kind, which the text names.
+    /// The file is not a picture, but of another known kind, for example a web page. The text
+    /// describes it.
     #[error("it is no picture, but {0}")]
     Other(&'static str),
-    /// The file does not follow its format.
+    /// The file does not follow the rules of its format, so it is damaged or cut off.
     #[error(
         "it begins as {format} files do, but is damaged or cut off: {}",
         shortened(cause)
@@ -33,18 +35,18 @@ pub enum Unreadable {
         /// Description of the defect.
         cause: String,
     },
-    /// The file uses a part of its format that is not supported here.
+    /// The file uses a feature of its format that is not supported.
     #[error("it is {format} of a kind that is not read here: {}", shortened(cause))]
     Unsupported {
         /// Name of the file's format.
         format: String,
-        /// Description of the part that is not supported.
+        /// Description of the feature.
         cause: String,
     },
-    /// Decompression takes more memory besides the picture than the limit allows.
+    /// Decompression needs more memory than allowed, in addition to the picture's.
     #[error("unpacking it takes more than 512 MiB of memory")]
     Unpacking,
-    /// The picture is larger than the limit.
+    /// The decoded picture would exceed the limit.
     #[error(
         "it has {width} × {height} pixels, which are decoded to more than the {limit} bytes that are read"
     )]
@@ -72,13 +74,13 @@ pub enum Unreadable {
     },
 }
 
-/// Returns the name of a format in capital letters.
+/// Returns the name of an image format in capital letters.
 pub(super) fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
 
-/// Rejects a picture without pixels, or one that is decoded to more than `limit` bytes. Four
-/// channels of `channel` bytes each are counted per pixel.
+/// Rejects a picture that has no pixels or is decoded to more than `limit` bytes. Pixels are
+/// assumed to have four channels of `channel` bytes each.
 pub(super) fn check_size(
     [width, height]: [u64; 2],
     channel: u64,
@@ -99,8 +101,7 @@ pub(super) fn check_size(
     }
 }
 
-/// Shortens a decoder's message, which may contain a part of the file of any length, to 200
-/// characters.
+/// Shortens a decoder's message to 200 characters. It may repeat a long part of the file.
 fn shortened(cause: &str) -> String {
     const LONGEST: usize = 200;
     let mut characters = cause.trim_end().chars();

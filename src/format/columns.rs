@@ -1,4 +1,4 @@
-//! Alignment of the entries in columns.
+//! Aligns the parts of entries, i.e. of definitions, blocks and fields, in columns.
 //!
 //! A group is a sequence of lines without a blank line. In a group, four things are aligned:
 //! - the `=` of definitions,
@@ -16,15 +16,17 @@ use super::{
 };
 use crate::schema;
 
-/// Maximum difference between the widths, in characters, of parts of lines that are aligned in one
-/// column. At the first part whose width differs by more, a new column begins.
+/// Maximum difference, in characters, between the widths of aligned parts of lines. At the first
+/// part whose width differs by more, a new column begins. Without a limit, one wide part would move
+/// the values after all short ones far to the right. The language's reference states the number.
 const MAX_WIDTH_DIFFERENCE: usize = 20;
 
 /// Minimum number of consecutive blocks of one kind, each written on one line, that form a table.
-/// The blocks of a table stay on one line each even if some are slightly wider than `WIDTH`.
+/// The blocks of a table stay on one line each even if some are up to a fifth wider than the
+/// maximum width of a line. The language's reference states the number.
 const MIN_TABLE_ROWS: usize = 3;
 
-/// Sets the columns to which the parts of a file's entries are aligned, also within blocks.
+/// Sets the columns at which the parts of a file's definitions, blocks and fields are aligned.
 pub fn align(entries: &mut [Entry<'_>]) {
     keep_rows(entries);
     settings(entries);
@@ -74,16 +76,18 @@ fn is_row_beside(a: &Entry<'_>, b: &Entry<'_>) -> bool {
     }
 }
 
-/// Class of an entry, which decides which entries are aligned with each other: those of the same
-/// class in a group.
+/// Class of an entry, i.e. of a definition, a block or a field. In a group of lines without a blank
+/// line between them, entries of the same class are aligned with each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Alignment {
     Definition,
     Object,
     Field,
-    /// The entry is not aligned, but does not end a group.
+    /// The entry is not aligned with others. Entries before and after it may still be aligned with
+    /// each other.
     Unaligned,
-    /// The entry ends a group: entries before and after it are not aligned with each other.
+    /// The entry is not aligned with others. Entries before it are not aligned with entries after
+    /// it.
     End,
 }
 
@@ -128,11 +132,12 @@ fn is_plain(entry: &Entry<'_>, block: &BlockEntry<'_>) -> bool {
     entry.leading.is_empty() && block.head.len() == words
 }
 
-/// Returns the runs of entries that are aligned with each other: in a group, all entries of one
-/// class. A run is a list of indices of entries. `class` returns the class of an entry.
+/// Returns the runs of entries that are aligned with each other: all entries of one class that no
+/// blank line separates. A run is a list of indices of entries. `class` returns the class of an
+/// entry.
 fn runs(entries: &[Entry<'_>], class: fn(&Entry<'_>) -> Alignment) -> Vec<Vec<usize>> {
     let mut runs: Vec<Vec<usize>> = Vec::new();
-    // Class of the last run as long as entries can be added to it; then `End`.
+    // Class of the last run while entries can be added to it, and otherwise `End`.
     let mut open = Alignment::End;
     for (index, entry) in entries.iter().enumerate() {
         if entry.blank {

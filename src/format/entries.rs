@@ -1,4 +1,4 @@
-//! Entries: the definitions, blocks, fields and comments that start lines of their own.
+//! Makes entries: the definitions, blocks, fields and comments that start lines of their own.
 //!
 //! This module decides to which line a comment belongs, and which blocks stay on one line.
 
@@ -10,7 +10,7 @@ use crate::{
     syntax::tree::{self, Item},
 };
 
-/// An entry of a file or of a block, which takes one or more lines.
+/// An entry of a file or a block: a definition, a block, a field or a line of comments.
 #[derive(Debug)]
 pub struct Entry<'s> {
     /// Whether a blank line precedes the entry.
@@ -34,9 +34,9 @@ pub struct Entry<'s> {
 pub enum EntryKind<'s> {
     /// A line of comments.
     Comments,
-    /// A definition: the words of `let NAME`, and those of `= VALUE`.
+    /// A definition: the tokens and comments of `let NAME`, and those of `= VALUE`.
     Definition(Vec<Word<'s>>, Vec<Word<'s>>),
-    /// A field: its name, and the words of its value.
+    /// A field: its name, and the tokens and comments of its value.
     Field(&'s str, Vec<Word<'s>>),
     /// A block.
     Block(BlockEntry<'s>),
@@ -45,7 +45,7 @@ pub enum EntryKind<'s> {
 /// A block of a scene, with its layout.
 #[derive(Debug)]
 pub struct BlockEntry<'s> {
-    /// Words before the `{`.
+    /// Tokens and comments before the `{`.
     pub head: Vec<Word<'s>>,
     /// Kind of the block, such as `sphere`.
     pub kind: &'s str,
@@ -61,7 +61,7 @@ pub struct BlockEntry<'s> {
     pub entries: Vec<Entry<'s>>,
     /// Whether the block is laid out on one line.
     pub on_one_line: bool,
-    /// Whether the block was written on one line and is only slightly too wide to be laid out so.
+    /// Whether the block was written on one line and is at most a fifth wider than allowed.
     pub is_nearly_one_line: bool,
 }
 
@@ -98,7 +98,7 @@ pub fn of_file<'s, 't>(
     entries
 }
 
-/// Container of entries.
+/// Container of entries: a file or a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Container {
     File,
@@ -197,8 +197,8 @@ impl<'s> TokenReader<'_, 's> {
             Self::field,
         );
         self.skip(close);
-        // The width of a field includes two blanks, for the space to the next field. The other 3
-        // characters are ` { `; those of ` }` are the two blanks of the last field.
+        // Two blanks follow each field; after the last field, they stand for ` }`, which is as
+        // wide. The other 3 characters are ` { `.
         let fields: usize = entries.iter().map(|entry| entry.width_in_line() + 2).sum();
         let is_empty = entries.is_empty() && after_open.is_empty();
         let width = width(&head) + 3 + fields;

@@ -64,9 +64,9 @@ pub fn format_parsed(source: &Source, parsed: &Parsed<'_>) -> Option<String> {
     (!parsed.is_doubtful || is_right_text(&formatted)).then_some(formatted)
 }
 
-/// Returns whether `text`, a formatted text, has no syntax errors. It may have some if the original
-/// was doubtful ([`Parsed::is_doubtful`]): recovery may decide by the line ends, which formatting
-/// changes.
+/// Returns whether `text`, a formatted text, has no syntax errors. It may have some although the
+/// original text was accepted, because error recovery considers line ends, and formatting changes
+/// them.
 fn is_right_text(text: &str) -> bool {
     let source = Source::from_text("", text);
     is_right(&source, &syntax::parse(&source, SourceId::File))
@@ -77,7 +77,7 @@ fn is_right(source: &Source, parsed: &Parsed<'_>) -> bool {
     parsed.problems.is_empty() && source.invalid_utf8().is_empty() && is_whole(&parsed.tree)
 }
 
-/// Returns the canonical layout of a text whose entries are `entries`.
+/// Returns the canonical layout of a text. `entries` are its definitions, blocks and comments.
 fn layout(source: &Source, mut entries: Vec<entries::Entry<'_>>) -> String {
     columns::align(&mut entries);
     let written = writer::written(&entries);

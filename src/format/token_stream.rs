@@ -12,21 +12,20 @@ use crate::{
 pub struct Word<'s> {
     /// The text of the token or comment.
     pub text: &'s str,
-    /// The white space before the word.
+    /// The white space before the token or comment.
     pub before: Before,
 }
 
-/// White space before a word.
+/// White space before a token or a comment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Before {
     /// No white space.
     Nothing,
     /// One blank.
     Space,
-    /// A blank, or a line end if the line would be too long. Of the words of a line at which it can
-    /// be broken, it is broken at one with the lowest number. The number is 2 for each pair of
-    /// parentheses around the word, and 1 more at the operators of products, so that sums are
-    /// broken first.
+    /// A blank, or a line end if the line would be too long. A line is broken at a word with the
+    /// lowest number. The number is 2 for each pair of parentheses around the word, and 1 more for
+    /// the operator of a product, so that sums are broken first.
     Fold(usize),
     /// A line end.
     Line,
@@ -156,7 +155,8 @@ impl<'a, 's> TokenReader<'a, 's> {
         self.skip(span);
     }
 
-    /// Adds the words of a value that is inside of `depth` parentheses.
+    /// Adds the tokens and comments of a value to `words`. The value is inside of `depth`
+    /// parentheses.
     pub fn value(
         &mut self,
         value: &Value<'_>,
@@ -217,13 +217,13 @@ impl<'a, 's> TokenReader<'a, 's> {
     }
 }
 
-/// Maximum width of a line, in characters. Longer lines are broken if there are words before which
-/// they can be broken. The width is measured before alignment and without the comments at the
-/// line's end.
+/// Maximum width of a line, in characters, as the language's reference states it. Longer lines are
+/// broken if there are tokens before which they can be broken. The width is measured before
+/// alignment and without the comments at the line's end.
 pub const WIDTH: usize = 100;
 
-/// Returns the width of words on one line, in characters. If a comment has several lines, only its
-/// last line counts.
+/// Returns the width, in characters, of the tokens and comments `words` on one line. If a comment
+/// has several lines, only its last line counts.
 pub fn width(words: &[Word<'_>]) -> usize {
     words.iter().fold(0, |width, word| {
         let blank = usize::from(word.before != Before::Nothing);
@@ -239,7 +239,7 @@ pub fn column_after(column: usize, text: &str) -> usize {
     }
 }
 
-/// Returns whether words take more than one line.
+/// Returns whether the tokens and comments `words` take more than one line.
 pub fn has_line_end(words: &[Word<'_>]) -> bool {
     let ends = |word: &Word<'_>| word.before == Before::Line || word.text.contains('\n');
     words.iter().any(ends)

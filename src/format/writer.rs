@@ -1,4 +1,4 @@
-//! Writes entries, aligned to their columns.
+//! Writes definitions, blocks and comments, aligned to their columns.
 
 use super::{
     columns::shared,
@@ -6,10 +6,11 @@ use super::{
     token_stream::{Before, WIDTH, Word, column_after, ends_line, is_comment, width},
 };
 
-/// Indentation, in blanks, of a block's fields and of the further lines of a value.
+/// Number of blanks by which a block's fields, and the further lines of a value, are indented. The
+/// language's reference states the number.
 const INDENT: usize = 2;
 
-/// Returns the text of a file's entries.
+/// Returns the formatted text of a file. `entries` are its definitions, blocks and comments.
 pub fn written(entries: &[Entry<'_>]) -> String {
     let mut writer = LayoutWriter::default();
     for entry in entries {
@@ -22,8 +23,9 @@ pub fn written(entries: &[Entry<'_>]) -> String {
 #[derive(Default)]
 struct LayoutWriter {
     text: String,
-    /// Lines that are not written yet, each with the comments at its end. They are written when
-    /// their group is complete, since the comments of a group are aligned.
+    /// Lines that are not written yet, each with the comments at its end. The comments of
+    /// neighbouring lines start in the same column, so the lines are written only when all of them
+    /// are known.
     waiting: Vec<(String, String)>,
 }
 
@@ -140,7 +142,7 @@ impl LayoutWriter {
         }
     }
 
-    /// Writes the head of a block, and the blanks or the line end before its `{`.
+    /// Writes the part of a block before its `{`, and the blanks or the line end after this part.
     fn head(&mut self, line: &mut String, block: &BlockEntry<'_>, column: usize) {
         match (block.name, block.name_column) {
             (Some(name), 1..) => {
@@ -161,7 +163,7 @@ impl LayoutWriter {
         }
     }
 
-    /// Writes the lines of the current group, with the comments at their ends aligned in columns.
+    /// Writes the stored lines, with the comments at their ends aligned in columns.
     fn flush(&mut self) {
         let waiting = std::mem::take(&mut self.waiting);
         let lines: Vec<usize> = (0..waiting.len()).collect();
@@ -231,8 +233,9 @@ fn push_flat(line: &mut String, words: &[Word<'_>]) {
 }
 
 /// Returns the indices of the words that start new lines. A line that is too long is broken at a
-/// word with the lowest [`Fold`](Before::Fold) number; if several words have that number, at the
-/// last one that fits. The words start at the column `start`, and new lines at the column `margin`.
+/// word with the lowest number in [`Fold`](Before::Fold), i.e. within the fewest parentheses. If
+/// several words have this number, it is broken at the last one that fits. The words start at the
+/// column `start`, and new lines at the column `margin`.
 fn line_starts(words: &[Word<'_>], start: usize, margin: usize) -> Vec<usize> {
     let mut starts = Vec::new();
     let mut column = start;

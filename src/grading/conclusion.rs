@@ -1,4 +1,5 @@
-//! Turns the result of a search into a verdict: its mistakes are named, or become guesses.
+//! Turns the result of a search into a verdict on the picture. Mistakes that explain the picture
+//! are named; others become guesses.
 
 use super::{
     hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},
@@ -14,12 +15,13 @@ use crate::{
     scene::Scene,
 };
 
-/// Makes the verdict of what the search found, a candidate and whether it explains the picture.
+/// Returns the verdict, given what the search found: the best hypothesis about the program that
+/// made the picture, and whether it explains the picture.
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::correct(scene);
-    // The conclusion takes work, too. A search that explains the picture ended for that, not at its
-    // budget.
+    // Computing the verdict spends work, too. A search that explained the picture has ended for
+    // that reason, not because the budget was used up.
     let is_explained = matches!(found, Some((_, true)));
     let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
@@ -47,8 +49,8 @@ pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Ve
     verdict
 }
 
-/// Returns whether a picture has a channel below or above those of all colours of the scene, which
-/// no mean of them has.
+/// Returns whether some pixel has a channel outside the range of that channel over all colours of
+/// the scene. A correct pixel is a mean of these colours, so none of its channels leaves the range.
 fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     let colors = scene.objects.iter();
     let colors = colors.flat_map(|object| object.shape.colors());
@@ -62,16 +64,16 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     let least = least.map(|srgb| srgb_to_linear((srgb - WRONG) / 255.0));
     let most = most.map(|srgb| srgb_to_linear((srgb + WRONG) / 255.0));
     let is_other = |pixel: &[f64; 3]| (0..3).any(|i| pixel[i] < least[i] || pixel[i] > most[i]);
-    // JPEG makes colours overshoot at edges.
+    // JPEG coding makes colours overshoot at edges, so a JPEG is not tested.
     jpeg.is_none() && film.pixels().iter().any(is_other)
 }
 
-/// Concludes from mistakes: they are named if together they explain the picture, and are guesses
-/// otherwise.
+/// Returns the verdict for a hypothesis with mistakes. The mistakes are named if together they
+/// explain the picture; otherwise they are reported as guesses.
 fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
-    // All squared differences are compared on one grid, less the final noise. Shifts by half a
-    // pixel are visible only at full resolution.
+    // All hypotheses are compared on one grid, and the noise that the last one leaves is
+    // subtracted. A shift of samples and a wrong pixel width are visible only at full resolution.
     let level = if last.behaviour.is_shifted() || last.is_filtered() {
         judge.central_crop()
     } else {
@@ -89,7 +91,8 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     let all = beyond(&before).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
-    // The mistake first that leaves least: its share may be larger once another no longer hides it.
+    // Takes the mistake first that leaves the least difference. The other mistakes may explain more
+    // afterwards, because it no longer hides them.
     let mut others: Vec<&Mistake> = last.mistakes.iter().collect();
     while !others.is_empty() {
         let with = |(at, mistake): (usize, &&Mistake)| {
@@ -138,7 +141,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
-    // With guesses, nothing is known about single objects.
+    // Guesses do not explain the picture, so objects are compared with those of the correct scene.
     let known = if is_named { last } else { &correct };
     let (objects, is_background_right) = objects::judged(judge, known);
     Verdict {
@@ -153,8 +156,8 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     }
 }
 
-/// Returns rows of the same identifier that explain the picture equally well in place of a mistake,
-/// so that nobody can tell them apart.
+/// Returns other rows of the table of mistakes that have the same identifier as `mistake` and
+/// explain the picture equally well in its place. The picture alone cannot decide between them.
 fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> Vec<Mistake> {
     let Mistake::Row(row, object) = mistake else {
         return Vec::new();

@@ -1,7 +1,7 @@
-//! Removes the pixels without a sample.
+//! Finds the pixels without a sample, and removes them.
 //!
-//! Samples at random over the whole picture leave some pixels empty: these show the background, or
-//! black in some programs, and carry no information about the scene.
+//! If samples are spread at random over the whole picture, some pixels get none. Such a pixel shows
+//! the background, or black in some programs, and says nothing about the scene.
 
 use std::sync::Arc;
 
@@ -13,19 +13,22 @@ use super::{
 };
 use crate::film::Film;
 
-/// Returns a picture whose empty pixels are NaN. Returns `None` if it has none. `empty` is the
-/// colour of empty pixels.
+/// Replaces the pixels without a sample by NaN. Returns `None` if no pixel lacks one. `empty` is
+/// the colour that a pixel without a sample shows.
 ///
-/// A pixel that shows this colour and should not is empty if such pixels lie at random: no more
-/// pairs of neighbours, beside or below each other, are empty than of independent pixels, and there
-/// are no more of them than the noise of the others implies. Of n samples in a pixel on average, a
-/// share of e⁻ⁿ of the pixels has none.
+/// A pixel may lack a sample if it has this colour and should have another one. All such pixels
+/// count as without a sample if they lie at random and are few enough. They lie at random if they
+/// are neighbours no more often than independent pixels. They are few enough if the noise of the
+/// other pixels implies as many: with n samples per pixel on average, a fraction e⁻ⁿ of the pixels
+/// has none.
 pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {
     let width = film.width() as usize;
     let is_empty = |at: usize| is_near(film.pixels()[at], empty);
     let may_be_empty = |at: usize| !is_near(moments.mean[at].into(), empty);
     let is_flat = |at: usize| moments.variance[at].max_element() < FLAT;
-    // Whether each pixel of one colour that should have another one than `empty` is empty.
+    // `Some(true)` for a pixel that lacks a sample, `Some(false)` for a pixel that has one. `None`
+    // if this is not visible, because several colours meet in the pixel, or because it should show
+    // `empty`.
     let states: Vec<Option<bool>> = (0..moments.mean.len())
         .map(|at| (is_flat(at) && may_be_empty(at)).then(|| is_empty(at)))
         .collect();
@@ -46,8 +49,8 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         }
     }
     let both = share * share;
-    // A pair shares a pixel with six others, on which it depends: this is the factor by which the
-    // count's variance exceeds that of independent pairs.
+    // Each pair of neighbours shares a pixel with six other pairs, so pairs are not independent.
+    // This factor is the variance of the number of pairs, relative to that of independent pairs.
     let more = 1.0 - both + 6.0 * share * (1.0 - share);
     if !is_chance(empty_pairs / more, pairs * both / more) {
         return None;
@@ -60,15 +63,15 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
     }
     let seen: Vec<DVec3> = without.pixels().iter().copied().map(DVec3::from).collect();
     let prediction = Prediction::new(&seen, width, Arc::clone(moments), Curve::Correct);
-    // The noise corresponds to one over the mean of 1/n over the pixels that have samples, which is
-    // less than n + 1.
+    // The noise gives the harmonic mean of the sample counts of all pixels with samples. It is less
+    // than n + 1, where n is the mean sample count of all pixels.
     let samples = prediction.score().samples?;
     let expected = count * libm::exp(1.0 - samples);
     is_chance(found, expected).then_some(without)
 }
 
-/// Returns whether a count of independent events may be chance, by Chernoff's bound of the Poisson
-/// distribution: P(X ≥ k) ≤ e^(k − m) (m / k)^k for k > m.
+/// Returns whether `count` independent events may be chance if `mean` are expected. Uses Chernoff's
+/// bound for a Poisson variable X with the mean m: P(X ≥ k) ≤ e^(k − m) (m/k)^k for k > m.
 fn is_chance(count: f64, mean: f64) -> bool {
     count <= mean
         || count * libm::log(count / mean) - (count - mean) <= DEVIATIONS * DEVIATIONS / 2.0

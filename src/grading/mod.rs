@@ -1,14 +1,14 @@
-//! What is wrong with a picture of a scene.
+//! Finds out what is wrong with a picture of a scene.
 //!
-//! In: a picture that somebody made of a scene, the scene, and its exact picture. Out: a verdict:
-//! right, right but for sampling noise, wrong by mistakes that are named, or wrong for an unknown
-//! reason; and how far each object is off.
+//! In: a scene, its exact picture, and a picture that somebody else's program made. Out: a verdict,
+//! and how far each object is displaced. The verdict is: right, right except for sampling noise,
+//! wrong by mistakes that are named, or wrong for an unknown reason.
 //!
-//! A hypothesis (`hypotheses`) is a program with mistakes. It is scored by how well what it would
-//! render explains the picture (`scoring`), and the search (`search`) looks for the one that
-//! explains it best with the fewest mistakes. `plain_facts` and `empty_pixels` come before the
-//! search; `conclusion` makes a `verdict` of what it finds, in the words of `wording`, with one for
-//! each of the `objects`.
+//! A hypothesis (`hypotheses`) is a program with mistakes. Its score (`scoring`) says how well the
+//! picture that it would render explains the given one. The search (`search`) looks for the
+//! hypothesis that explains the picture best with the fewest mistakes. Before the search,
+//! `plain_facts` and `empty_pixels` handle what is obvious. After it, `conclusion` makes the
+//! `verdict`, with one for each object (`objects`), in the words of `wording`.
 
 mod conclusion;
 mod empty_pixels;
@@ -52,24 +52,26 @@ use crate::{
     tracer::World,
 };
 
-/// What pictures of a part of a scene are judged by; made once for a whole class.
+/// The exact picture of a part of a scene, and what else is needed to judge pictures of that part.
+/// It is computed once for a whole class.
 pub struct Reference {
     /// The exact picture.
     pub exact: Exact,
-    /// The part of the scene's picture.
+    /// Part of the scene's picture that can be judged.
     pub part: Area,
     scene: Scene,
     correct: Arc<Rendering>,
-    /// Rounding of the pictures that it can judge.
+    /// Rounding of the pictures that can be judged.
     rounding: Rounding,
-    /// Work that was spent on it.
+    /// Work that was spent on the exact picture, in the units of [`Work`].
     work: f64,
-    /// Factor of the work that may be spent on a picture.
+    /// Factor by which the work allowed for each picture is multiplied.
     effort: f64,
 }
 
-/// Bytes per pixel: the exact mean, and twice the moments (mean, its variance, variance), as there
-/// are two while they are computed.
+/// Number of bytes of memory per pixel. There are seven colours of three numbers: the exact mean,
+/// and twice a mean, its variance, and the variance of a sample, because two copies of these exist
+/// while they are computed.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl fmt::Debug for Reference {
@@ -83,16 +85,18 @@ impl fmt::Debug for Reference {
 }
 
 impl Reference {
-    /// Computes the exact picture of a part of a scene, for judging pictures with some rounding.
+    /// Computes the exact picture of a part of a scene, for judging pictures that are rounded in
+    /// some way.
     ///
     /// # Errors
     ///
-    /// It is cancelled, too large, or no part of the scene's picture.
+    /// Fails if it is cancelled, if the part is too large, or if the part lies outside of the
+    /// scene's picture.
     ///
     /// # Panics
     ///
-    /// The scene was not read, but made in code, and breaks a condition of the language;
-    /// [`Scene::check`] tells.
+    /// Panics if the scene was made in code instead of read from a file, and breaks a condition of
+    /// the language. [`Scene::check`] finds such scenes.
     pub fn new(
         scene: &Scene,
         part: Area,
@@ -128,7 +132,7 @@ impl Reference {
         })
     }
 
-    /// Returns whether it can judge a picture of a part with some rounding.
+    /// Returns whether the reference can judge a picture of this part with this rounding.
     pub fn is_for(&self, part: Area, rounding: Rounding) -> bool {
         self.part == part && self.rounding == rounding
     }
@@ -137,12 +141,13 @@ impl Reference {
     ///
     /// # Errors
     ///
-    /// Their sizes differ.
+    /// Fails if their sizes differ.
     pub fn compare(&self, film: &Film, steps: f64) -> Result<Comparison, SizesDiffer> {
         film::compare(film, &self.exact.film, self.tolerance(steps))
     }
 
-    /// Returns a tolerance of some steps, plus the exact picture's own bound.
+    /// Returns the tolerance of a comparison: some 8-bit steps, plus the error bound of the exact
+    /// picture.
     pub fn tolerance(&self, steps: f64) -> Tolerance<'_> {
         Tolerance {
             steps,
@@ -150,18 +155,18 @@ impl Reference {
         }
     }
 
-    /// Multiplies the work that may be spent on a picture.
+    /// Sets the factor by which the work allowed for each picture is multiplied.
     #[must_use]
     pub fn with_effort(self, effort: f64) -> Self {
         Self { effort, ..self }
     }
 
-    /// Judges a picture; `comparison` compares it with the exact one, and `jpeg` is the coding of
-    /// its file, if that is a JPEG.
+    /// Judges a picture. `comparison` is its comparison with the exact picture. `jpeg` says how its
+    /// file is coded, if it is a JPEG.
     ///
     /// # Errors
     ///
-    /// It is cancelled.
+    /// Fails if it is cancelled.
     pub fn judge(
         &self,
         picture: &Picture,
@@ -175,8 +180,8 @@ impl Reference {
         let Some(opacity) = &picture.opacity else {
             return self.judge_opaque(&picture.film, jpeg, cancel);
         };
-        // A transparent picture is seen on black, which may be right if nothing in it is opaque;
-        // otherwise its colours are judged without alpha.
+        // A transparent picture is judged as it appears on black, where it may be right. If it is
+        // not, or if no pixel is opaque, its colours are judged without alpha.
         let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
         let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
         if is_right && opacity.range[1] == 1.0 {
@@ -215,7 +220,8 @@ impl Reference {
         let Some(empty) = EmptyRows::of(film, exact) else {
             return self.judge_full(film, jpeg, cancel);
         };
-        // Rows of one colour may be due to a camera that looks elsewhere.
+        // Rows of one colour may never have been written, or the camera may look elsewhere. They
+        // count as never written if the rest of the picture is right.
         let rest = self.judge_full(&empty.removed_from(film), jpeg, cancel)?;
         match rest.kind {
             Kind::Right | Kind::Noise => Ok(rest.with_fact(empty.fact())),
@@ -223,7 +229,7 @@ impl Reference {
         }
     }
 
-    /// Judges a picture that is not empty.
+    /// Judges a picture by a search for mistakes. Pixels without a sample are ignored.
     fn judge_full(
         &self,
         film: &Film,
@@ -239,14 +245,14 @@ impl Reference {
         let work = Work::new(self.part.pixels(), self.work, self.effort, cancel);
         let judge = Judge::new(&self.scene, &self.correct, &film, jpeg, work);
         let found = forward_selection::run(&judge)?;
-        // The conclusion is not cut short by the budget.
+        // The verdict must be computed completely, so the budget of work does not limit this.
         let conclude = || conclusion::conclude(&judge, &film, found);
         let verdict = judge.work.without_limit(conclude);
         Ok(cancel::unless_set(cancel, verdict)?)
     }
 }
 
-/// Iterates over the identifiers of all mistakes in the table.
+/// Iterates over the identifiers of all rows of the table of mistakes.
 pub fn mistake_ids() -> impl Iterator<Item = &'static str> {
     let rows = mistakes::ROWS.iter().chain(mistakes::OBJECT_ROWS);
     rows.map(|row| row.id)

@@ -13,29 +13,31 @@ use crate::{
     scene::{Checkerboard, Scene, Shape},
 };
 
-/// Displacement in pixels below which an object counts as not moved.
+/// Displacement in the picture, in pixels, below which an object counts as not moved. The value is
+/// a choice.
 const HALF_PIXEL: f64 = 0.5;
 
-/// Distance from a wrong object, in pixels, within which errors are attributed to it.
+/// Distance from a wrong object, in pixels, within which errors are attributed to it instead of its
+/// neighbours. The value is a choice.
 const BESIDE: usize = 2;
 
 /// The verdict on an object.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ObjectVerdict {
-    /// Index in the file.
+    /// Index of the object in the file.
     pub index: usize,
-    /// Name in the scene, if it has one.
+    /// Name of the object in the scene, if it has one.
     pub name: Option<String>,
-    /// Description in messages.
+    /// Description of the object, for messages.
     pub title: String,
-    /// Whether the picture shows it correctly.
+    /// Whether the picture shows the object correctly.
     pub is_right: bool,
-    /// Displacement in the picture, in pixels.
+    /// Displacement of the object in the picture, in pixels.
     pub off: f64,
 }
 
-/// Returns all objects of a scene as correct.
+/// Returns a verdict for each object of a scene, all of which are correct.
 pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
     let right = |index: usize| ObjectVerdict {
         index,
@@ -47,10 +49,10 @@ pub fn right(scene: &Scene) -> Vec<ObjectVerdict> {
     (0..scene.objects.len()).map(right).collect()
 }
 
-/// Judges all objects and the background, given the mistakes of a candidate.
+/// Judges all objects and the background, given the mistakes of a hypothesis.
 ///
-/// An object is correct if it has its own numbers in the candidate's scene, and if the picture
-/// agrees with a correct rendering of that scene where it shows the object.
+/// An object is correct if the hypothesis leaves it unchanged and in its place. In addition, where
+/// the object is shown, the picture must agree with a correct rendering of the hypothesis's scene.
 pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool) {
     let scene = judge.scene;
     let is_drawn = &candidate.is_drawn;
@@ -85,8 +87,8 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
     (objects, is_background_right)
 }
 
-/// Returns the displacement of an object in the picture from one scene to another, in pixels: the
-/// maximum over some of its points.
+/// Returns how far an object moves in the picture between two scenes, in pixels: the maximum over
+/// some of its points.
 fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     let projections = [from, to].map(|scene| Projection::quick(&scene.camera, &scene.image));
     let size = projections[0].size;
@@ -99,14 +101,15 @@ fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     let moved = before.into_iter().zip(after).filter_map(|(before, after)| {
         let (before, after) = (projections[0].point(before)?, projections[1].point(after));
         let is_near = before.cmpge(-size).all() && before.cmple(2.0 * size).all();
-        // A point that is no longer ahead of the eye counts as far away.
+        // A point that is no longer ahead of the eye counts as moved by the picture's diagonal.
         let off = after.map_or(size.length(), |after| before.distance(after));
         is_near.then(|| off.min(size.length()))
     });
     moved.fold(0.0, f64::max)
 }
 
-/// Returns points that are fixed to a shape; those of a board are given in squares.
+/// Returns some points of a shape, which move with it. For a checkerboard, these are `squares`,
+/// which are given in units of a square's side.
 fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     match shape {
         Shape::Sphere(sphere) => {
@@ -123,13 +126,13 @@ fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     }
 }
 
-/// Returns points of a board that are visible across the picture, in squares.
+/// Returns points of a checkerboard that are spread over the picture, in units of a square's side.
 fn squares(board: &Checkerboard, projection: &Projection) -> Vec<DVec3> {
     let place = |at: i32| DVec2::new(f64::from(at % 5), f64::from(at / 5)) / 4.0;
     let crossing = |at| {
         let plane = DVec3::Y * board.y;
         let point = projection.on_plane(projection.size * place(at), plane, DVec3::Y)?;
-        // Beyond 100 squares single squares are not visible.
+        // Beyond a depth of 100 squares, single squares are too small to be seen.
         let is_seen = projection.depth(point) < 100.0 * board.square;
         is_seen.then_some(point / board.square)
     };

@@ -1,5 +1,5 @@
-//! Facts that are obvious in a picture before any mistake is fitted: it has values that are no
-//! numbers, it is empty, a part of it is empty, or it is transparent.
+//! Facts that are obvious in a picture before any mistake is fitted: some values are not numbers,
+//! the picture is empty or noise, a part of it is empty, or it is transparent.
 
 use glam::DVec3;
 
@@ -10,14 +10,17 @@ use super::{
 };
 use crate::{area::Area, film::Film, scene::Scene};
 
-/// Ratio of the squared differences of neighbours to those of distant pixels below which a picture
-/// is not noise. In noise the ratio is 1.
+/// Ratio below which a picture is not noise: the mean squared difference of neighbouring pixels,
+/// divided by that of arbitrary pixels. In noise it is 1. In a picture of a scene it is smaller,
+/// because neighbours are alike. The value 0.8 is a choice.
 const NOISE_RATIO: f64 = 0.8;
 
-/// Cells along the longer side in which objects are looked for.
+/// Number of cells along the picture's longer side in which one ray each looks for objects. The
+/// value is a choice; objects smaller than a cell may be missed.
 const CELLS: u32 = 32;
 
-/// Maximum number of causes that are listed.
+/// Maximum number of possible causes that are listed for an empty picture. The value is a choice
+/// that keeps the advice short.
 const CAUSES: usize = 3;
 
 fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
@@ -30,8 +33,8 @@ fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
     }
 }
 
-/// Returns the fact that a picture has values that are no finite numbers. Returns `None` if it has
-/// none.
+/// Returns the fact that some values of a picture are not finite numbers. Returns `None` if all are
+/// finite.
 pub fn not_finite(film: &Film) -> Option<NamedMistake> {
     let is_finite = |pixel: &&[f64; 3]| pixel.iter().all(|light| light.is_finite());
     let count = film.pixels().len() - film.pixels().iter().filter(is_finite).count();
@@ -44,12 +47,12 @@ pub fn not_finite(film: &Film) -> Option<NamedMistake> {
     Some(fact("not_finite", message, help.to_owned()))
 }
 
-/// Returns the fact that a picture is empty or noise. Returns `None` if it is not. `exact` is the
-/// correct picture.
+/// Returns the fact that a picture has one colour or is noise. Returns `None` if neither is the
+/// case. `exact` is the correct picture.
 pub fn empty_or_noise(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMistake> {
     let first = film.pixels()[0];
     if film.pixels().iter().all(|pixel| *pixel == first) {
-        // Correct if the exact picture has one colour, too.
+        // One colour is correct if the exact picture shows the same colour everywhere.
         if exact.pixels().iter().all(|pixel| is_near(*pixel, first)) {
             return None;
         }
@@ -76,7 +79,7 @@ pub fn empty_or_noise(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedM
     })
 }
 
-/// Returns whether neighbouring pixels have no more in common than distant ones.
+/// Returns whether a picture is noise: neighbouring pixels differ as much as distant ones.
 fn is_noise(film: &Film) -> bool {
     let width = film.width() as usize;
     let pixels = film.pixels();
@@ -92,7 +95,7 @@ fn is_noise(film: &Film) -> bool {
     far > 0.0 && below.min(beside) > 2.0 * NOISE_RATIO * far
 }
 
-/// Lists the rows of the table by which a camera sees nothing of a scene.
+/// Lists rows of the table of mistakes that would make the picture of a scene empty.
 fn causes(scene: &Scene) -> String {
     let part = Area::whole(scene.image.width, scene.image.height);
     let grid = Grid::new(&scene.image, part, CELLS);
@@ -114,16 +117,17 @@ fn causes(scene: &Scene) -> String {
     }
 }
 
-/// Rows of pixels at the top or bottom of a picture that have one colour and should not: at least
-/// two, and not all.
+/// Rows of pixels at the top or bottom of a picture that have one colour but should not. There are
+/// at least two of them, and they never fill the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct EmptyRows {
-    /// The first and the last row.
+    /// Indices of the first and the last of the empty rows.
     rows: [usize; 2],
 }
 
 impl EmptyRows {
-    /// Finds the empty rows of a picture, given the exact one.
+    /// Finds the rows at the top or bottom of a picture that have one colour but should not, by
+    /// comparing it with the exact picture. Returns `None` if there are none.
     pub fn of(film: &Film, exact: &Film) -> Option<Self> {
         let width = film.width() as usize;
         let height = film.pixels().len() / width;
@@ -133,7 +137,8 @@ impl EmptyRows {
             let light = film.pixels()[at(0) * width];
             let are_empty = |y: &usize| row(film, at(*y)).iter().all(|pixel| *pixel == light);
             let count = (0..height).take_while(are_empty).count();
-            // A sky has one colour in any picture, even if it is the wrong colour.
+            // A sky has one colour in any picture, even if that is wrong. So a row of the sky
+            // counts as empty only if its correct colour appears elsewhere in the picture.
             let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
             let is_wrong = |y: &usize| {
                 let own = row(exact, at(*y));
@@ -149,7 +154,7 @@ impl EmptyRows {
         from_below(true).or_else(|| from_below(false))
     }
 
-    /// Returns a picture in which these rows are NaN.
+    /// Returns the picture with NaN in place of the empty rows.
     pub fn removed_from(&self, film: &Film) -> Film {
         let width = film.width() as usize;
         let mut left = film.clone();
@@ -158,7 +163,7 @@ impl EmptyRows {
         left
     }
 
-    /// Returns the fact to report.
+    /// Returns the fact that the picture has empty rows, for the verdict.
     pub fn fact(&self) -> NamedMistake {
         let [first, last] = self.rows;
         let help = "a picture is written when all of its rows are made, and each index, row · width + column, is used once";
@@ -167,8 +172,8 @@ impl EmptyRows {
     }
 }
 
-/// Returns the fact that a picture is not opaque; `opacity` is the least and the greatest alpha,
-/// from 0 to 1.
+/// Returns the fact that a picture is not opaque, given its least and its greatest alpha, from 0 to
+/// 1.
 pub fn transparent([least, most]: [f64; 2]) -> NamedMistake {
     let help = "alpha is 255 in every pixel of an opaque picture, or the file has no alpha";
     let byte = |part: f64| (255.0 * part).round();

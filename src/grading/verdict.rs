@@ -5,22 +5,22 @@ use std::fmt;
 use super::objects::{self, ObjectVerdict};
 use crate::{numbers::short, scene::Scene};
 
-/// The result in one word.
+/// The result of judging a picture, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Kind {
-    /// Equal to the exact picture within its tolerance.
+    /// The picture equals the exact one within its tolerance.
     Right,
-    /// Right except for sampling noise.
+    /// The picture is right except for sampling noise.
     Noise,
-    /// Wrong, and the mistakes are named.
+    /// The picture is wrong, and the mistakes are named.
     Wrong,
-    /// Wrong, and no known mistake explains it.
+    /// The picture is wrong, and no known mistake explains it.
     Unknown,
 }
 
 impl Kind {
-    /// Returns the word for programs.
+    /// Returns the result as a word, for programs.
     pub fn word(self) -> &'static str {
         match self {
             Self::Right => "right",
@@ -31,19 +31,20 @@ impl Kind {
     }
 }
 
-/// A mistake in words.
+/// A mistake, described in words.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NamedMistake {
     /// Stable identifier, for programs.
     pub id: &'static str,
-    /// What is wrong.
+    /// Message that says what is wrong.
     pub message: String,
-    /// How to correct it.
+    /// Advice on how to correct the mistake.
     pub help: String,
-    /// The `--set` arguments that reproduce it.
+    /// `--set` arguments that make the scene reproduce the mistake.
     pub set: Vec<String>,
-    /// Share of the squared difference beyond noise that it explains.
+    /// Fraction of the squared difference from the exact picture, without noise, that the mistake
+    /// explains.
     pub explains: f64,
 }
 
@@ -53,23 +54,23 @@ pub struct NamedMistake {
 pub struct Verdict {
     /// The result in one word.
     pub kind: Kind,
-    /// Number of independent samples in a pixel that leave as much noise; `None` if it is not
-    /// known.
+    /// Number of independent samples per pixel that would cause as much noise; `None` if it is
+    /// unknown.
     pub samples: Option<f64>,
     /// The mistakes that together explain the picture.
     pub mistakes: Vec<NamedMistake>,
-    /// The mistakes that come nearest, if no known ones explain the picture.
+    /// The mistakes that come nearest to the picture, if no known mistakes explain it.
     pub guesses: Vec<NamedMistake>,
-    /// Share of the squared difference beyond noise that mistakes or guesses leave, if it is more
-    /// than noise.
+    /// Fraction of the squared difference from the exact picture that mistakes or guesses leave
+    /// unexplained, without noise. `None` if they leave only noise.
     pub rest: Option<f64>,
     /// The verdict on each object.
     pub objects: Vec<ObjectVerdict>,
-    /// Whether the background is right.
+    /// Whether the picture shows the background correctly.
     pub is_background_right: bool,
     /// Whether the picture's file is a JPEG, which changes colours.
     pub is_coded: bool,
-    /// Whether the search ended at its budget before all mistakes were tried.
+    /// Whether the search used up its budget of work before it tried all mistakes.
     pub is_cut: bool,
 }
 
@@ -89,7 +90,8 @@ impl Verdict {
         }
     }
 
-    /// Adds an obvious fact in front of the mistakes or guesses.
+    /// Adds an obvious fact before the mistakes or guesses. Unless the verdict is unknown, it
+    /// becomes wrong.
     pub fn with_fact(mut self, fact: NamedMistake) -> Self {
         match self.kind {
             Kind::Unknown => self.guesses.insert(0, fact),
@@ -101,7 +103,7 @@ impl Verdict {
         self
     }
 
-    /// Returns the verdict in one line.
+    /// Returns the verdict as one line of text.
     pub fn line(&self) -> String {
         match (self.kind, self.samples) {
             (Kind::Right, _) => "right: equal to the exact picture".to_owned(),
@@ -137,7 +139,7 @@ impl Verdict {
         }
     }
 
-    /// Returns what guesses leave, in words.
+    /// Returns in words how much the guesses leave unexplained.
     fn unexplained(&self) -> String {
         match self.rest.map(|rest| (100.0 * rest).round()) {
             Some(percent) if percent > 0.0 => format!(", and leaves {percent} % unexplained"),

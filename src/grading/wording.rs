@@ -10,7 +10,7 @@ use crate::{
 const FILTER: &str = "a pixel is the mean of light over its own square: its samples lie evenly in it, and nowhere else";
 
 impl Mistake {
-    /// Returns the identifier, for programs.
+    /// Returns the mistake's identifier, for programs.
     pub fn id(&self) -> &'static str {
         match self {
             Self::Row(row, _) => row.id,
@@ -25,7 +25,7 @@ impl Mistake {
         }
     }
 
-    /// Returns advice on how to correct it.
+    /// Returns advice on how to correct the mistake.
     pub fn help(&self, scene: &Scene) -> String {
         match self {
             Self::Row(row, _) => row.help.to_owned(),
@@ -44,7 +44,7 @@ impl Mistake {
         }
     }
 
-    /// Returns what is wrong.
+    /// Returns a message that says what is wrong.
     pub fn message(&self, scene: &Scene) -> String {
         let (parameter, numbers) = match self {
             Self::Row(row, None) => return row.message.to_owned(),

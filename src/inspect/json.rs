@@ -1,4 +1,4 @@
-//! The output of `inspect` as JSON: one object.
+//! Writes the output of `pinhole inspect` as a JSON object.
 
 use std::io::{self, Write};
 
@@ -12,12 +12,12 @@ use crate::{
 };
 
 impl Inspection {
-    /// Writes the JSON object and a line feed. Objects are written one by one: a million of them
-    /// would take more than a gigabyte as values in memory.
+    /// Writes the JSON object and a line feed. Scene objects are written one by one, because a
+    /// million of them would take more than a gigabyte as JSON values in memory.
     ///
     /// # Errors
     ///
-    /// `out` cannot be written to.
+    /// Fails if `out` cannot be written to.
     pub fn write_json(&self, mut out: &mut dyn Write) -> io::Result<()> {
         for (key, value) in self.facts() {
             let sign = if key == "image" { '{' } else { ',' };
@@ -43,7 +43,7 @@ impl Inspection {
         writeln!(out, "}}")
     }
 
-    /// Returns the members of the JSON object that are not about the scene's objects.
+    /// Returns the members of the JSON object that are not about single objects of the scene.
     fn facts(&self) -> [(&'static str, Value); 4] {
         let camera = &self.camera;
         let point = |(axis, pixel)| json!({ "axis": axis, "pixel": pixel });

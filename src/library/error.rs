@@ -1,4 +1,5 @@
-//! The errors of the library's front.
+//! The error type of the library's main types, [`Scene`](super::Scene) and
+//! [`Picture`](super::Picture).
 
 use std::{io, path::PathBuf};
 
@@ -6,11 +7,11 @@ use thiserror::Error;
 
 use crate::{diagnostic::Mistakes, film::SizesDiffer, render::RenderError};
 
-/// Why something cannot be done with a scene or a picture.
+/// Why an operation on a scene or a picture failed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A text is no scene, or data are none.
+    /// The text or the data are not a valid scene. All mistakes are listed.
     #[error(transparent)]
     Mistakes(#[from] Mistakes),
     /// There is not enough memory for a picture, or no thread can be started.
@@ -19,24 +20,24 @@ pub enum Error {
     /// Two pictures have different sizes.
     #[error(transparent)]
     SizesDiffer(#[from] SizesDiffer),
-    /// Bytes are no picture that can be read.
+    /// The bytes are not a picture that can be read.
     #[cfg(feature = "read")]
     #[error(transparent)]
     Unreadable(#[from] crate::film::Unreadable),
     /// A file cannot be read.
     #[error("cannot read {}: {error}", path.display())]
     Read {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The reason.
+        /// Reason why it cannot be written.
         error: io::Error,
     },
     /// A file cannot be written.
     #[error("cannot write to {}: {error}", path.display())]
     Write {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The reason.
+        /// Reason why it cannot be written.
         error: io::Error,
     },
 }

@@ -1,8 +1,8 @@
-//! The library's front: a text becomes a [`Scene`], and a scene a [`Picture`].
+//! The library's main types: a text becomes a [`Scene`], and a scene a [`Picture`].
 //!
-//! In: texts, and data that a program changes. Out: pictures in memory and in files, and verdicts
-//! on other pictures. Everything is done by the stages; only a whole scene without mistakes gets
-//! to them from here. The crate's root exports these names.
+//! In: texts, or data that a program has changed. Out: pictures in memory and in files, and
+//! verdicts on pictures of other programs. These types check scenes for mistakes before other
+//! modules work on them. The crate's root exports the types.
 
 mod error;
 mod picture;

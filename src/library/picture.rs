@@ -8,7 +8,7 @@ use crate::{
     source::Sources,
 };
 
-/// A picture in memory: one that was rendered, or one of any program that was read from a file.
+/// A picture in memory. It was rendered, or read from a file that any program may have written.
 ///
 /// ```
 /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }")?;
@@ -22,15 +22,16 @@ use crate::{
 pub struct Picture {
     /// The pixels, and how a file of them is coded.
     pub(super) coded: film::Picture,
-    /// The coding of a JPEG file.
+    /// Compression of the file; `None` unless it is a JPEG or a lossy WebP.
     #[cfg(feature = "read")]
     pub(super) jpeg: Option<film::Jpeg>,
-    /// The scene's text and its settings, if they are known.
+    /// The text of the scene that the picture shows, and its settings in the form of `--set`.
+    /// `None` if they are unknown.
     pub(super) sources: Option<Arc<Sources>>,
 }
 
 impl Picture {
-    /// Makes a picture of a film that was rendered of a scene.
+    /// Makes a picture from pixels that were rendered, and the sources of their scene.
     pub(super) fn rendered(film: Film, sources: &Arc<Sources>) -> Self {
         Self {
             coded: film::Picture::new(film, Rounding::Float),
@@ -40,29 +41,29 @@ impl Picture {
         }
     }
 
-    /// Returns the number of columns.
+    /// Returns the number of columns of pixels.
     pub fn width(&self) -> u32 {
         self.film().width()
     }
 
-    /// Returns the number of rows.
+    /// Returns the number of rows of pixels.
     pub fn height(&self) -> u32 {
         self.film().height()
     }
 
-    /// Returns the means of red, green and blue of each pixel, row by row from the top, in linear
-    /// light from 0 to 1.
+    /// Returns the pixels, row by row from the top. Each has the means of red, green and blue, in
+    /// linear light from 0 to 1.
     pub fn pixels(&self) -> &[[f64; 3]] {
         self.film().pixels()
     }
 
-    /// Returns the same means without copying them.
+    /// Returns the pixels as [`pixels`](Self::pixels) does, without copying them.
     pub fn into_pixels(self) -> Vec<[f64; 3]> {
         self.coded.film.into_pixels()
     }
 
-    /// Returns the bytes of red, green and blue of each pixel, row by row from the top, as sRGB:
-    /// those that a PNG file has.
+    /// Returns the bytes of red, green and blue of each pixel, row by row from the top, in sRGB. A
+    /// PNG file contains the same bytes.
     pub fn to_rgb8(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         AsBytes::bytes(self.pixels(), &Encoder::default(), &mut bytes);
@@ -75,13 +76,13 @@ impl Picture {
         self.sources.as_deref()
     }
 
-    /// Returns the film, which the stages work with.
+    /// Returns the pixels as a [`Film`], the type that other modules work with.
     pub fn film(&self) -> &Film {
         &self.coded.film
     }
 
-    /// Returns the root mean square of the differences to another picture over all pixels and
-    /// channels, in linear light from 0 to 1.
+    /// Returns the root mean square of the differences between two pictures, over all pixels and
+    /// channels. It is in linear light and from 0 to 1.
     ///
     /// ```
     /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
@@ -95,7 +96,7 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// The sizes differ.
+    /// The sizes of the pictures differ.
     pub fn rmse(&self, other: &Self) -> Result<f64, Error> {
         Ok(film::rmse(self.film(), other.film())?)
     }
@@ -114,15 +115,15 @@ impl Picture {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Exact {
-    /// The means.
+    /// Mean colour of each pixel, without sampling noise.
     pub picture: Picture,
-    /// For each pixel, row by row, how far a channel's mean in linear light may be from the true
-    /// one.
+    /// Error bound of each pixel, row by row: how far the mean of a channel may be from its true
+    /// value, in linear light.
     pub bounds: Vec<f32>,
 }
 
 impl Exact {
-    /// Returns the greatest bound.
+    /// Returns the greatest of the error bounds of all pixels.
     pub fn bound(&self) -> f64 {
         f64::from(self.bounds.iter().copied().fold(0.0, f32::max))
     }

@@ -1,4 +1,4 @@
-//! Pictures of other programs: reading them, and judging them.
+//! Pictures of other programs: reads them from files, and judges them.
 
 use std::{path::Path, sync::Arc};
 
@@ -22,7 +22,7 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// The file cannot be read, or is no picture of at most [`DECODED_LIMIT`] decoded bytes.
+    /// The file cannot be read, is no picture, or is decoded to more than [`DECODED_LIMIT`] bytes.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let bytes = files::read(path, DECODED_LIMIT).map_err(|error| Error::Read {
@@ -36,7 +36,7 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// They are no picture of at most [`DECODED_LIMIT`] decoded bytes.
+    /// The bytes are no picture, or are decoded to more than [`DECODED_LIMIT`] bytes.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         let sources = film::read_recipe(bytes).ok().map(|recipe| {
             let text = Source::from_text("scene", recipe.scene);
@@ -51,9 +51,10 @@ impl Picture {
 }
 
 impl Scene {
-    /// Judges a picture that another program made of the scene: whether it is right, right except
-    /// for sampling noise, or wrong, and by which mistakes. For many pictures of one scene, use
-    /// [`Reference`], which computes the exact picture once.
+    /// Judges a picture that another program made of the scene. The verdict says whether it is
+    /// right, right except for sampling noise, or wrong, and which mistakes explain the
+    /// differences. For many pictures of one scene, use [`Reference`], which computes the exact
+    /// picture only once.
     ///
     /// ```
     /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
@@ -66,8 +67,8 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// The picture has another size than the scene's, and is no part of it either; there is not
-    /// enough memory, or no thread can be started.
+    /// The picture does not have the scene's size, and its file does not say which part of the
+    /// scene it shows; there is not enough memory; or no thread can be started.
     pub fn grade(&self, picture: &Picture) -> Result<Verdict, Error> {
         let file = &picture.coded;
         let size = [picture.width(), picture.height()];

@@ -10,9 +10,9 @@ use crate::{
 };
 
 impl Picture {
-    /// Writes the picture to a file, completely or not at all, in the format of its ending:
-    /// `.png`, in 8 bits of sRGB and with the scene's text, or `.exr`, in linear floats. The bytes
-    /// are those that the program writes.
+    /// Writes the picture to a file, completely or not at all. The path's extension selects the
+    /// format: `.png` for 8-bit sRGB, with the scene's text in the file, or `.exr` for linear
+    /// light in floats. The program `pinhole` writes the same bytes.
     ///
     /// ```
     /// # let folder = tempfile::tempdir().unwrap();
@@ -25,7 +25,8 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// The ending is another one, or the file cannot be written.
+    /// The path has another extension, or one whose feature is left out, or the file cannot be
+    /// written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
@@ -40,7 +41,7 @@ impl Picture {
                 film::write_exr(self.film(), whole, whole, out)
             }),
             _ => {
-                let message = "a picture's file ends in .png or .exr, by the feature of that name";
+                let message = "a picture's file ends in .png or .exr";
                 Err(io::Error::new(io::ErrorKind::InvalidInput, message))
             }
         };
@@ -50,7 +51,8 @@ impl Picture {
         })
     }
 
-    /// Returns the text and the settings for the file to carry.
+    /// Returns the scene's text and its settings (as of `--set`) in the form in which a PNG stores
+    /// them. Returns `None` if they are unknown.
     #[cfg(feature = "png")]
     fn recipe(&self) -> Option<film::Recipe> {
         let sources = self.sources()?;

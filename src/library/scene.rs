@@ -1,4 +1,4 @@
-//! A scene with its text.
+//! A scene: its text, and what the text means.
 
 use std::{fmt, str::FromStr, sync::Arc};
 
@@ -14,7 +14,7 @@ use crate::{
     tracer::World,
 };
 
-/// A scene without mistakes: its text, and what it means.
+/// A scene without mistakes: its text, and what the text means.
 ///
 /// ```
 /// let scene = pinhole::Scene::parse(
@@ -38,13 +38,13 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// The text has mistakes, all of which are returned.
+    /// The text has mistakes. All of them are returned.
     pub fn parse(text: &str) -> Result<Self, Mistakes> {
         Self::read(Sources::new(Source::from_text("scene", text)))
     }
 
-    /// Makes a scene of data: those of another scene with changes, or data of your own. Its text
-    /// is written from them.
+    /// Makes a scene from data, for example from those of another scene after changes. The scene's
+    /// text is generated from the data.
     ///
     /// ```
     /// use pinhole::{Scene, glam::DVec3, scene::{Object, Sphere}};
@@ -69,17 +69,18 @@ impl Scene {
     /// # Errors
     ///
     /// The data break a condition of the language, such as that a radius is more than 0. The
-    /// mistakes point into the text that was written.
+    /// places of the mistakes are those in the generated text.
     pub fn from_data(data: &SceneData) -> Result<Self, Mistakes> {
         Self::parse(&formatted(data))
     }
 
-    /// Returns the scene with one more setting, as the program takes them by `--set`: another value
-    /// for a field of the camera, the image, the sampler or a named object, or for a name.
+    /// Returns the scene with one more setting in the form of the option `--set`, for example
+    /// `camera.roll=8deg`. It changes a field of the camera, the image, the sampler or a named
+    /// object, or the value of a `let`.
     ///
     /// # Errors
     ///
-    /// There is nothing of that name, or the value does not suit.
+    /// There is nothing of this name, or the value is not allowed for it.
     pub fn with_set(&self, setting: &str) -> Result<Self, Mistakes> {
         let mut sources = (*self.sources).clone();
         sources.push_set(setting);
@@ -99,12 +100,13 @@ impl Scene {
         }
     }
 
-    /// Returns what the text means: image, camera, sampler and objects, with all values resolved.
+    /// Returns what the text means, as plain data: image, camera, sampler and objects, with all
+    /// values computed.
     pub fn data(&self) -> &SceneData {
         &self.data
     }
 
-    /// Returns the warnings about the text, in its order.
+    /// Returns the warnings about the text, sorted by their places in it.
     ///
     /// ```
     /// let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }")?;
@@ -115,13 +117,14 @@ impl Scene {
         &self.warnings
     }
 
-    /// Returns the text and the settings, which the warnings point into.
+    /// Returns the text and the settings, to whose parts the places in warnings refer.
     pub fn sources(&self) -> &Sources {
         &self.sources
     }
 
-    /// Renders the picture as the scene's sampler says, with all processors. With the method
-    /// `exact`, it is computed without samples, as by [`render_exact`](Self::render_exact).
+    /// Renders the picture as the scene's sampler says, on all processors. If the sampler's method
+    /// is `exact`, the picture is computed without samples, as by
+    /// [`render_exact`](Self::render_exact).
     ///
     /// # Errors
     ///
@@ -133,8 +136,8 @@ impl Scene {
         Ok(Picture::rendered(film, &self.sources))
     }
 
-    /// Computes the picture without samples, whatever the sampler says: each pixel's mean colour,
-    /// with a bound on its error, which is at most 10⁻⁹ in ordinary views.
+    /// Computes the picture without samples, whatever the scene's sampler says. Each pixel's mean
+    /// colour has an error bound, which is at most 10⁻⁹ in ordinary views.
     ///
     /// # Errors
     ///
@@ -153,8 +156,9 @@ impl Scene {
     }
 }
 
-/// Writes the scene's text. With settings, it is written anew from the [data](Scene::data): without
-/// comments and names of values, and with each repeated object for itself.
+/// Writes the scene's text. If the scene has settings, the text is generated from its
+/// [data](Scene::data). It then has no comments and no `let`s, and repeated objects are written one
+/// by one.
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.sources.sets[..] {
@@ -164,7 +168,7 @@ impl fmt::Display for Scene {
     }
 }
 
-/// As [`Scene::parse`].
+/// Reads a scene from its text, as [`Scene::parse`] does.
 impl FromStr for Scene {
     type Err = Mistakes;
 
@@ -173,7 +177,8 @@ impl FromStr for Scene {
     }
 }
 
-/// Writes data as a text, in the canonical layout unless a name is none.
+/// Writes data as the text of a scene. It has the canonical layout, unless it cannot be parsed
+/// because an object's name is invalid.
 fn formatted(data: &SceneData) -> String {
     let text = data.to_string();
     format(&Source::from_text("scene", text.clone())).unwrap_or(text)

@@ -1,33 +1,33 @@
-//! Keeps the texts that are open in the editor, and converts between byte offsets and positions by
-//! line and column.
+//! Keeps the texts that are open in the editor. Converts between byte offsets and positions, i.e.
+//! lines and columns.
 
 pub use crate::source::Encoding;
 use crate::source::{Lines, Source, Sources};
 
-/// A position: line and column, both counted from 0.
+/// A position in a text: line and column, both counted from 0.
 pub type LineColumn = (u32, u32);
 
 /// A text that is open in the editor.
 #[derive(Debug)]
 pub struct Document {
-    /// The version of the text, as the client numbers them.
+    /// Version of the text, as the client counts versions.
     pub version: i32,
-    /// The text, as the file of a scene without `--set` arguments.
+    /// The text as the only source of a scene, i.e. without any `--set` arguments.
     pub sources: Sources,
     encoding: Encoding,
 }
 
 /// A change that replaces a part of a text, or the whole text.
 pub struct TextChange {
-    /// Start and end of the replaced part; `None` for the whole text.
+    /// Start and end of the replaced part; `None` if the whole text is replaced.
     pub range: Option<[LineColumn; 2]>,
-    /// The new text.
+    /// The new text for the replaced part.
     pub text: String,
 }
 
 impl Document {
-    /// Makes the document of a text that the client has opened. `encoding` is the client's unit for
-    /// columns.
+    /// Makes the document of a text that the client has opened. `encoding` is the unit in which the
+    /// client counts columns.
     pub fn new(name: &str, version: i32, text: String, encoding: Encoding) -> Self {
         Self {
             version,
@@ -36,8 +36,8 @@ impl Document {
         }
     }
 
-    /// Applies changes in order. The positions of each change refer to the text after the previous
-    /// changes. If a change is invalid, the text stays as it was before all changes.
+    /// Applies changes in order. The positions of a change refer to the text after the previous
+    /// changes. If one change is invalid, none is applied.
     ///
     /// # Errors
     ///
@@ -70,15 +70,15 @@ impl Document {
         self.sources.file.text()
     }
 
-    /// Returns the byte offset of a position. A column beyond the end of a line is treated as the
-    /// line's end, a position within a character as the character's start, and a line beyond the
-    /// last one as the end of the text.
+    /// Returns the byte offset of a position. Any position has an offset: a column beyond the end
+    /// of its line counts as the line's end, a position within a character as the character's
+    /// start, and a line beyond the last one as the end of the text.
     pub fn offset(&self, place: LineColumn) -> usize {
         let text = self.text();
         offset(text, self.sources.file.lines(), self.encoding, place).unwrap_or(text.len())
     }
 
-    /// Returns the position of a byte offset.
+    /// Returns the line and column of a byte offset.
     pub fn line_column(&self, offset: usize) -> LineColumn {
         let (file, lines) = (&self.sources.file, self.sources.file.lines());
         let offset = file.floor_char_boundary(offset);
@@ -87,7 +87,7 @@ impl Document {
     }
 }
 
-/// Returns the byte offset of a position in the text whose line index is `lines`. The start of the
+/// Returns the byte offset of a position in `text`, whose line index is `lines`. The start of the
 /// line after the last one is the end of the text. Returns `None` for later lines.
 fn offset(text: &str, lines: &Lines, encoding: Encoding, (line, col): LineColumn) -> Option<usize> {
     let (line, col) = (line as usize, col as usize);
@@ -123,7 +123,8 @@ mod tests {
                 assert_eq!(document.line_column(offset), (0, column));
                 assert_eq!(document.offset((0, column)), offset);
             }
-            // These positions lie after the end of their line, or in a line after the last one.
+            // A position after the end of its line counts as the line's end, and a position after
+            // the last line as the end of the text.
             for (place, offset) in [((0, 99), 10), ((1, 1), 13), ((2, 0), 14), ((99, 99), 14)] {
                 assert_eq!(document.offset(place), offset);
             }
@@ -148,8 +149,8 @@ mod tests {
         let changes = [
             change([(0, 0), (0, 3)], "🎱"),
             change([(0, 2), (1, 0)], " "),
-            // The start of this range is after its end, and beyond the end of the line. The next
-            // range is in the line after the last one.
+            // This range starts after its own end, and beyond the end of the line. The next range
+            // is in the line after the last one.
             change([(0, 99), (0, 3)], "!"),
             change([(2, 0), (2, 0)], "end"),
         ];

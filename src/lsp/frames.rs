@@ -1,7 +1,5 @@
-//! Renders frames, i.e. pictures of an open text for a page. A frame is rendered in slices, so that
-//! other messages are answered between slices.
-//!
-//! A frame that is no longer needed is dropped between two slices.
+//! Renders frames, i.e. pictures of an open text that are shown on a page. A frame is rendered in
+//! slices, so that other messages are answered between two slices.
 
 use std::{collections::HashMap, mem};
 
@@ -22,11 +20,12 @@ use crate::{
     scene::{Count, Method, Sampler},
 };
 
-/// Maximum number of pixels of a frame. A request for a larger frame is refused: a page cannot show
-/// more pixels, and larger pictures are rendered to files.
+/// Maximum number of pixels of a frame, i.e. of a picture shown on a page: 16 million. A request
+/// for a larger frame is refused. No usual screen shows more pixels, and larger pictures can be
+/// rendered to files.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// Queue of the requested frames that are not finished, the oldest first.
+/// Queue of the requested frames that are not finished yet, the oldest first.
 #[derive(Debug, Default)]
 pub struct Frames(Vec<Frame>);
 
@@ -34,19 +33,19 @@ pub struct Frames(Vec<Frame>);
 struct Frame {
     id: RequestId,
     uri: Uri,
-    /// The version of the text that the frame shows.
+    /// Version of the text that the frame shows.
     version: i32,
     /// Factor by which the picture's width and height are divided.
     scale: u32,
-    /// Samples per pixel; `None` for the scene's own sampler.
+    /// Number of samples per pixel; `None` to use the scene's own sampler.
     samples: Option<u64>,
     slices: Slices<[u8; 3]>,
 }
 
 impl Frames {
-    /// Adds the frame that a request asks for. Returns the earlier requests that it supersedes: one
-    /// for the same frame of the same version of the text, whose rendering is continued, or else
-    /// all those for other versions of the text.
+    /// Adds the frame that a request asks for, and returns the earlier requests that it replaces.
+    /// If an equal frame of the same version is in the queue already, the new request takes it
+    /// over. Otherwise, frames of other versions of the text are dropped.
     pub fn push(
         &mut self,
         id: RequestId,
@@ -57,7 +56,7 @@ impl Frames {
         let new = Frame::new(id, uri, params, version)?;
         let what = |frame: &Frame| (frame.version, frame.scale, frame.samples);
         let mut of_text = self.0.iter_mut().filter(|frame| frame.uri == new.uri);
-        // A frame that is already being rendered is continued for the new request.
+        // An equal frame that is being rendered already is continued for the new request.
         if let Some(known) = of_text.find(|frame| what(frame) == what(&new)) {
             return Ok(vec![mem::replace(&mut known.id, new.id)]);
         }
@@ -76,7 +75,8 @@ impl Frames {
         !self.remove(|frame| frame.id == *id).is_empty()
     }
 
-    /// Drops the frames of the text `uri`, or of all texts for `None`. Returns their requests.
+    /// Drops the frames of the text `uri`, or of all texts if it is `None`. Returns the requests
+    /// for these frames.
     pub fn drop_of(&mut self, uri: Option<&Uri>) -> Vec<RequestId> {
         self.remove(|frame| uri.is_none_or(|uri| frame.uri == *uri))
     }
@@ -86,13 +86,13 @@ impl Frames {
         removed.map(|frame| frame.id).collect()
     }
 
-    /// Returns the request for the oldest frame.
+    /// Returns the identifier of the request for the oldest frame.
     pub fn oldest(&self) -> Option<RequestId> {
         self.0.first().map(|frame| frame.id.clone())
     }
 
-    /// Renders a slice of the oldest frame. Returns the answer to its request if the frame is
-    /// finished.
+    /// Renders a slice of the oldest frame. When the frame is finished, returns the answer to its
+    /// request.
     pub fn advance(
         &mut self,
         scenes: &mut HashMap<Uri, Option<SceneVersion>>,
@@ -136,8 +136,7 @@ impl Frame {
             most.is_none_or(|most| Area::whole(width, height).pixels() <= most)
                 && longest.is_none_or(|longest| width.max(height) <= longest)
         };
-        // With the greatest scale, a frame has one pixel, so there is always a scale with which the
-        // frame is small enough.
+        // With the greatest scale, a frame has only one pixel, so a suitable scale always exists.
         let scale = (scale..).find(fits).unwrap_or(u32::MAX);
         let (width, height) = version.size(scale);
         let whole = Area::whole(width, height);
@@ -171,7 +170,7 @@ impl Frame {
         })
     }
 
-    /// Renders the next slice. Returns the answer after the last slice.
+    /// Renders the next slice. After the last slice, returns the answer.
     fn advance(&mut self, version: &mut SceneVersion) -> Result<Option<Value>, Refusal> {
         let (_, world) = version.world(self.scale);
         if !self.slices.advance(world).map_err(Refusal::failed)? {

@@ -4,17 +4,18 @@ use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response,
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// Maximum number of JSON values in a message. A message with more values is refused, since an
-/// object takes about 400 bytes of memory, but possibly only eight bytes of text. The limit allows
-/// 40 000 changes of a text in one message.
+/// Maximum number of JSON values in a message. A message with more values is refused, because it
+/// could fill the memory: a JSON object takes about 400 bytes of memory, even if its text has only
+/// eight bytes. An editor's message stays far below the limit, even with 40 000 changes of a text.
 const MOST_VALUES: usize = 1 << 19;
 
 /// Error: a text is not a valid message.
 #[derive(Debug)]
 pub enum Malformed {
-    /// The text must be answered with this response.
+    /// The text is answered with this response.
     Answered(Value),
-    /// The text is a malformed response, which is not answered; this message goes to the log.
+    /// The text is a malformed response, which gets no answer. The contained message goes to the
+    /// log.
     Unanswered(String),
 }
 
@@ -25,8 +26,7 @@ pub enum Malformed {
 /// Returns [`Malformed`] if the text is not a message.
 pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     let malformed = |id, code: ErrorCode, message: String| {
-        // A response in lsp-server's type cannot have the id null, so the JSON of the response is
-        // made here.
+        // The response type of lsp-server cannot have the id null, so the response is made as JSON.
         let error = json!({ "code": code as i32, "message": message });
         let response = json!({ "jsonrpc": "2.0", "id": id, "error": error });
         Err(Malformed::Answered(response))
@@ -60,15 +60,15 @@ pub fn read(text: &[u8]) -> Result<Message, Malformed> {
     }
 }
 
-/// Converts a JSON value to a message. Returns `None` if the value is not a message. lsp-server's
-/// own conversion is not used: it would copy each text in the value, and treat a request with an
+/// Converts a JSON value to a message. Returns `None` if the value is not a message. The conversion
+/// in lsp-server is not used: it would copy each text in the value, and treat a request with an
 /// invalid identifier as a notification.
 fn message(mut value: Value) -> Option<Message> {
     let mut take = |name: &str| value.get_mut(name).map(Value::take);
     let id = match take("id") {
         None => None,
         Some(Value::String(id)) => Some(RequestId::from(id)),
-        // An integer in the protocol has 32 bits, so a longer identifier is not valid.
+        // In the protocol, an integer has 32 bits, so a longer identifier is not valid.
         Some(id) => Some(i32::try_from(id.as_i64()?).ok()?.into()),
     };
     let method = match take("method") {
@@ -95,8 +95,9 @@ fn message(mut value: Value) -> Option<Message> {
     })
 }
 
-/// Returns an upper bound on the number of values in a JSON text: each value except the first
-/// follows `[`, `,` or `:`. Allocates nothing, since the text may contain any number of values.
+/// Returns an upper bound on the number of values in a JSON text. Counts the characters `[`, `,`
+/// and `:` outside of strings, since each value except the first follows one of them. Allocates no
+/// memory, however many values the text contains.
 fn value_bound(text: &[u8]) -> usize {
     let (mut values, mut is_in_text, mut is_escaped) = (1, false, false);
     for byte in text {
@@ -111,9 +112,9 @@ fn value_bound(text: &[u8]) -> usize {
     values
 }
 
-/// Returns the identifier of a request whose other parts cannot be parsed, so that the sender gets
-/// an answer. Returns null if there is none. Browsers do send such requests: an escape may contain
-/// half of a surrogate pair, which a Rust string cannot hold.
+/// Returns the identifier of a request whose other fields cannot be parsed, so that its sender gets
+/// an answer. Returns null if it has none. Browsers do send such requests: a string may contain
+/// half of a surrogate pair as an escape, which a Rust string cannot hold.
 fn request_id(text: &[u8]) -> Value {
     #[derive(Deserialize)]
     struct Asked {
@@ -124,13 +125,13 @@ fn request_id(text: &[u8]) -> Value {
     identifier(asked.map(|asked: Asked| asked.id))
 }
 
-/// Returns the identifier if it is allowed in a response, and otherwise null.
+/// Returns `id` if a response may have it as its identifier, and otherwise null.
 fn identifier(id: Option<Value>) -> Value {
     id.filter(|id| id.is_string() || id.is_number())
         .unwrap_or_default()
 }
 
-/// Serialises a message.
+/// Serialises a message to JSON.
 pub fn to_text(message: &Message) -> String {
     #[derive(Default, Serialize)]
     struct Text<'a> {

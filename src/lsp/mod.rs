@@ -2,10 +2,10 @@
 //!
 //! In: messages. Out: messages. [`Server`] is a value that holds the open texts (`documents`). It
 //! uses neither threads nor streams, so that any host can run it; [`stdio`] runs it on standard
-//! input and output. `text_requests` calls [`crate::editor`], which computes the answers, and
-//! `convert` converts these to the types of the protocol (`protocol`). `picture_requests` and
-//! `frames` answer Pinhole's own requests about a text's picture, which docs/protocol.md describes;
-//! `scene_version` caches the data that they need.
+//! input and output. `text_requests` calls [`crate::editor`] for the answers, and `convert`
+//! converts them to the types of the protocol (`protocol`). `picture_requests` and `frames` answer
+//! Pinhole's own requests about the picture of a text, which docs/protocol.md describes.
+//! `scene_version` caches the data for these answers.
 
 mod convert;
 mod documents;

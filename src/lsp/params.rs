@@ -3,37 +3,37 @@
 use lsp_server::{ErrorCode, Message, RequestId, Response};
 use serde_json::Value;
 
-/// Error that answers a request: its code and its message.
+/// Error with which a request is answered: an error code and a message.
 #[derive(Debug)]
 pub struct Refusal(pub ErrorCode, pub String);
 
 impl Refusal {
-    /// Makes the error of invalid parameters.
+    /// Makes the error for invalid parameters.
     pub fn invalid(why: impl ToString) -> Self {
         Self(ErrorCode::InvalidParams, why.to_string())
     }
 
-    /// Makes the error of a valid request that cannot be carried out. Editors show the reason.
+    /// Makes the error for a valid request that cannot be carried out. Editors show the reason.
     pub fn failed(why: impl ToString) -> Self {
         Self(ErrorCode::RequestFailed, why.to_string())
     }
 
-    /// Makes the error of a request that the client has cancelled.
+    /// Makes the error for a request that the client has cancelled.
     pub fn cancelled() -> Self {
         Self(ErrorCode::RequestCanceled, "cancelled".to_owned())
     }
 
-    /// Makes the error of an unknown method.
+    /// Makes the error for a request with an unknown method.
     pub fn unknown(method: &str) -> Self {
         let why = format!("`{method}` is not known here");
         Self(ErrorCode::MethodNotFound, why)
     }
 }
 
-/// The answer to a request, as JSON, or the error.
+/// The answer to a request as JSON, or the error that answers it instead.
 pub type Answer = Result<Value, Refusal>;
 
-/// Reads the value at the JSON pointer `path` in the parameters. A missing value is read as null.
+/// Reads the value at the JSON pointer `path` in the parameters. A missing value counts as null.
 pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<T, Refusal> {
     let found = params.pointer(path).cloned().unwrap_or_default();
     serde_json::from_value(found).map_err(Refusal::invalid)

@@ -1,4 +1,4 @@
-//! Answers requests about a document's picture, as docs/protocol.md specifies.
+//! Answers requests about the picture of a document, as docs/protocol.md specifies.
 
 use std::{borrow::Cow, cell::LazyCell};
 
@@ -22,8 +22,8 @@ use crate::{
 /// Prefix of the method names of those requests that Pinhole adds to the protocol.
 pub const NAMESPACE: &str = "pinhole/";
 
-/// Answers a request with the method [`NAMESPACE`] + `about`; the method for frames is handled
-/// elsewhere. If the text has errors, so that `version` is `None`, most answers are null.
+/// Answers the request whose method is [`NAMESPACE`] followed by `about`. The method for frames is
+/// handled elsewhere. `version` is `None` if the text has errors; most answers are then null.
 /// `analysis` is computed only if the request needs it.
 pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     about: &str,
@@ -51,8 +51,8 @@ pub fn answer<'s, F: FnOnce() -> Analysis<'s>>(
     }
 }
 
-/// Answers with the limits of the number at a position, and of its slider. The text may have
-/// errors.
+/// Answers with the limits of the number at a position of the text, and of the number's slider. The
+/// text may have errors.
 fn limits(params: &Value, converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
     let offset = converter.offset(at(params, "/position")?);
     Ok(editor::limits(analysis, offset).map_or(Value::Null, written_limits))
@@ -84,7 +84,7 @@ fn sliders(converter: Converter<'_>, analysis: &Analysis<'_>) -> Answer {
 }
 
 /// Answers with the edits that add a new block or duplicate an object. The text may have errors;
-/// the position of a new block then depends on the parts that can be read.
+/// the position of a new block then depends only on the blocks without errors.
 fn add(
     params: &Value,
     converter: Converter<'_>,
@@ -152,8 +152,8 @@ fn object(index: usize, converter: Converter<'_>, version: &SceneVersion) -> Val
     facts
 }
 
-/// Returns the object's name or, if it has none, its kind, followed by its indices if it is
-/// repeated.
+/// Returns a label for the object: its name or, if it has none, its kind. If an object without a
+/// name is repeated, its indices follow.
 fn label(object: &Object) -> Cow<'_, str> {
     let kind = object.shape.kind();
     match (&object.name, &*object.indices) {
@@ -163,11 +163,13 @@ fn label(object: &Object) -> Cow<'_, str> {
     }
 }
 
-/// Answers with a list of the objects that the parameters select, but without their outlines.
+/// Answers with a list of the objects that the parameters select. The list does not contain their
+/// outlines.
 fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> Answer {
     let shown = shown(params)?;
     let objects = &version.scene.objects;
-    // The first board is always listed, wherever it is in the text, since objects stand on it.
+    // The first checkerboard is always listed, wherever it is in the text, since other objects
+    // stand on it.
     let floor = match shown {
         ShownObjects::First(_) => objects.iter().position(is_board),
         ShownObjects::Only(_) => None,
@@ -177,8 +179,7 @@ fn objects(params: &Value, converter: Converter<'_>, version: &SceneVersion) -> 
     let listed = listed.map(|index| {
         let mut object = object(index, converter, version);
         let outline = overlays.objects.iter().find(|it| it.object == index);
-        // A board may have no outline because the view axis does not hit it, but may still be
-        // visible.
+        // A checkerboard has no outline if the view axis does not hit it, but may still be visible.
         let outline = outline.filter(|it| !(it.lines.is_empty() && is_board(&objects[index])));
         object["place"] = json!(outline.map(|outline| place(outline, overlays.size)));
         object
@@ -241,8 +242,8 @@ fn overlays(params: &Value, converter: Converter<'_>, version: &mut SceneVersion
     }))
 }
 
-/// Returns in words where an object is: the part of the picture that contains its first handle,
-/// such as "top left", or a phrase that says that the handle is not in the picture.
+/// Returns in words where an object is in the picture, such as "top left", judged by its first
+/// handle. If the handle is outside of the picture, returns a phrase that says so.
 fn place(outline: &ObjectOverlay, size: [u32; 2]) -> String {
     let at = outline.handles.first().and_then(|(_, at)| *at);
     let size = DVec2::from(size.map(f64::from));
@@ -315,7 +316,7 @@ fn point(params: &Value, name: &str) -> Result<DVec2, Refusal> {
     point.map(DVec2::from).ok_or_else(refusal)
 }
 
-/// Rounds a point to a hundredth of a pixel. The difference is invisible, and the JSON takes a
+/// Rounds a point to a hundredth of a pixel. The difference is invisible, and the JSON has only a
 /// third of the bytes.
 fn written_point(point: DVec2) -> Value {
     json!(((point * 100.0).round() / 100.0).to_array())

@@ -1,16 +1,16 @@
-//! Types of the protocol that the server reads or that several answers share. Other answers are
-//! made directly as JSON, because a crate with all types of the protocol took nine seconds to
-//! compile.
+//! Types of the language server protocol that the server reads or that several answers share. Other
+//! answers are made directly as JSON, because a crate with all types of the protocol took nine
+//! seconds to compile.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// The URI of a document.
+/// URI by which the client identifies a document.
 #[derive(Clone, Debug, Deserialize, Eq, Hash, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Uri(pub String);
 
-/// A position between two characters: line and column, both counted from 0.
+/// A position between two characters. Line and column are counted from 0.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize)]
 pub struct Position {
     pub line: u32,

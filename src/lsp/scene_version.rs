@@ -1,8 +1,8 @@
-//! Caches the scene of one version of a text, and the worlds in which its pictures and rays are
-//! traced.
+//! Caches the scene of one version of a text, together with the data from which its pictures and
+//! rays are traced ([`World`]).
 //!
-//! Each is computed once for a version, so that picking an object in a scene of 100 000 spheres
-//! does not read the spheres again.
+//! Both are computed only once for a version. So picking an object in a scene of 100 000 spheres
+//! does not read all spheres again.
 
 use std::collections::VecDeque;
 
@@ -16,28 +16,28 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of picture sizes for which the traced worlds are cached. For a further size, the
-/// oldest world is dropped. Four suffice for the picture's own size and for the coarse frames that
-/// are shown until the picture is finished.
+/// Maximum number of picture sizes for which the data of the tracer ([`World`]) are cached. For a
+/// further size, the oldest entry is dropped. Four suffice for the picture's own size and for the
+/// coarse pictures that a page shows until the full one is finished; more would take memory.
 const WORLDS: usize = 4;
 
-/// A version of a text that has no errors.
+/// A version of a text without errors, with its scene.
 #[derive(Debug)]
 pub struct SceneVersion {
-    /// The version's number, as the client numbers them.
+    /// Number of the version, as the client counts versions.
     pub number: i32,
-    /// The scene.
+    /// The scene that this version of the text describes.
     pub scene: Scene,
-    /// The span of each object's name or, if it has none, of its keyword.
+    /// Span of each object's name or, if an object has no name, of its keyword.
     pub selections: Vec<Span>,
     worlds: VecDeque<(u32, World)>,
-    /// The object that was dragged last, by its index (`None` for the camera), and the text in
-    /// which it is the only object. It is `None` before the first drag.
+    /// Index of the object that was dragged last (`None` for the camera), and the text without the
+    /// other objects. The whole value is `None` before the first drag.
     alone: Option<(Option<usize>, Sources)>,
 }
 
 impl SceneVersion {
-    /// Makes the version of an analyzed text; returns `None` if the text has errors.
+    /// Makes the version of an analyzed text. Returns `None` if the text has errors.
     pub fn new(analysis: &Analysis<'_>, number: i32) -> Option<Self> {
         let scene = analysis.scene()?;
         Some(Self {
@@ -49,8 +49,8 @@ impl SceneVersion {
         })
     }
 
-    /// Returns the scene, and the world for a picture whose width and height are divided by
-    /// `scale`. Worlds are cached.
+    /// Returns the scene, and the data of the tracer for a picture whose width and height are
+    /// divided by `scale`. The data are cached.
     pub fn world(&mut self, scale: u32) -> (&Scene, &World) {
         let found = self.worlds.iter().position(|(known, _)| *known == scale);
         let index = found.unwrap_or_else(|| {
@@ -71,9 +71,9 @@ impl SceneVersion {
         (&self.scene, &self.worlds[index].1)
     }
 
-    /// Returns the scene, and the text with only the object `object` or, for `None`, without any
-    /// object. A drag is evaluated in this text. The text is cached, since each step of a drag
-    /// needs it.
+    /// Returns the scene, and the text without all objects except `object`, or without any object
+    /// if it is `None`. A drag is computed in this shorter text. The text is cached, since each
+    /// movement of the pointer needs it.
     pub fn alone(&mut self, sources: &Sources, object: Option<usize>) -> (&Scene, &Sources) {
         let known = self.alone.take_if(|(known, _)| *known == object);
         let made = || (object, viewport::alone(sources, &self.scene, object));

@@ -1,11 +1,14 @@
 //! The language server as a value that receives and returns messages.
 //!
-//! Notifications are handled at once. Requests enter a queue, and [`Server::advance`] answers some
-//! of them at a time, so that a host can pass in other messages in between, such as a cancellation.
-//! Each answer is about the text at the time of the request: before a text changes, the waiting
-//! requests about it are answered. Diagnostics are computed only for the last version of a text. A
-//! frame, which takes longer than anything else, is rendered in slices when there is no other work.
-//! It is dropped if its text changes, unless its request has the parameter `last`.
+//! Notifications are handled at once. Requests enter a queue, and each call of [`Server::advance`]
+//! answers some of them. Between two calls, a host can pass in other messages, such as a
+//! cancellation.
+//!
+//! Each answer is about the text at the time of the request: before a text changes, all waiting
+//! requests about it are answered. Diagnostics are computed only for the last version of a text.
+//!
+//! A frame, i.e. a picture for a page, takes longest. It is rendered in slices when there is no
+//! other work, and dropped if its text changes, unless its request has the parameter `last`.
 
 use std::{
     cell::LazyCell,
@@ -28,16 +31,16 @@ use super::{
 };
 use crate::editor::Analysis;
 
-/// Phase of the connection to a client.
+/// State of the connection to a client.
 #[derive(Clone, Copy, Debug)]
 enum Phase {
-    /// The client has not sent `initialize`.
+    /// The client has not sent `initialize` yet.
     Silent,
-    /// The client has sent `initialize`, with these capabilities.
+    /// The client has sent `initialize` with the contained capabilities.
     Talking(Client),
     /// The client has sent `shutdown`.
     ShutDown,
-    /// The client has sent `exit`; `properly` says whether `shutdown` preceded it.
+    /// The client has sent `exit`. The flag `properly` says whether it had sent `shutdown` before.
     Ended { properly: bool },
 }
 
@@ -46,15 +49,15 @@ enum Phase {
 pub struct Server {
     phase: Phase,
     documents: HashMap<Uri, Document>,
-    /// Requests that are not answered yet.
+    /// Requests that are not answered yet, in the order of their arrival.
     waiting: VecDeque<Request>,
-    /// Documents whose diagnostics have to be sent.
+    /// URIs of the documents whose diagnostics must be sent, because they have changed.
     changed: BTreeSet<String>,
-    /// For each document whose picture was requested, the scene of its current version; `None` if
-    /// that version has errors.
+    /// For each document whose picture was requested, the scene of the current version. The scene
+    /// is `None` if this version has errors.
     scenes: HashMap<Uri, Option<SceneVersion>>,
-    /// For each text that has been changed since, the scene of its last version without errors.
-    /// Unfinished frames of that version are rendered from it while the text has errors.
+    /// For each text that has changed, the scene of an earlier version: the last one without
+    /// errors. While the text has errors, unfinished frames are rendered from this scene.
     last: HashMap<Uri, Option<SceneVersion>>,
     frames: Frames,
     log: fn(&str),
@@ -76,8 +79,8 @@ impl Server {
         }
     }
 
-    /// Returns whether the connection has ended properly, by `exit` after `shutdown`. Returns
-    /// `None` while it has not ended.
+    /// Returns whether the connection has ended properly, i.e. by `exit` after `shutdown`. Returns
+    /// `None` while the connection has not ended.
     pub fn ended(&self) -> Option<bool> {
         match self.phase {
             Phase::Ended { properly } => Some(properly),
@@ -85,8 +88,8 @@ impl Server {
         }
     }
 
-    /// Handles a message. Returns the messages that the host must send at once, before those of
-    /// [`Self::advance`].
+    /// Handles a message. Returns the messages that the host must send at once, before those that
+    /// [`Self::advance`] returns.
     pub fn handle(&mut self, message: Message) -> Vec<Message> {
         match (message, &self.phase) {
             (Message::Request(request), Phase::Talking(_)) if !is_lifecycle(&request) => {
@@ -110,9 +113,9 @@ impl Server {
         !self.waiting.is_empty() || !self.changed.is_empty() || !self.frames.is_empty()
     }
 
-    /// Does a part of the work, and returns the messages to send. A part consists of all waiting
-    /// requests about one text together with its diagnostics. If there is no such work, a part is a
-    /// slice of a frame.
+    /// Does a portion of the work, and returns the messages to send. A portion is all waiting
+    /// requests about one text, together with the text's diagnostics. If there are none, a slice of
+    /// a frame is rendered instead.
     pub fn advance(&mut self) -> Vec<Message> {
         let asked = self.waiting.front().map(uri);
         let changed = || self.changed.first().map(|uri| Some(Uri(uri.clone())));
@@ -123,7 +126,7 @@ impl Server {
         self.work_on(next.as_ref(), is_changed)
     }
 
-    /// Answers all waiting requests about those texts for which `is_about` returns `true`.
+    /// Answers all waiting requests for whose text `is_about` returns `true`.
     fn answer_all(&mut self, is_about: impl Fn(Option<&Uri>) -> bool) -> Vec<Message> {
         let mut outgoing = Vec::new();
         while let Some(request) = self.waiting.iter().find(|it| is_about(uri(it).as_ref())) {
@@ -133,8 +136,9 @@ impl Server {
         outgoing
     }
 
-    /// Answers the waiting requests about the document `wanted`, or those about no document for
-    /// `None`. If the document has changed (`is_changed`), also publishes its diagnostics.
+    /// Answers the waiting requests about the document `wanted`. If `wanted` is `None`, answers the
+    /// requests that are about no document. If `is_changed`, also publishes the document's
+    /// diagnostics.
     fn work_on(&mut self, wanted: Option<&Uri>, is_changed: bool) -> Vec<Message> {
         let is_about = |request: &Request| uri(request).as_ref() == wanted;
         let (asked, others): (VecDeque<_>, _) = self.waiting.drain(..).partition(is_about);
@@ -168,7 +172,8 @@ impl Server {
             let version = self.scenes.entry(uri.clone());
             let version = version.or_insert_with(|| SceneVersion::new(analysis, number));
             if version.is_some() && about == "frame" {
-                // This version is now the last one without errors, so an older one is not needed.
+                // The current version is now the last one without errors, so an older one is not
+                // needed.
                 self.last.remove(&uri);
             }
             let params = &request.params;
@@ -202,7 +207,7 @@ impl Server {
         outgoing
     }
 
-    /// Renders a slice of the oldest frame. Returns the answer if the frame is finished.
+    /// Renders a slice of the oldest frame. When the frame is finished, returns the answer.
     fn advance_frame(&mut self) -> Option<Message> {
         let id = self.frames.oldest()?;
         let (frames, scenes, last) = (&mut self.frames, &mut self.scenes, &mut self.last);
@@ -211,27 +216,28 @@ impl Server {
         Some(response(id, answer))
     }
 
-    /// Handles a change of a text. If the text had no errors before, moves its scene to `last`,
-    /// drops its frames, and returns the answers to the requests for these frames.
+    /// Handles a change of a text. If the text had no errors before, stores its scene in the field
+    /// `last` and drops its frames. Returns the answers to the requests for these frames.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
             // The text had errors already. Its unfinished frames show the last version without
-            // errors, and are continued.
+            // errors, and rendering them continues.
             return Vec::new();
         };
         self.last.insert(uri.clone(), version);
         self.drop_frames(uri)
     }
 
-    /// Removes the scenes of a text that was opened or closed. Returns the answers to the requests
-    /// for its frames.
+    /// Removes the scenes of a text that was opened or closed, and drops its frames. Returns the
+    /// answers to the requests for these frames.
     fn forget(&mut self, uri: &Uri) -> Vec<Message> {
         self.scenes.remove(uri);
         self.last.remove(uri);
         self.drop_frames(uri)
     }
 
-    /// Drops the frames of a text that has changed. Returns the answers to their requests.
+    /// Drops the frames of a text that has changed. Returns the answers to the requests for these
+    /// frames.
     fn drop_frames(&mut self, uri: &Uri) -> Vec<Message> {
         let dropped = self.frames.drop_of(Some(uri)).into_iter();
         let changed = |id| {
@@ -324,7 +330,7 @@ impl Server {
         let Some(document) = self.documents.get_mut(&uri) else {
             return refuse(format!("{} is not open", uri.0));
         };
-        // A stale version must not overwrite a newer one.
+        // An older version must not overwrite a newer one.
         if version < document.version {
             return refuse(format!("version {version} of {} is stale", uri.0));
         }
@@ -374,12 +380,12 @@ fn uri(request: &Request) -> Option<Uri> {
     Some(Uri(uri.to_owned()))
 }
 
-/// Returns the answer, or an internal error if computing it panicked. The server continues, since
-/// the next request may succeed, and computing an answer changes no text.
+/// Calls `answer` and returns its result, or an internal error if it panics. The server can
+/// continue after a panic: computing an answer changes no text, and the next request may succeed.
 ///
 /// # Errors
 ///
-/// The request is refused, or computing the answer panicked.
+/// The request is refused, or `answer` panics.
 pub fn catch_panics<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();

@@ -1,10 +1,9 @@
-//! Runs the server on standard input and output, as editors start it.
+//! Runs the language server on standard input and output, as editors start it.
 //!
-//! A separate thread reads the input, so that the server handles all messages that have arrived
-//! before it does the next part of its work. Requests that were cancelled meanwhile are not
-//! computed, and of several versions, only the last one gets diagnostics. lsp-server is not used
-//! for reading, since it allocates memory of any announced length and stops at the first malformed
-//! message.
+//! A separate thread reads the input, so that all messages that have arrived are handled before the
+//! server continues its work. Requests that were cancelled meanwhile are not computed, and only the
+//! last version of a text gets diagnostics. The crate lsp-server is not used for reading: it
+//! allocates memory of any announced length and stops at the first malformed message.
 
 use std::{
     io::{self, BufRead, BufReader, Read, Write},
@@ -20,7 +19,7 @@ use super::{
     server::Server,
 };
 
-/// A message that was read, or the response to a malformed one.
+/// A message from the client. If the message is malformed, the response to it instead.
 type Incoming = Result<Message, Value>;
 
 /// Runs a server until the client sends `exit` or the input ends. Returns whether the connection
@@ -57,9 +56,9 @@ pub fn serve(
     Ok(false)
 }
 
-/// Returns the next message, and waits for it if necessary. Meanwhile, the server does its work,
-/// and the messages that result are sent. Returns `None` if the input has ended and no work is
-/// left.
+/// Returns the next message, and waits for it if necessary. Until it arrives, the server works on
+/// earlier requests, and the resulting messages are sent. Returns `None` if the input has ended and
+/// no work is left.
 fn next_message(
     messages: &Receiver<Incoming>,
     server: &mut Server,
@@ -87,7 +86,7 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
             Ok(Some(message)) => {
                 let is_exit =
                     matches!(&message, Ok(Message::Notification(n)) if n.method == "exit");
-                // Reading ends with `exit`.
+                // The thread stops reading after `exit`.
                 if sender.send(message).is_err() || is_exit {
                     return;
                 }
@@ -102,17 +101,18 @@ fn read(input: impl Read, sender: &Sender<Incoming>, log: fn(&str)) {
     }
 }
 
-/// Maximum length of a message, in bytes. If a header announces more, the input is invalid. It is
-/// then unknown where the next message starts, so reading ends.
+/// Maximum length of a message from the client, in bytes: 1 GiB. A longer announced length is taken
+/// for invalid input, and reading ends, since it is unknown where the next message starts. Texts of
+/// scenes are far shorter; memory is allocated only for bytes that arrive.
 const LONGEST: u64 = 1 << 30;
 
-/// Maximum length of a header line, in bytes; a longer line is invalid input. Usual lines have
-/// about thirty bytes.
+/// Maximum length of a header line, in bytes. A longer line is invalid input, and without a limit
+/// it could fill the memory. Usual lines have about thirty bytes.
 const LONGEST_HEADER: u64 = 4096;
 
 /// Error of reading a message.
 enum Failed {
-    /// This message is invalid, but the next one may be valid.
+    /// The message is invalid, but the next one may be valid.
     Once(String),
     /// No further message can be read.
     ForGood(String),

@@ -1,5 +1,5 @@
-//! Answers the protocol's requests about a document: reads the parameters, calls the editor module,
-//! and converts the result.
+//! Answers the protocol's own requests about a document: reads the parameters, calls the editor
+//! module, and converts the result.
 
 use lsp_server::Request;
 use serde_json::{Value, json};
@@ -13,8 +13,8 @@ use crate::{
     editor::{self, Analysis},
 };
 
-/// Answers a request about a document. `known` is the document with its converter and its analysis,
-/// or `None` if the document is not open.
+/// Answers a request about a document. `known` contains the document's converter and analysis. It
+/// is `None` if the document is not open.
 pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -> Answer {
     let Request { method, params, .. } = request;
     let Some(about) = method.strip_prefix("textDocument/") else {
@@ -77,9 +77,9 @@ pub fn answer(request: Request, known: Option<(Converter<'_>, &Analysis<'_>)>) -
             list(labels, |label| converter.presentation(span, label))
         }
         "codeAction" => code_actions(converter, analysis, &params),
-        // For a text with syntax errors, the answer is null rather than an error: the syntax errors
-        // are reported already, and an editor that formats on every save must not show an error
-        // each time.
+        // A text with syntax errors gets the answer null rather than an error. An editor that
+        // formats on every save would otherwise show an error each time, although the syntax errors
+        // are reported already.
         "formatting" => {
             let edits = editor::formatting(analysis);
             Ok(edits.map(|edits| converter.text_edits(edits)).into())
@@ -110,7 +110,7 @@ fn code_actions(converter: Converter<'_>, analysis: &Analysis<'_>, params: &Valu
         let fixes = editor::fixes(analysis, converter.span(range));
         actions.extend(fixes.map(|(diagnostic, fix)| converter.action(fix, Some(diagnostic))));
     }
-    // Besides the fixes at one place, "fix all" is offered if several diagnostics have safe fixes.
+    // Besides the fixes at the cursor, "fix all" is offered if several diagnostics have safe fixes.
     let all = analysis.diagnostics().iter();
     let has_safe = |it: &&Diagnostic| it.fixes.iter().any(Fix::is_safe);
     let is_more = !actions.is_empty() && all.filter(has_safe).count() > 1;

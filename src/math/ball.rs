@@ -4,8 +4,8 @@ use std::{borrow::Borrow, cmp::Ordering};
 
 use super::{Big, Radius, Real};
 
-/// Error of a decision that the current precision cannot make; the next higher precision has to
-/// make it.
+/// Error that is returned if a decision is uncertain in the precision in use. The next higher
+/// precision has to make the decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Doubt;
 
@@ -21,14 +21,15 @@ pub struct Ball<T: Real> {
     pub rad: T::Radius,
 }
 
-/// Factor by which a computed radius of a ball is multiplied so that it is certainly not too small.
-/// Radii are computed in `f64` with fewer than 2^12 roundings of 2^−53 each, together less than
-/// 2^−40.
+/// Factor by which a computed radius of a [`Ball`] is multiplied so that it is certainly not too
+/// small. A radius is computed in `f64` with fewer than 2^12 roundings of 2^−53 each, together less
+/// than 2^−41. The factor exceeds 1 by 2^−40, which is more.
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
-/// Maximum rounding error of a ball's computed midpoint, in [`UNIT`](Real::UNIT)s of this number.
-/// The error is at most one unit of the true number, which is less than two units of the computed
-/// one. Twice as much costs nothing except an occasional decision in the next precision.
+/// Factor of the bound on the rounding error of a ball's computed midpoint: the bound is four times
+/// [`UNIT`](Real::UNIT) times the midpoint. The error is at most one unit of the true number, which
+/// is less than two units of the computed one. The bound is twice as large, which costs nothing
+/// except an occasional decision in the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {
@@ -59,7 +60,7 @@ impl<T: Real> Ball<T> {
         Self::rounded(T::difference(a, b), T::Radius::ZERO)
     }
 
-    /// Rounds `x` to this precision. The radius covers the rounding error.
+    /// Rounds `x` to the precision `T`. The radius covers the rounding error.
     pub fn from_big(x: &Big) -> Self {
         Self::rounded(T::from_big(x), underflow_loss::<T>(x.is_zero()))
     }
@@ -71,7 +72,8 @@ impl<T: Real> Ball<T> {
 
     /// Returns whether the ball's relative error is at most 2^−80, far below that of `f64`. A
     /// computation in a higher precision is then not worthwhile: it would help only with decisions
-    /// that [`Double`](super::Double) leaves in doubt, and these decisions allow for such an error.
+    /// that are uncertain in [`Double`](super::Double), and these decisions allow for an error of
+    /// this size.
     pub fn is_precise(&self) -> bool {
         /// Maximum radius of a precise ball, divided by the absolute value of its midpoint: 2^−80,
         /// which is 27 bits below the unit roundoff of `f64`.
@@ -79,14 +81,15 @@ impl<T: Real> Ball<T> {
         self.rad <= self.size() * PRECISE
     }
 
-    /// Returns whether the sign of the number is certain: positive or negative. Returns `false` for
+    /// Returns whether the number is certainly positive or certainly negative. Returns `false` for
     /// NaN.
     fn is_clear(&self) -> bool {
         self.size() > self.rad * UP
     }
 
-    /// Compares with zero. Returns a [`Doubt`] if the sign is uncertain. In the highest precision,
-    /// there is never a doubt: a number that cannot be distinguished from zero counts as zero.
+    /// Compares the number with zero. Returns a [`Doubt`] if the sign is uncertain. The highest
+    /// precision never returns a doubt: a number that cannot be distinguished from zero counts as
+    /// zero.
     #[inline]
     pub fn sign(&self) -> Result<Ordering, Doubt> {
         if self.is_clear() {
@@ -102,7 +105,8 @@ impl<T: Real> Ball<T> {
         }
     }
 
-    /// Compares with `other`. Returns a [`Doubt`] if the sign of the difference is uncertain.
+    /// Compares the number with `other`. Returns a [`Doubt`] if the sign of the difference is
+    /// uncertain.
     #[inline]
     pub fn compare(&self, other: &Self) -> Result<Ordering, Doubt> {
         (self - other).sign()
@@ -145,9 +149,9 @@ impl<T: Real> Ball<T> {
         Self::rounded(root, inherited)
     }
 
-    /// Returns the floor, the greatest integer that is not greater than the number, and whether it
-    /// is odd. Returns a [`Doubt`] if an integer lies within the ball. In the highest precision,
-    /// there is never a doubt: a number that cannot be distinguished from an integer counts as this
+    /// Returns the floor, the greatest integer that is not greater than the number, and whether the
+    /// floor is odd. Returns a [`Doubt`] if an integer lies within the ball. The highest precision
+    /// never returns a doubt: a number that cannot be distinguished from an integer counts as this
     /// integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
@@ -198,8 +202,9 @@ impl<T: Real> Ball<T> {
             };
         }
         let mid = self.mid.over(&other.mid);
-        // a' and b' are the true numbers, and |b'| is at least `least`, |b| minus the radius of b.
-        // The error is then at most |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|.
+        // a' and b' are the true numbers, and |b'| is at least `least`, which is |b| minus the
+        // radius of b. The error is therefore at most |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' −
+        // b|)/|b'|.
         let least = other.size().without(other.rad * UP);
         let lost = underflow_loss::<T>(self.mid.is_zero());
         let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;

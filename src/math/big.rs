@@ -1,4 +1,4 @@
-//! Big numbers, the highest precision, used for decisions that double-double leaves in doubt.
+//! Big numbers, the highest precision. It makes the decisions that are uncertain in double-double.
 
 use std::cmp::Ordering;
 
@@ -15,18 +15,18 @@ pub struct Big(pub(super) Float);
 /// precision 0 means that all operations except divisions are exact.
 pub(super) type Float = FBig<HalfEven, 2>;
 
-/// Number of bits of a [`Big`]. A difference about which [`Double`](super::Double) leaves a doubt
-/// is less than about 2^−90. The remaining bits are far more than any formula here loses in its
-/// intermediate steps. A difference that 320 bits do not resolve counts as 0.
+/// Number of bits of a [`Big`]. If a decision is uncertain in [`Double`](super::Double), the
+/// numbers differ by less than about 2^−90. The remaining bits are far more than any formula loses
+/// in its intermediate steps. A difference that 320 bits do not resolve counts as 0.
 pub(super) const PRECISION: usize = 320;
 
-/// Number of bits that are computed beyond [`PRECISION`] in the few steps that subtract nearly
-/// equal numbers. Even if 320 bits cancel, 320 correct bits remain.
+/// Number of additional bits, beyond [`PRECISION`], in the few steps that subtract nearly equal
+/// numbers. Even if 320 bits cancel, 320 correct bits remain.
 const GUARD: usize = 320;
 
 impl Big {
-    /// Number of bits of a [`Big`]. An integer with more bits is rounded to a multiple of a power
-    /// of two, which is even.
+    /// Number of bits of a [`Big`]. An integer that would need more bits is rounded to an even
+    /// number.
     pub const BITS: i32 = PRECISION as i32;
 
     /// Rounds `x` to the nearest big number.
@@ -72,7 +72,8 @@ impl Big {
 
 /// Compares an angle with `half_turns` half turns (180° each). If the angle's part in radians is 0,
 /// degrees are compared exactly. Otherwise, the comparison involves the irrational number π, so
-/// that the difference is never zero. It is computed with 640 bits, more than can cancel.
+/// that the difference is never zero. The difference is computed with 640 bits, more than can
+/// cancel.
 pub fn compare_half_turns(angle: Angle, half_turns: f64) -> Ordering {
     let degrees = exact(angle.degrees) - exact(180.0 * half_turns);
     if angle.radians == 0.0 {
@@ -106,8 +107,7 @@ fn sin_cos(angle: Angle, factor: f64) -> (Float, Float) {
     )
 }
 
-/// Converts a finite `f64` to the precision of 640 bits that is used for steps that subtract nearly
-/// equal numbers.
+/// Converts a finite `f64` to a number of 640 bits, for steps that subtract nearly equal numbers.
 fn wide(x: f64) -> Float {
     exact(x).with_precision(PRECISION + GUARD).value()
 }

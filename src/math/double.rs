@@ -2,16 +2,16 @@
 
 use super::{Big, Real};
 
-/// A double-double number: the sum of two `f64`, of which the second is at most half a unit in the
-/// last place of the first.
+/// A double-double number: the sum of two `f64`. The second is at most half a unit in the last
+/// place of the first.
 ///
 /// The algorithms are Dekker's and Knuth's error-free transformations. Sum and product are the
 /// accurate versions analysed by Joldes, Muller and Popescu, "Tight and rigorous error bounds for
 /// basic building blocks of double-word arithmetic" (2017). Their relative errors are at most 3u²
-/// and 5u², u = 2^−53. The quotient is a long division and the root is a step of Newton's method,
-/// each with its residual in double-double. Products are split as by Dekker instead of using a
-/// fused multiply-add, which is a slow function call on processors without this instruction; both
-/// are exact.
+/// and 5u², where u = 2^−53. The quotient is a long division and the root is a step of Newton's
+/// method, each with its residual in double-double. Products are split as by Dekker instead of
+/// using a fused multiply-add, which is a slow function call on processors without this
+/// instruction; both are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Double {
     /// The number rounded to `f64`.
@@ -43,7 +43,7 @@ fn quick_two_sum(a: f64, b: f64) -> Double {
 /// splitting).
 #[inline(always)]
 pub fn two_product(a: f64, b: f64) -> Double {
-    /// Veltkamp's factor 2^27 + 1. A product with it splits a number of 53 bits into an upper part
+    /// Veltkamp's factor 2^27 + 1. Multiplying by it splits a number of 53 bits into an upper part
     /// of 26 bits, and a lower part of 26 bits and a sign.
     const SPLIT: f64 = ((1u64 << 27) + 1) as f64;
     fn split(x: f64) -> (f64, f64) {
@@ -68,8 +68,8 @@ impl Double {
 impl Real for Double {
     type Radius = f64;
 
-    /// Maximum relative error of one operation: 2^−102. The quotient has the largest one, 10u²,
-    /// where u = 2^−53.
+    /// Maximum relative error of one operation: 2^−102. The quotient has the largest error of all
+    /// operations, 10u², where u = 2^−53.
     const UNIT: f64 = 1.0 / (1u128 << 102) as f64;
     /// Maximum absolute error of an operation that underflows: 2^−1022. Splitting a number loses
     /// bits below the subnormal numbers, a few times 2^−1074.

@@ -1,9 +1,9 @@
 //! Dyadic numbers: integers times powers of two. Every `f64` is a dyadic number, and so is every
 //! sum, difference and product of dyadic numbers, so that nothing is rounded.
 //!
-//! They decide the few questions that must not depend on rounding at all: whether the eye lies in a
-//! plane or on a sphere, and whether the up vector is parallel to the view direction. A decision
-//! takes some microseconds.
+//! Dyadic numbers decide the few questions that must not depend on rounding at all: whether the eye
+//! lies in a plane or on a sphere, and whether the up vector is parallel to the view direction. A
+//! decision takes some microseconds.
 
 use std::{cmp::Ordering, ops};
 
@@ -28,7 +28,7 @@ impl Dyadic {
         Self(exact(x))
     }
 
-    /// Compares with zero.
+    /// Compares the number with zero.
     pub fn sign(&self) -> Ordering {
         if is_zero(&self.0) {
             Ordering::Equal

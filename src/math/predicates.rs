@@ -41,8 +41,8 @@ impl Plane {
     /// Returns whether two planes are exactly equal: their normals are parallel, and the vector
     /// between their points is perpendicular to both normals.
     pub fn equals(&self, other: &Self) -> bool {
-        // If a box stands on a floor, or boxes stand side by side, axial planes are compared for
-        // many samples. This is the fast way.
+        // Axial planes are compared first, which is fast. If a box stands on a floor, or boxes
+        // stand side by side, they are compared for many samples.
         if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
             return a == b && p == q;
         }
@@ -113,8 +113,8 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
 }
 
 /// Returns `a` + `b`/2, rounded once. Half of a subnormal number need not be an `f64`; therefore
-/// (2a + b)/2 is computed. If this sum is rounded, it is not subnormal, and halving it is exact. If
-/// the sum overflows, a + b/2 is computed; `b`/2 is then exact or too small to matter.
+/// (2a + b)/2 is computed. If 2a + b is rounded, it is not subnormal, and halving it is exact. If
+/// it overflows, a + b/2 is computed; `b`/2 is then exact or too small to matter.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {
@@ -163,7 +163,8 @@ mod tests {
         assert!(!near.equals(&plane(normal, beside)));
         let tilted = [1.0, 2.0_f64.next_up(), 3.0];
         assert!(!near.equals(&plane(tilted, [0.0, 0.0, 1.75])));
-        // The numbers 0.1, 0.2 and 0.3 are not exact multiples of each other in `f64`.
+        // In `f64`, the numbers 0.1, 0.2 and 0.3 are not exact multiples of each other, so that
+        // this normal is not exactly parallel to (1, 2, 3).
         assert!(!near.equals(&plane([0.1, 0.2, 0.3], far)));
     }
 

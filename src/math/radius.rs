@@ -1,10 +1,11 @@
-//! Error bounds: non-negative numbers. Those of big numbers have a wider range than `f64`.
-//! Operations round to nearest. Where it matters, callers multiply the result by [`UP`](super::UP).
+//! Error bounds, which are non-negative numbers. Those of big numbers have a wider range than
+//! `f64`. Operations round to nearest. If an error bound must not be too small, callers multiply it
+//! by [`UP`](super::UP).
 
 use std::ops::{Add, Div, Mul};
 
-/// A non-negative number that bounds an error. Its operations round to nearest, and callers round
-/// up where it matters.
+/// A non-negative number that bounds an error. Its operations round to nearest. If a bound must not
+/// be too small, callers multiply it by a factor above 1.
 pub trait Radius:
     Copy
     + std::fmt::Debug
@@ -47,7 +48,8 @@ impl Radius for f64 {
     #[inline]
     fn scaled(self, exponent: i32) -> Self {
         match exponent {
-            // The power of two is a normal number, and the product is rounded as `ldexp` rounds it.
+            // In this range, the power of two is a normal number, and the product is rounded as
+            // `ldexp` rounds it.
             -1022..=1023 => self * f64::from_bits(((exponent + 1023) as u64) << 52),
             _ => libm::ldexp(self, exponent),
         }
@@ -75,8 +77,9 @@ pub struct Wide {
 
 impl Wide {
     /// Maximum difference between the exponents of two summands. If it is greater, the smaller
-    /// summand is replaced by a number 2^1000 times smaller than the larger. This changes the sum
-    /// far less than [`UP`](super::UP) does, and the mantissa does not underflow.
+    /// summand is replaced by a number 2^1000 times smaller than the larger one. The replacement
+    /// changes the sum far less than the factor [`UP`](super::UP) of error bounds does. With a
+    /// greater limit, the mantissa might underflow.
     const FAR: i64 = 1000;
 
     /// Returns `mantissa` · 2^`exponent`, where the mantissa may be any number that is not
@@ -176,9 +179,9 @@ impl Radius for Wide {
     }
     fn exponent(self) -> i32 {
         let of_mantissa = i64::from(self.mantissa != 0.0);
-        /// Maximum absolute value of the returned exponent. It is far beyond the exponents of
-        /// `f64`, so that scaling by it leaves the range of `f64`, and it can be added and negated
-        /// without overflow.
+        /// Maximum absolute value of the returned exponent. Any value works that is far beyond the
+        /// exponents of `f64`, so that scaling by it leaves the range of `f64`, and that can be
+        /// added and negated without overflow.
         const LIMIT: i64 = 1 << 20;
         (self.exponent + of_mantissa).clamp(-LIMIT, LIMIT) as i32
     }
@@ -189,7 +192,7 @@ impl Radius for Wide {
     }
     fn to_f64(self) -> f64 {
         /// Maximum absolute value of the exponent that is passed to `ldexp`. It is beyond the
-        /// exponents of `f64`, −1074 to 1023, so that a greater one gives the same result.
+        /// exponents of `f64`, −1074 to 1023, so that a greater exponent gives the same result.
         const LIMIT: i64 = 1100;
         libm::ldexp(self.mantissa, self.exponent.clamp(-LIMIT, LIMIT) as i32)
     }

@@ -1,4 +1,4 @@
-//! Arithmetic in the three precisions in which decisions are made.
+//! Arithmetic in three precisions, from fast to precise.
 
 use std::fmt::Debug;
 
@@ -21,10 +21,10 @@ pub trait Real: Clone + Debug + Sized {
     type Radius: Radius;
     /// Maximum error of the result of one operation, divided by the result.
     const UNIT: f64;
-    /// Maximum absolute error of one operation that underflows. It also covers an underflow of the
-    /// result's radius.
+    /// Maximum absolute error of one operation that underflows. It also covers an underflow in the
+    /// computation of the result's error bound.
     const TINY: Self::Radius;
-    /// Whether this is the highest precision, in which a value that cannot be distinguished from
+    /// Whether the precision is the highest one, in which a value that cannot be distinguished from
     /// zero counts as zero.
     const LAST: bool;
 
@@ -32,7 +32,7 @@ pub trait Real: Clone + Debug + Sized {
     fn from_f64(x: f64) -> Self;
     /// Computes `a` − `b`, without rounding if the result is representable.
     fn difference(a: f64, b: f64) -> Self;
-    /// Rounds `x` to this precision.
+    /// Rounds `x` to the precision of `Self`.
     fn from_big(x: &Big) -> Self;
     /// Converts the number to the nearest `f64`, or to one of the two nearest.
     fn to_f64(&self) -> f64;
@@ -62,11 +62,13 @@ pub trait Real: Clone + Debug + Sized {
     fn floor(&self) -> (Self, bool);
 }
 
-/// Number that rounds an `f64` below 2^51 in absolute value to an integer: it is added to the
-/// `f64`, and then subtracted again. The last bit of the sum is the last bit of that integer.
+/// Number that rounds an `f64` below 2^51 in absolute value to the nearest integer, if it is added
+/// and then subtracted again. The sum is between 2^52 and 2^53, where neighbouring `f64` differ by
+/// 1, and its last bit shows whether the integer is odd.
 pub const ROUND: f64 = 1.5 * (1u64 << 52) as f64;
 
-/// Returns the floor of `x`, that is the greatest integer at most as large. Requires |x| < 2^63.
+/// Returns the floor of `x`, the greatest integer that is not greater than `x`. Requires |x| <
+/// 2^63.
 ///
 /// It replaces `f64::floor`, which is a function call on targets whose baseline has no instruction
 /// for rounding down.
@@ -84,8 +86,8 @@ impl Real for f64 {
     type Radius = f64;
     /// Maximum relative error of one operation: the unit roundoff, 2^−53.
     const UNIT: f64 = 1.0 / (1u64 << 53) as f64;
-    /// Maximum absolute error of an operation that underflows: 2^−1022. The exact maximum is half
-    /// of the smallest subnormal number, 2^−1075.
+    /// Maximum absolute error of an operation that underflows: 2^−1022, the least normal number.
+    /// The true maximum is smaller, half of the smallest subnormal number, 2^−1075.
     const TINY: f64 = f64::MIN_POSITIVE;
     const LAST: bool = false;
 
@@ -144,8 +146,8 @@ impl Real for f64 {
     }
     #[inline]
     fn floor(&self) -> (Self, bool) {
-        /// Absolute value from which on every `f64` is an even integer: 2^53, because an `f64` has
-        /// 53 bits. Such a floor is not odd, and need not fit into an `i64`.
+        /// Least absolute value at which every `f64` is an even integer: 2^53, because an `f64` has
+        /// 53 bits. Such a number is not odd, and need not fit into an `i64`.
         const ALL_EVEN: f64 = (1u64 << 53) as f64;
         let floor = f64::floor(*self);
         (floor, floor.abs() < ALL_EVEN && floor as i64 & 1 == 1)

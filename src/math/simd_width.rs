@@ -7,7 +7,7 @@
 //! 754 rounds each sum and each product separately, and nothing here may fuse two operations into
 //! one.
 
-/// Width of the SIMD vectors that a loop uses.
+/// Choice of the SIMD vectors that a loop uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SimdWidth {
     /// The widest vectors that the processor has.
@@ -18,6 +18,7 @@ pub enum SimdWidth {
     Baseline,
 }
 
-/// Whether loops are also compiled for wider vectors, as on x86-64. On other architectures, a
-/// second copy would only enlarge the program.
+/// Whether loops are also compiled for vectors wider than those of every processor of the
+/// architecture. This is done on x86-64. On other architectures, a second copy would only enlarge
+/// the program.
 pub const HAS_WIDER: bool = cfg!(target_arch = "x86_64");

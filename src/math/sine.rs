@@ -9,28 +9,30 @@ use std::{array, ops::Neg, sync::LazyLock};
 use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
 /// Maximum absolute value of an angle, in radians, at which its sine and cosine are computed by
-/// series in double-double; above it, [`Big`] computes them, because its π has enough digits for
-/// any angle. The limit is less than 2^20 quarter turns. Up to it, the truncation of π/2 amounts to
-/// at most 2^20·2^−163 = 2^−143, which is negligible beside the unit of double-double, 2^−102.
+/// series in double-double. For larger angles, [`Big`] computes them, because its π has enough
+/// digits for any angle. The limit is less than 2^20 quarter turns. Up to it, the truncation of π/2
+/// amounts to at most 2^20·2^−163 = 2^−143, which is negligible beside the unit roundoff of
+/// double-double, 2^−102.
 const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
-/// Number of terms of the series of the sine, and of that of the cosine. The argument r is at most
-/// 0.8, more than π/4. The first omitted term of the cosine is then r³⁰/30! < 2^−117, and that of
-/// the sine, divided by r, is r³⁰/31! < 2^−122.
+/// Number of terms of the series of the sine, and of the series of the cosine. The argument r is at
+/// most 0.8, a little more than π/4. With 15 terms, the first omitted term of the cosine is r³⁰/30!
+/// < 2^−117, and that of the sine, divided by r, is r³⁰/31! < 2^−122.
 const TERMS: usize = 15;
-/// Maximum truncation error of the series of the sine or of the cosine. The terms alternate and
-/// decrease, so that the error is at most the first omitted term.
+/// Maximum truncation error of the series of the sine, divided by its argument, or of the cosine:
+/// 2^−116. The terms alternate and decrease, so that the error is at most the first omitted term,
+/// which is less than 2^−117.
 const TRUNCATION: f64 = 1.0 / (1u128 << 116) as f64;
 
 /// Constants for the reduction of angles modulo quarter turns, and coefficients of the series.
 struct Constants {
     /// π/2 as the sum of three `f64`. The error is at most half a unit in the last place of the
-    /// third, 2^−163.
+    /// third `f64`, 2^−163.
     quarter_turn: [f64; 3],
     radians_per_degree: Ball<Double>,
     /// Coefficients (−1)ⁿ/(2n)! of the cosine.
     cosine: [Ball<Double>; TERMS],
-    /// Coefficients (−1)ⁿ/(2n + 1)! of the sine, divided by r.
+    /// Coefficients (−1)ⁿ/(2n + 1)! of the sine divided by its argument.
     sine: [Ball<Double>; TERMS],
 }
 
@@ -47,8 +49,8 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     let reciprocals: [Ball<Double>; 2 * TERMS] = array::from_fn(|n| {
         factorial = factorial.times(&Big::from_f64(n.max(1) as f64));
         let reciprocal = Ball::from_big(&Big::from_f64(1.0).over(&factorial));
-        // The coefficients have the signs +, +, −, −, and so on, as i⁰, i¹, i², i³ would have them
-        // without their factor i.
+        // The coefficients have the signs +, +, −, −, and so on: the cosine has those of even n,
+        // and the sine those of odd n.
         if n % 4 < 2 { reciprocal } else { -reciprocal }
     });
     Constants {
@@ -145,8 +147,8 @@ fn add_quarter_turns<T: Neg<Output = T>>((sin, cos): (T, T), quarters: f64) -> (
     }
 }
 
-/// Evaluates the series of the sine and the cosine at `r`, |r| ≤ 0.8, from the smallest term to the
-/// largest.
+/// Evaluates the series of the sine and the cosine at the angle `r`, |r| ≤ 0.8 radians. The terms
+/// are added from the smallest to the largest.
 fn series(r: &Ball<Double>) -> (Ball<Double>, Ball<Double>) {
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));
     if r.mid.is_zero() && r.rad == 0.0 {
@@ -221,7 +223,7 @@ mod tests {
 
     #[test]
     fn angles_far_away_and_the_widest_balls_are_right() {
-        // Both parts of this angle are 45° from a quarter turn, so that its balls are as wide as
+        // Both parts of the angle are 45° from a quarter turn, so that its balls are as wide as
         // possible.
         assert!(is_right(-302176.406925716, -675013.4458038831 / 64.0));
         for radians in [1e7, -3e20, MAX_RADIANS, 1e300] {

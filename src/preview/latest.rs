@@ -1,4 +1,4 @@
-//! A slot that passes values between threads and keeps only the newest one.
+//! A slot that passes values between threads. It keeps only the newest value.
 
 use std::{
     sync::{
@@ -11,14 +11,14 @@ use std::{
 use crate::lock::{lock, unpoisoned};
 
 /// Slot that passes values from one thread to another. A new value replaces an older one that was
-/// not taken.
+/// not taken yet.
 #[derive(Debug)]
 pub struct Latest<T> {
     state: Mutex<SlotState<T>>,
     news: Condvar,
-    /// Whether the value that was taken last is outdated, since a newer one was put into the slot
-    /// or the slot has ended. It is written only while `state` is locked, so that it always agrees
-    /// with `state`.
+    /// Whether the value that was taken last is outdated, because a newer one is in the slot or the
+    /// slot has ended. It is written only while `state` is locked, so that it always agrees with
+    /// `state`.
     stale: AtomicBool,
 }
 
@@ -69,8 +69,8 @@ impl<T> Latest<T> {
             let (waited, result) = unpoisoned(self.news.wait_timeout(state, pause));
             state = waited;
             if result.timed_out() && state.next.is_none() {
-                // The lock is released, since `idle` may take long and values must be accepted
-                // meanwhile.
+                // The lock is released while `idle` runs, since `idle` may take long and other
+                // threads must be able to put in values.
                 drop(state);
                 idle();
                 state = lock(&self.state);
@@ -78,23 +78,25 @@ impl<T> Latest<T> {
         }
     }
 
-    /// Returns a flag that tells work on the value taken last to stop. It is set as soon as a newer
-    /// value is put into the slot or the slot ends.
+    /// Returns a flag that is set as soon as a newer value is put into the slot or the slot ends.
+    /// Work on the value taken last should then stop.
     pub fn stale(&self) -> &AtomicBool {
         &self.stale
     }
 
-    /// Puts a value into the slot, and sets the flag [`stale`](Self::stale).
+    /// Puts a value into the slot for the other thread. Sets the flag [`stale`](Self::stale), since
+    /// the value that was taken last is now outdated.
     pub fn put(&self, value: T) {
         self.change(|state| state.next = Some(value));
     }
 
-    /// Ends the slot, and sets the flag [`stale`](Self::stale). Waiting threads then get `None`.
+    /// Ends the passing of values through the slot, and sets the flag [`stale`](Self::stale).
+    /// Waiting threads then get `None`.
     pub fn end(&self) {
         self.change(|state| state.is_over = true);
     }
 
-    /// Returns whether the slot has ended, so that no further values are accepted.
+    /// Returns whether the slot has ended, i.e. whether no further values are passed.
     pub fn is_over(&self) -> bool {
         lock(&self.state).is_over
     }

@@ -5,11 +5,12 @@
 //! of the link's target is watched as well.
 //!
 //! Events come in bursts, so the file is read after a short time without events. The debouncers of
-//! the crate notify are not used. The small one drops the kind of an event, so that our own reading
-//! would trigger it. The large one tracks renamed files, which is not needed here. In addition, the
-//! file's time and length are checked once a second. This detects changes in folders without
-//! events, such as those on other machines, on systems that have no watches left, and in folders
-//! that are removed and created again.
+//! the crate notify are not used. The small one drops the kind of an event, so that reading the
+//! file would trigger it. The large one tracks renamed files, which is not needed.
+//!
+//! In addition, the file's time and length are checked once a second. This detects changes in
+//! folders without events, such as those on other machines, on systems that have no watches left,
+//! and in folders that are removed and created again.
 //!
 //! A save is recognized by the file's time, length and identity, not only by its text, because
 //! people who save an unchanged text expect a reaction. Other changes that an editor makes to a
@@ -36,35 +37,40 @@ use notify::{
 use super::Latest;
 use crate::files;
 
-/// Time without events from the file system after which a changed file is read.
+/// Time without events from the file system after which a changed file is read. An editor that
+/// saves causes several events within a few milliseconds; a longer time would delay the picture.
 const QUIET_TIME: Duration = Duration::from_millis(10);
 
 /// Maximum time from the first event of a change to reading the file. The file is then read even if
-/// events still arrive.
+/// events still arrive. A user who saves hardly notices a delay of 200 ms.
 const LONGEST_BURST: Duration = Duration::from_millis(200);
 
-/// Time without events after which a file that is missing or empty counts as that. Until then, a
-/// program may be saving it.
+/// Time without events after which a missing or empty file is reported as missing or empty. Before
+/// that, a program may be saving it: some empty or remove a file before they write the new content.
 const ABSENCE: Duration = Duration::from_millis(300);
 
-/// Maximum time to wait for a file that is missing or empty, however many events arrive.
+/// Maximum time to wait until a missing or empty file has content, even if events still arrive. Two
+/// seconds are longer than a usual save, but short enough to tell the user soon that the file is
+/// missing.
 const LONGEST_ABSENCE: Duration = Duration::from_secs(2);
 
-/// Time between two checks of the file without an event.
+/// Time between two checks of the file without an event. A check reads only the file's time and
+/// length, so once a second costs nearly nothing, and a change without an event is still noticed
+/// soon.
 const POLL_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The content of a file.
+/// The content of a file after a change.
 #[derive(Debug)]
 pub struct FileContent {
-    /// The bytes, or the error of reading them.
+    /// The file's bytes, or the error of reading them.
     pub bytes: io::Result<Vec<u8>>,
-    /// Time at which the change was noticed.
+    /// Time at which the change of the file was noticed.
     pub since: Instant,
 }
 
 /// Watches a file until the returned slot ends or is dropped. The slot contains the file's content
-/// at once, and again after each save, even of an unchanged text. `read` reads the file, and must
-/// not wait for other processes ([`files::open`]).
+/// at once, and gets it again after each save, even of an unchanged text. The function `read` reads
+/// the file; it must not wait for other processes ([`files::open`]).
 ///
 /// # Errors
 ///
@@ -104,19 +110,19 @@ pub fn watch(
 struct Watcher<R> {
     path: PathBuf,
     read: R,
-    /// Source of the events; `None` if the system cannot watch.
+    /// Source of the events; `None` if the system cannot watch files.
     notifier: Option<RecommendedWatcher>,
     events: Receiver<notify::Result<Event>>,
-    /// Keeps the channel of events open if there is no notifier.
+    /// A sender that keeps the channel of events open even if there is no notifier.
     _sender: Sender<notify::Result<Event>>,
-    /// The folders that are watched.
+    /// Folders that are watched at present.
     folders: BTreeSet<PathBuf>,
-    /// File names whose events concern the file: its own name and, for a symbolic link, that of the
-    /// link's target.
+    /// File names whose events concern the watched file: its own name and, for a symbolic link, the
+    /// name of the link's target.
     names: Vec<OsString>,
-    /// Stamp of the file when it was last read.
+    /// Time, length and identity of the file when it was last read.
     stamp: Option<Stamp>,
-    /// Content that was last read, or the message of the error.
+    /// Content that was last read, or the message of the error that prevented reading.
     last_read: Option<Result<Vec<u8>, String>>,
 }
 
@@ -132,18 +138,19 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
             };
             match event {
                 Ok(event) if self.concerns(&event) => self.settle(),
-                // Events about other files do not delay the check once a second.
+                // The file is checked once a second, and an event about another file must not delay
+                // this check.
                 Ok(_) if since < next_look => continue,
                 _ => {
                     next_look = since + POLL_INTERVAL;
                     if stamp(&self.path) == self.stamp {
-                        // Watch the current folders: one may exist again, or a link may have a new
-                        // target.
+                        // Watch the current folders: a removed folder may exist again, or a link
+                        // may have a new target.
                         self.follow();
                         continue;
                     }
-                    // The file has changed although no event told so. Either the watch is lost,
-                    // because a watched folder was removed, or the folder does not report events.
+                    // The file has changed without an event. Either the watch is lost because a
+                    // watched folder was removed, or the folder does not report events.
                     self.forget_folders();
                 }
             }
@@ -159,7 +166,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         };
         let written = AccessKind::Close(AccessMode::Write);
         match event.kind {
-            // Reading causes events, too, but changes nothing.
+            // Reading the file causes events, too, but changes nothing.
             EventKind::Access(access) if access != written => false,
             _ if event.need_rescan() => true,
             _ => event.paths.iter().any(|path| {
@@ -169,7 +176,7 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Waits until there is no event for [`QUIET_TIME`], but at most for [`LONGEST_BURST`].
+    /// Waits until no event has arrived for [`QUIET_TIME`], but at most for [`LONGEST_BURST`].
     fn settle(&self) {
         let start = Instant::now();
         let mut quiet = start + QUIET_TIME;
@@ -186,8 +193,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Watches the file's current folders, and no longer watches others. If a folder cannot be
-    /// watched, the check once a second notices changes.
+    /// Watches the folders in which the file is now, and stops watching others. If a folder cannot
+    /// be watched, the check once a second notices changes.
     fn follow(&mut self) {
         let (folders, names) = places(&self.path);
         self.names = names;
@@ -214,14 +221,15 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file. If it was saved since it was last read, puts its content into the slot.
+    /// Reads the file. If the file was saved since the last reading, puts its content into the
+    /// slot.
     fn look(&mut self, since: Instant, latest: &Latest<FileContent>) {
         let (stamp, bytes) = self.read_when_still();
         let read = match &bytes {
             Ok(bytes) => Ok(bytes.clone()),
             Err(error) => Err(error.to_string()),
         };
-        // If the clock is coarse, or the file's time was set back, only the text shows that the
+        // If the clock is coarse, or if the file's time was set back, only the text shows that the
         // file was saved.
         if stamp != self.stamp || self.last_read.as_ref() != Some(&read) {
             self.stamp = stamp;
@@ -230,9 +238,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file's content, with the stamp from before reading. If the file was written during
-    /// reading, reads it again: new content with an old stamp would later be mistaken for another
-    /// save.
+    /// Reads the file's content, together with its time, length and identity from before reading.
+    /// If the file was written meanwhile, reads it again: new content with old data would later be
+    /// mistaken for another save.
     fn read_when_still(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let end = Instant::now() + LONGEST_BURST;
         loop {
@@ -245,9 +253,9 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
         }
     }
 
-    /// Reads the file's content, with the stamp from before reading. If the file is missing or
-    /// empty, waits until it has content, except at the first reading: for [`ABSENCE`] after the
-    /// last event, but at most for [`LONGEST_ABSENCE`].
+    /// Reads the file's content, together with its time, length and identity from before reading.
+    /// If the file is missing or empty, waits until it has content, except at the first reading.
+    /// Waits for [`ABSENCE`] after the last event, but at most for [`LONGEST_ABSENCE`].
     fn read_when_there(&self) -> (Option<Stamp>, io::Result<Vec<u8>>) {
         let start = Instant::now();
         let mut end = start + ABSENCE;
@@ -272,8 +280,8 @@ impl<R: Fn(&Path) -> io::Result<Vec<u8>>> Watcher<R> {
     }
 }
 
-/// Returns the folders to watch for a file, and the file's names in them. Includes those of a
-/// link's target.
+/// Returns the folders to watch for a file, and the file's names in these folders. For a symbolic
+/// link, includes the folder and the name of its target.
 fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     let mut folders = BTreeSet::new();
     let mut names = BTreeSet::new();
@@ -285,15 +293,15 @@ fn places(path: &Path) -> (BTreeSet<PathBuf>, Vec<OsString>) {
     (folders, names.into_iter().collect())
 }
 
-/// Returns the canonical path of a file's folder. The system watches a folder only once, so with
-/// two paths for one folder, removing one watch would also remove the other.
+/// Returns the canonical path of a file's folder. The system watches a folder only once. If a
+/// folder had two paths, removing one watch would also remove the other.
 fn folder(path: &Path) -> PathBuf {
     let folder = files::folder(path);
     // A folder that does not exist has no canonical path.
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
-/// Data of a file that change when it is saved: its time, length and identity.
+/// Data of a file that change when the file is saved: time, length and identity.
 type Stamp = (SystemTime, u64, files::FileId);
 
 fn stamp(path: &Path) -> Option<Stamp> {
@@ -307,7 +315,7 @@ mod tests {
 
     #[test]
     fn a_folder_has_one_name_whether_its_file_is_there_or_not() {
-        // Tests run in the folder of the package, so this is the path of that folder.
+        // Tests run in the folder of the package, so this is the path of the package's folder.
         let here = fs::canonicalize(".").unwrap();
         for path in [
             "Cargo.toml",

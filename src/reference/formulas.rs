@@ -1,11 +1,11 @@
 //! The usual textbook formulas in `f64`: a camera's axes, a triangle's vertices, and the
 //! intersection of a ray with a shape.
 //!
-//! The camera's axes are normalised first. The sphere uses the discriminant b² − 4ac, the box three
-//! slabs with reciprocals (Kay and Kajiya 1986), and the triangle the method of Möller and Trumbore
-//! (1997). All formulas are right in exact arithmetic, and the tracer uses none of them: `report`
-//! compares the tracer's decisions with those by these formulas, and `grading` uses the formulas to
-//! imitate students' programs.
+//! The camera's axes are normalised first. The sphere's formula uses the discriminant b² − 4ac; the
+//! box's, three slabs with reciprocals (Kay and Kajiya 1986); and the triangle's is that of Möller
+//! and Trumbore (1997). All formulas are correct in exact arithmetic. The tracer uses none of them.
+//! `report` compares the tracer's decisions with theirs, and `grading` uses them to imitate
+//! students' programs.
 
 use glam::{BVec3, DVec2, DVec3};
 
@@ -17,11 +17,12 @@ use crate::{
     },
 };
 
-/// Returns the camera's axes u, v and w, turned by the roll:
+/// Returns the camera's axes u (right), v (up) and w (backwards), after its roll:
 ///
 /// w = (eye − lookat)/|eye − lookat|, u = (up × w)/|up × w|, v = w × u.
 ///
-/// If the view is parallel to `up`, u follows from the language's level direction.
+/// If the view direction is parallel to `up`, u follows from the level direction that the language
+/// defines for this case.
 pub fn axes(camera: &Camera) -> [DVec3; 3] {
     let backward = match camera.view {
         View::Lookat(at) => camera.eye - at,
@@ -39,13 +40,13 @@ pub fn axes(camera: &Camera) -> [DVec3; 3] {
     [cos * u - sin * v, sin * u + cos * v, w]
 }
 
-/// Converts an angle to radians: its degrees times π/180, plus its radians.
+/// Converts an angle to radians. An angle has a part in degrees and a part in radians.
 pub fn radians(angle: Angle) -> f64 {
     angle.degrees * std::f64::consts::PI / 180.0 + angle.radians
 }
 
-/// Returns the vertices of a triangle. If the outline has no vertices, computes the left end of the
-/// base, the right end, and the apex.
+/// Returns the vertices of a triangle. If the scene does not give them, computes the left end of
+/// the base, the right end, and the apex.
 pub fn vertices(outline: &TriangleOutline) -> [DVec3; 3] {
     match outline {
         TriangleOutline::Vertices(vertices) => *vertices,
@@ -86,8 +87,8 @@ pub fn corners(min: DVec3, max: DVec3) -> [DVec3; 8] {
     })
 }
 
-/// Returns the shape, with the vertices of a triangle in place of any other outline. They are then
-/// not computed again for each ray.
+/// Returns the shape. A triangle that is given in another way is described by its vertices, so that
+/// they are not computed again for each ray.
 pub fn by_vertices(shape: Shape) -> Shape {
     match shape {
         Shape::Triangle(Triangle { outline, color }) => Shape::Triangle(Triangle {
@@ -99,8 +100,8 @@ pub fn by_vertices(shape: Shape) -> Shape {
 }
 
 /// Intersects the line `eye` + t·`d` with a shape. Returns the two values of t, the smaller first;
-/// for a flat shape, they are equal. Returns `None` if the line misses the shape. For a triangle, a
-/// determinant whose absolute value is less than `epsilon` counts as zero.
+/// for a flat shape, they are equal. Returns `None` if the line misses the shape. A triangle is
+/// missed if the absolute value of its determinant is less than `epsilon`.
 #[inline(always)]
 pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f64; 2]> {
     match shape {
@@ -111,8 +112,9 @@ pub fn crossings(shape: &Shape, eye: DVec3, d: DVec3, epsilon: f64) -> Option<[f
     }
 }
 
-/// Intersects the line `eye` + t·`d` with a sphere. Returns the roots of a·t² + b·t + c, the
-/// smaller first, or `None` if there are none.
+/// Intersects the line `eye` + t·`d` with a sphere. Returns both values of t, the smaller first, or
+/// `None` if the line misses the sphere. They are the roots of a quadratic equation a·t² + b·t + c
+/// = 0.
 fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let f = eye - sphere.center;
     let a = d.dot(d);
@@ -126,9 +128,9 @@ fn sphere(sphere: &Sphere, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     Some([(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)])
 }
 
-/// Intersects the line `eye` + t·`d` with a box. Returns the t at which the line enters the last of
-/// the three slabs, and the t at which it leaves the first. Returns `None` if it leaves before it
-/// enters.
+/// Intersects the line `eye` + t·`d` with a box. A box is the intersection of three slabs, each
+/// between two parallel planes. Returns the t at which the line enters the last slab, and the t at
+/// which it leaves the first one. Returns `None` if it leaves before it enters.
 fn cuboid(cuboid: &Cuboid, eye: DVec3, d: DVec3) -> Option<[f64; 2]> {
     let inverse = 1.0 / d;
     let a = (cuboid.min - eye) * inverse;

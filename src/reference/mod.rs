@@ -1,9 +1,9 @@
-//! References that Pinhole is compared with: textbook formulas, an oracle of arbitrary precision,
-//! and scenes.
+//! References that Pinhole is compared with: textbook formulas, an oracle (a tracer of very high
+//! precision), and scenes.
 //!
-//! The report on the arithmetic, the tests, and the benchmarks compare the tracer with [`oracle`]
-//! and [`textbook`] on scenes made by [`scenes`]; `grading` imitates students' programs with
-//! [`formulas`]. Nothing here is shared with the tracer, except what the scene itself provides.
+//! The report on the arithmetic, the tests and the benchmarks compare the tracer with [`oracle`]
+//! and [`textbook`], on scenes made by [`scenes`]. `grading` imitates students' programs with
+//! [`formulas`]. Nothing of this is shared with the tracer, except what the scene itself provides.
 
 pub mod formulas;
 #[cfg(feature = "report")]

@@ -15,10 +15,11 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Number of columns and of rows of a scene's picture, unless a test sets others.
+/// Number of columns and of rows of a picture, unless a test sets other numbers. A larger picture
+/// would make comparisons of all its pixels slower.
 pub const SIZE: u32 = 64;
 
-/// Returns a camera at `eye` that looks at `lookat`. All else is the language's default.
+/// Returns a camera at `eye` that looks at `lookat`. Its other fields have the language's defaults.
 pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     Camera {
         eye,
@@ -32,7 +33,8 @@ pub fn camera(eye: DVec3, lookat: DVec3) -> Camera {
     }
 }
 
-/// Returns a camera at `eye` that looks along `direction`. All else is the language's default.
+/// Returns a camera at `eye` that looks along `direction`. Its other fields have the language's
+/// defaults.
 pub fn along(eye: DVec3, direction: DVec3) -> Camera {
     Camera {
         view: View::Direction(direction),
@@ -49,7 +51,7 @@ pub fn sphere(center: DVec3, radius: f64) -> Shape {
     })
 }
 
-/// Returns the black box from `min` to `max`.
+/// Returns a black box with the least corner `min` and the greatest corner `max`.
 pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
     Shape::Box(Cuboid {
         min,
@@ -59,12 +61,12 @@ pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
     })
 }
 
-/// Returns a black triangle without spin.
+/// Returns a black triangle that is not turned about its normal.
 pub fn triangle(centroid: DVec3, normal: DVec3, sides: DVec3) -> Shape {
     spun(centroid, normal, sides, 0.0)
 }
 
-/// Returns a triangle with a spin of `spin` degrees.
+/// Returns a black triangle that is turned about its normal by `spin` degrees.
 pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
     Shape::Triangle(Triangle {
         outline: TriangleOutline::Centered(CenteredTriangle {
@@ -77,7 +79,8 @@ pub fn spun(centroid: DVec3, normal: DVec3, sides: DVec3, spin: f64) -> Shape {
     })
 }
 
-/// Returns a checkerboard at height `y` with squares of side `square`.
+/// Returns a checkerboard at height `y` with squares of side `square`. Both of its colours are
+/// black.
 pub fn board(y: f64, square: f64) -> Shape {
     Shape::Checkerboard(Checkerboard {
         y,
@@ -93,7 +96,8 @@ pub fn color(object: usize, is_odd: bool) -> Color {
     Color::from_bytes([low, u8::from(is_odd), high])
 }
 
-/// Returns a scene of the shapes `shapes`. Each gets the colours that identify it ([`color`]).
+/// Returns a scene with the given shapes. Each shape gets the colours that identify it (see
+/// [`color`]).
 pub fn scene(camera: Camera, shapes: &[Shape]) -> Scene {
     let objects = shapes.iter().enumerate().map(|(object, shape)| {
         let own = [false, true].map(|is_odd| color(object, is_odd));

@@ -1,7 +1,8 @@
-//! A tracer that decides what is seen at a sample point by the textbook formulas.
+//! A tracer that decides by the textbook formulas what is seen at a sample point.
 //!
-//! Rays have unit directions, triangles are tested with an epsilon, and the colour of a square is
-//! the parity of two floors. This tracer exists only for comparison.
+//! Ray directions have length 1. A triangle is missed if its determinant is nearly zero. The colour
+//! of a checkerboard's square depends on whether the sum of the square's two indices is even. This
+//! tracer exists only for comparison with others.
 
 use glam::{DVec2, DVec3};
 
@@ -12,7 +13,7 @@ use crate::scene::{Lens, Scene, Shape};
 #[derive(Clone, Debug)]
 pub struct Textbook {
     eye: DVec3,
-    /// The camera's axes u, v and w.
+    /// The camera's axes: right (u), up (v) and backwards (w).
     axes: [DVec3; 3],
     d: f64,
     pixel: f64,
@@ -23,22 +24,22 @@ pub struct Textbook {
     shapes: Vec<Shape>,
 }
 
-/// The visible intersection of a ray, by the textbook formulas.
+/// The point at which a ray hits the object that is seen, by the textbook formulas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextbookHit {
-    /// The object's index in the scene.
+    /// Index of the object in the scene.
     pub object: usize,
     /// Whether a checkerboard shows its second colour.
     pub odd: bool,
-    /// Distance of the intersection from the eye.
+    /// Distance of the point from the eye, in metres.
     pub t: f64,
-    /// Point of the intersection.
+    /// The point itself, in the scene's coordinates.
     pub point: DVec3,
 }
 
-/// Minimum absolute value of the determinant in the triangle test of Möller and Trumbore; below it,
-/// the triangle counts as parallel to the ray and is missed. Their own program uses 10⁻⁶; most
-/// later programs use 10⁻⁸.
+/// Minimum absolute value of the determinant in the triangle test of Möller and Trumbore. Below it,
+/// the triangle counts as parallel to the ray and is missed. The authors' own program uses 10⁻⁶;
+/// most later programs use 10⁻⁸.
 const EPSILON: f64 = 1e-8;
 
 impl Textbook {
@@ -98,7 +99,7 @@ impl Textbook {
     }
 }
 
-/// Returns whether the point lies in a square of the checkerboard's second colour, that is whether
+/// Returns whether a point of a checkerboard lies in a square of the second colour, i.e. whether
 /// floor(x/square) + floor(z/square) is odd.
 fn is_odd(point: DVec3, square: f64) -> bool {
     let parity = |x: f64| (x / square).floor().abs() % 2.0;

@@ -1,7 +1,7 @@
-//! Renders a part of the picture without samples, with error bounds.
+//! Computes a part of the picture exactly, i.e. without samples, with error bounds.
 //!
-//! In: the world and the part. Out: the pixels' means as [`Integrator`] computes them, and their
-//! error bounds, rounded upwards.
+//! In: the prepared scene and the part of its picture. Out: the pixels' means as [`Integrator`]
+//! computes them, and their error bounds, rounded upwards.
 
 use std::sync::Mutex;
 
@@ -15,21 +15,22 @@ use crate::{
     tracer::{GRID, World},
 };
 
-/// Side of the tiles into which an exact picture is divided for the threads, in pixels. Pixels of a
-/// checkerboard are computed in batches of eight similar pixels, and tiles are large enough to fill
-/// most batches: with tiles half as long, figure 9.9 takes 5 % longer. Tiles are small enough that
-/// the threads end at about the same time.
+/// Side of the squares of pixels (tiles) that a thread computes at a time, in pixels. Pixels of a
+/// checkerboard are computed in batches of eight similar pixels, and a tile must be large enough to
+/// fill most batches: with half this side, figure 9.9, the picture of the assignment, took 5 %
+/// longer. Tiles must also be small enough that all threads end at about the same time.
 const TILE: u32 = 2 * GRID;
 
 /// An exactly computed picture, with its error bounds.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Exact<P = [f64; 3]> {
-    /// The pixels' means in linear light, or converted to another kind of pixel.
+    /// The pixels' means in linear light, or converted to another type of pixel.
     pub film: Film<P>,
     /// Error bound of each pixel's mean, row by row. It holds for every channel.
     pub bounds: Vec<f32>,
-    /// Number of pixels whose value in a file certainly equals the rounded true mean.
+    /// Number of pixels for which it is certain that the value in a file is the true mean,
+    /// correctly rounded.
     pub certain: u64,
 }
 
@@ -50,12 +51,12 @@ impl<P> Exact<P> {
     }
 }
 
-/// Computes a part of the picture without samples. Progress is reported in pixels.
+/// Computes a part of the picture without samples, and reports its progress in pixels.
 ///
 /// # Errors
 ///
-/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
-/// the render was cancelled.
+/// Fails if the part does not lie in the picture, there is not enough memory, no thread can be
+/// started, or the render was cancelled.
 pub fn render_exact(world: &World, part: Area, control: &Control) -> Result<Exact, RenderError> {
     render_exact_as(world, part, control)
 }
@@ -68,13 +69,14 @@ pub(super) fn render_exact_as<P: film::Pixel>(
     render_numbers(&Integrator::new(world), part, control, &|_, _| ())
 }
 
-/// Computes a part of the picture with an integrator of `N` numbers per colour, of which the first
-/// three are the channels. Calls `also` with each tile and all numbers of the tile's pixels.
+/// Computes a part of the picture with an integrator that averages `N` numbers per colour. The
+/// first three numbers are the colour's channels. Calls `also` with each finished tile, and with
+/// all numbers of its pixels.
 ///
 /// # Errors
 ///
-/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
-/// the render was cancelled.
+/// Fails if the part does not lie in the picture, there is not enough memory, no thread can be
+/// started, or the render was cancelled.
 pub fn render_numbers<P: film::Pixel, const N: usize>(
     integrator: &Integrator<N>,
     part: Area,
@@ -99,12 +101,13 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                 .iter()
                 .map(|pixel| match pixel.bound {
                     0.0 => 0.0,
-                    // The bound is rounded up to an `f32`. Light is between 0 and 1, so that no
-                    // bound needs to exceed 1.
+                    // The bound is rounded up to an `f32`. It need not exceed 1, because light is
+                    // between 0 and 1.
                     bound => (bound as f32).next_up().min(1.0),
                 })
                 .collect();
-            // Most pixels have the mean of the pixel before, so that its conversion is used again.
+            // Most pixels have the same mean as the pixel before, so the last conversion is used
+            // again.
             let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
             let means: Vec<P> = pixels
                 .iter()

@@ -1,12 +1,13 @@
-//! Renders a world to a film, with samples or exactly.
+//! Renders a prepared scene (a `World`) to a film, with samples or exactly.
 //!
 //! In: the prepared scene, the positions of the samples, and the wanted part of the picture. Out:
 //! the means of the part's pixels. The part is divided into tiles, which the threads take in turn.
-//! Neither the number of threads nor the tiles nor the part changes a bit of a pixel.
+//! A pixel is the same, to the last bit, whatever the number of threads, the tiles and the part
+//! are.
 //!
-//! `sampled` renders with samples, with a `renderer` of tiles; `exact` renders without samples;
-//! `slices` renders either kind step by step. This file selects the kind by the scene's sampler,
-//! and contains the code that both kinds share.
+//! `sampled` renders with samples, and lets `renderer` render each tile. `exact` renders without
+//! samples. `slices` renders in either way, a piece of the picture at a time. This file chooses the
+//! way by the scene's sampler, and has the code that both ways share.
 
 mod exact;
 mod renderer;
@@ -49,8 +50,8 @@ pub struct Control<'a> {
     /// Number of threads; `None` for the default number, which is one per processor or the
     /// process's limit.
     pub threads: Option<NonZero<usize>>,
-    /// Function that is called, from any thread, with the number of samples, or of exact pixels,
-    /// finished since its last call.
+    /// Function that is called with the number of samples (or of exact pixels) that were finished
+    /// since its last call. Any thread may call it.
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
@@ -64,7 +65,7 @@ impl fmt::Debug for Control<'_> {
     }
 }
 
-/// Default control: the default number of threads, no progress, no cancellation.
+/// Default settings: the default number of threads, no progress, and no cancellation.
 impl Default for Control<'_> {
     fn default() -> Self {
         Self {
@@ -85,14 +86,14 @@ pub enum RenderError {
     /// The system cannot start threads.
     #[error("cannot start threads: {0}")]
     Threads(#[from] threads::NoThreads),
-    /// The part is not one of the picture.
+    /// The part has no pixels, or does not lie in the picture.
     #[error(
         "the part {part} has no pixels, or does not lie in the picture of {} × {}",
         whole.width,
         whole.height
     )]
     Outside {
-        /// The part that was asked for.
+        /// Part that was to be rendered.
         part: Area,
         /// The whole picture.
         whole: Area,
@@ -111,9 +112,9 @@ impl From<Cancelled> for RenderError {
 /// A rendered part of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rendered<P = [f64; 3]> {
-    /// A picture with samples.
+    /// A picture that was rendered with samples.
     Sampled(Film<P>),
-    /// A picture without samples.
+    /// A picture that was rendered without samples.
     Exact(Exact<P>),
 }
 
@@ -137,12 +138,12 @@ impl<P> Rendered<P> {
 ///
 /// # Errors
 ///
-/// The part does not lie in the picture, there is not enough memory, no thread can be started, or
-/// the render was cancelled.
+/// Fails if the part does not lie in the picture, there is not enough memory, no thread can be
+/// started, or the render was cancelled.
 ///
 /// # Panics
 ///
-/// The sampling is that of a picture of another size.
+/// Panics if the sampling was made for a picture of another size.
 pub fn render(
     world: &World,
     sampling: &Sampling,
@@ -152,17 +153,18 @@ pub fn render(
     render_as_asked(world, sampling, part, control).map(Rendered::into_film)
 }
 
-/// Renders a part of the picture as its sampler specifies: with samples or exactly. The film stores
-/// light, or the bytes of sRGB that a PNG file needs. With bytes, the file is the same, and less
-/// memory is used.
+/// Renders a part of the picture as its sampler specifies, with samples or exactly. The film stores
+/// linear light, or the sRGB bytes that a PNG file needs. Bytes take less memory and give the same
+/// file.
 ///
 /// # Errors
 ///
-/// As of [`render`].
+/// Fails if the part does not lie in the picture, there is not enough memory, no thread can be
+/// started, or the render was cancelled.
 ///
 /// # Panics
 ///
-/// As of [`render`].
+/// Panics if the sampling was made for a picture of another size.
 pub fn render_as_asked<P: Pixel>(
     world: &World,
     sampling: &Sampling,
@@ -188,9 +190,10 @@ pub(crate) fn check_part(part: Area, whole: Area) -> Result<(), RenderError> {
     Err(RenderError::Outside { part, whole })
 }
 
-/// Returns the tiles of a part of the picture: squares of side `side`, in pixels, in a grid from
-/// the picture's top left corner, clipped to the part. The iterator ends early if the render is
-/// cancelled, because iterating over millions of tiles without rendering them would take a second.
+/// Iterates over the squares (tiles) into which a part of the picture is divided, clipped to the
+/// part. They have the side `side`, in pixels, and form a grid from the picture's top left corner.
+/// The iterator ends early if the render is cancelled, because merely iterating over millions of
+/// tiles would take a second.
 fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))

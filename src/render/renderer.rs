@@ -1,10 +1,9 @@
-//! Renders the tiles of a picture with samples.
+//! Renders tiles (rectangles of pixels) of a picture with samples.
 //!
-//! A pixel's samples are counted by colour, and the counts do not depend on the order of the
-//! samples. Where one colour is certain, samples are neither placed nor traced, because the mean of
-//! equal colours is this colour. In other pixels, many samples are traced at a time, only against
-//! the objects that may be seen there. Where finding these objects would cost more, samples are
-//! traced one by one.
+//! A pixel's samples are counted by colour, so their order does not matter. Where all samples are
+//! certain to see one colour, they are neither placed nor traced. In other pixels, many samples are
+//! traced at a time, against only those objects that may be seen there. If finding these objects
+//! would take longer than it saves, samples are traced one by one.
 
 use std::{
     ops::{ControlFlow, Range},
@@ -27,35 +26,40 @@ use crate::{
     },
 };
 
-/// Minimum number of a pixel's samples that are traced at a time with the widest vectors, which
-/// have as many lanes. Fewer samples are traced with the baseline vectors.
+/// Minimum number of a pixel's samples that are traced with the widest vectors of the processor,
+/// which have up to 8 lanes. Fewer samples would leave lanes unused, so they are traced with the
+/// narrower vectors that every processor has.
 const WIDE_SAMPLES: u64 = 8;
 
-/// Maximum number of samples per candidate object at which a pixel's samples are traced one by one;
-/// with more, the pixel is prepared and samples are traced many at a time. Not critical: with 1 or
-/// 4, a picture takes up to 2 % longer, as measured.
+/// Maximum number of samples per candidate (an object that may be seen in the pixel) for which
+/// samples are traced one by one. With more, the pixel is prepared so that many samples can be
+/// traced at a time. The value is not critical: by measurement, a picture takes up to 2 % longer
+/// with 1 or 4.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
-/// Maximum number of a pixel's samples that are traced between two checks for cancellation. So many
-/// take 40 µs if many are traced at a time, and 0.3 ms one by one.
+/// Maximum number of a pixel's samples that are traced between two checks for cancellation. 4096
+/// samples take 40 µs if many are traced at a time, and 0.3 ms one by one, so cancellation is
+/// quick.
 const SAMPLES_A_CHUNK: u64 = 1 << 12;
 
-/// Side of the squares into which a crowded part, one with too many candidates to prepare its
-/// pixels, is divided, in pixels. The objects near a square are searched once for all its samples.
+/// Side of the squares, in pixels, for which the nearby objects are searched once for all their
+/// samples. Such squares divide areas in which too many objects may be seen to prepare each pixel.
+/// Smaller squares would need more searches; larger ones would have more objects nearby, which each
+/// sample has to test.
 const CROWD_SIDE: u32 = 4;
 
-/// Minimum number of a pixel's samples for which the list of the objects near its square of pixels
-/// ([`CROWD_SIDE`]) is reduced to those near the pixel. With fewer samples, each is tested against
-/// the longer list.
+/// Minimum number of a pixel's samples for which the list of objects near a square of pixels is
+/// reduced to the objects near the pixel. With fewer samples, reducing the list would take longer
+/// than testing each sample against all of it.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
-/// Data that all tiles of a picture share.
+/// Renders the tiles (rectangles of pixels) of a picture. All threads share this data.
 pub(super) struct Renderer<'a, P> {
     pub(super) world: &'a World,
     pub(super) sampling: &'a Sampling,
-    /// The colours of the palette in linear light.
+    /// The scene's colours (its palette), in linear light.
     pub(super) colors: &'a [[f64; 3]],
-    /// The colours of the palette, converted to the film's kind of pixel.
+    /// The scene's colours (its palette), converted to the film's type of pixel.
     pub(super) shown: &'a [P],
     pub(super) encoder: &'a Encoder,
     pub(super) control: &'a Control<'a>,
@@ -63,7 +67,8 @@ pub(super) struct Renderer<'a, P> {
 }
 
 impl<P: film::Pixel> Renderer<'_, P> {
-    /// Renders a tile. Returns its pixels row by row, or `None` if the render was cancelled.
+    /// Renders a tile, i.e. a rectangle of pixels. Returns the pixels row by row, or `None` if the
+    /// render was cancelled.
     pub(super) fn tile(
         &self,
         tile: Area,
@@ -104,7 +109,7 @@ impl<P: film::Pixel> Renderer<'_, P> {
         flow.is_continue().then_some(film.pixels)
     }
 
-    /// Returns `Break` if the render was cancelled, otherwise `Continue`.
+    /// Returns `Break` if the render was cancelled, and `Continue` otherwise.
     fn go_on(&self) -> ControlFlow<()> {
         if self.control.cancel.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
@@ -127,7 +132,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
             return self.go_on();
         }
         let trace = match trace {
-            // For few samples, preparing the pixel would take longer than tracing them one by one.
+            // If there are few samples, preparing the pixel would take longer than tracing them one
+            // by one.
             Trace::Batched(candidates, _)
                 if samples <= SAMPLES_A_CANDIDATE * candidates.len() as u64 =>
             {
@@ -166,8 +172,8 @@ impl<P: film::Pixel> Renderer<'_, P> {
         self.go_on()
     }
 
-    /// Traces the samples of a pixel whose indices are in `some`, and counts their colours in
-    /// `tally`. `samples` is the total number of the pixel's samples.
+    /// Traces some of a pixel's samples, and counts their colours in `tally`. `some` has the
+    /// indices of these samples, and `samples` is the number of all samples in the pixel.
     fn chunk(
         &self,
         [x, y]: [u32; 2],
@@ -184,12 +190,12 @@ impl<P: film::Pixel> Renderer<'_, P> {
         } = tally;
         let vectors = match trace {
             Trace::Batched(..) if some.end - some.start >= WIDE_SAMPLES => SimdWidth::Widest,
-            // Wide vectors take longer for few samples, and they slow down the samples that are
-            // then traced one by one.
+            // Wide vectors take longer for few samples, and they would slow down the tracing of
+            // single samples afterwards.
             _ => SimdWidth::Baseline,
         };
         self.sampling.place(vectors, [x, y], samples, some, points);
-        // Cancellation is checked before every sample, because each may take long.
+        // Cancellation is checked before every sample, because a single one may take long.
         let wanted = points.iter().take_while(|_| self.go_on().is_continue());
         match trace {
             Trace::Batched(..) => samples::count(
@@ -218,12 +224,12 @@ impl<P: film::Pixel> Renderer<'_, P> {
 /// How the samples of a pixel are traced.
 #[derive(Clone, Copy)]
 enum Trace<'a> {
-    /// Many at a time, against the objects that may be seen in the pixel. If the pixel shows a
-    /// checkerboard alone and its squares are known, they are the second value.
+    /// Many samples at a time, against the objects that may be seen in the pixel. The second value
+    /// describes the squares of a checkerboard, if the pixel shows nothing else and they are known.
     Batched(&'a [VisibilityCandidate], Option<&'a CheckerPixel>),
-    /// One by one, against the objects that may be seen in the pixel.
+    /// One sample at a time, against the objects that may be seen in the pixel.
     AmongCandidates(&'a [VisibilityCandidate]),
-    /// One by one, against the given nearby objects. `None` means the objects that the quadtree
-    /// lists for the sample's ray.
+    /// One sample at a time, against these objects near the pixel. `None` stands for the objects
+    /// that the quadtree of the picture lists for each sample's ray.
     AmongNearby(Option<&'a [BoundedObject]>),
 }

@@ -1,8 +1,8 @@
 //! Renders a part of the picture with samples.
 //!
-//! In: the world, the positions of the samples, and the part. Out: the means of the part's pixels,
-//! as light or as bytes. The part is divided into tiles for the threads; `renderer` renders each
-//! tile.
+//! In: the prepared scene, the positions of the samples, and the part. Out: the means of the part's
+//! pixels, as light or as bytes. The part is divided into tiles for the threads, and `renderer`
+//! renders each tile.
 
 use std::sync::Mutex;
 
@@ -18,11 +18,12 @@ use crate::{
     tracer::{GRID, Quartering, Scratch, World},
 };
 
-/// Approximate number of samples in a tile, the work that a thread takes at a time. They take a few
-/// milliseconds, so that no thread waits long for the others at the end.
+/// Approximate number of samples in a tile, which is what a thread renders at a time. They take a
+/// few milliseconds, so at the end no thread waits long for the others. With much smaller tiles,
+/// handing them out would take more time.
 const TILE_SAMPLES: u64 = 1 << 18;
 
-/// Renders a part of the picture with samples, of which the sampling must have some.
+/// Renders a part of the picture with samples. The sampler must not be the exact one.
 pub(super) fn render_as<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
@@ -60,13 +61,13 @@ pub(super) fn render_as<P: film::Pixel>(
     finished(film, control)
 }
 
-/// Returns the side of the tiles, in pixels: a power of two, which is smaller the more samples a
-/// pixel has.
+/// Returns the side of the tiles (squares that a thread renders at a time), in pixels. It is a
+/// power of two, and it is smaller the more samples a pixel has.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
-    // The quotient is at most 2^18, so that its root fits into 32 bits. The side is a power of two
-    // up to that of the squares with which quartering begins (`GRID`), so that no tile crosses a
-    // border of these squares.
+    // The quotient is at most 2^18, so its root fits into 32 bits. The side is a power of two up to
+    // `GRID`, the side of the squares that the tracer divides first. So no tile crosses a border of
+    // these squares.
     let side = (pixels.isqrt() as u32).clamp(1, GRID);
     1 << side.ilog2()
 }

@@ -1,8 +1,8 @@
-//! A picture that is rendered in slices, so that its caller can do something else in between.
+//! Renders a picture in slices, so that the caller can do something else in between.
 //!
 //! A slice is a square of the picture, clipped at the picture's edges. All slices have about the
-//! same number of samples. A pixel's mean does not depend on its slice. Rendering in slices needs
-//! no clock, which Rust does not have in a web worker.
+//! same number of samples. A pixel's mean does not depend on its slice. Slices are limited by
+//! samples instead of time, because Rust has no clock in a web worker.
 
 use super::{Control, RenderError, render_as_asked};
 use crate::{
@@ -12,35 +12,36 @@ use crate::{
     tracer::World,
 };
 
-/// Maximum number of samples in a slice of a picture: about 10 ms of work for two processors and a
-/// few objects. A pixel with more samples is a slice of its own, because pixels are not divided.
+/// Maximum number of samples in a slice, i.e. a square of the picture that is rendered at a time.
+/// They take about 10 ms on two processors if there are few objects. A pixel with more samples is a
+/// slice by itself, because pixels are not divided.
 pub const SLICE: u64 = 1 << 20;
 
-/// Work of an exactly computed pixel, as the number of samples that take as long. Measured on
-/// figure 9.9.
+/// Number of samples that take as long as one exactly computed pixel. Measured on figure 9.9, the
+/// picture of the assignment.
 const EXACT_PIXEL_WORK: u64 = 64;
 
-/// A picture of which some slices are rendered.
+/// A picture of which some slices, i.e. squares, are rendered.
 #[derive(Debug)]
 pub struct Slices<P> {
     sampling: Sampling,
-    /// The film, which occupies no memory until pixels are written to it.
+    /// The film. It takes no memory where no pixels are written yet.
     film: Film<P>,
-    /// Side of a slice, in pixels.
+    /// Side of a slice, i.e. of the square that is rendered at a time, in pixels.
     side: u32,
-    /// Number of slices that are already rendered. They are rendered row by row.
+    /// Number of slices that are rendered. Slices are rendered row by row.
     done: u32,
 }
 
 impl<P: Pixel> Slices<P> {
-    /// Prepares a picture of the given width and height, without rendering anything.
+    /// Prepares a picture of the given width and height. Nothing is rendered yet.
     ///
     /// # Errors
     ///
-    /// There is not enough memory for the picture.
+    /// Fails if there is not enough memory for the picture.
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
-        // The side of a slice is a power of two. A slice therefore consists of whole squares with
-        // which the tracer's quartering begins, or lies within one of them.
+        // The side of a slice is a power of two, like the side of the squares that the tracer
+        // divides first. So a slice consists of whole squares, or lies within one of them.
         let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
             film: Film::new(width, height)?,
@@ -50,7 +51,7 @@ impl<P: Pixel> Slices<P> {
         })
     }
 
-    /// Returns the film, which is black where nothing is rendered yet.
+    /// Returns the film. It is black where nothing is rendered yet.
     pub fn film(&self) -> &Film<P> {
         &self.film
     }
@@ -79,7 +80,7 @@ impl<P: Pixel> Slices<P> {
     ///
     /// # Errors
     ///
-    /// There is not enough memory, or no thread can be started.
+    /// Fails if there is not enough memory, or no thread can be started.
     pub fn advance(&mut self, world: &World) -> Result<bool, RenderError> {
         if let Some(part) = self.next() {
             let slice = render_as_asked(world, &self.sampling, part, &Control::default())?;
@@ -90,7 +91,8 @@ impl<P: Pixel> Slices<P> {
     }
 }
 
-/// Returns the work of one pixel, as the number of samples that take as long. It is at least 1.
+/// Returns the work of rendering one pixel, as the number of samples that take as long. It is at
+/// least 1.
 pub fn pixel_work(sampling: &Sampling) -> u64 {
     if sampling.is_exact() {
         return EXACT_PIXEL_WORK;

@@ -1,4 +1,5 @@
-//! Counters of one thread: how often each colour was seen in a pixel, and means computed from them.
+//! Counts how often each colour was seen in a pixel, and computes the pixel's mean from these
+//! counts.
 
 use crate::{
     film::{self, Encoder, mean},
@@ -6,11 +7,11 @@ use crate::{
     tracer::{BoundedObject, PreparedPixel},
 };
 
-/// Counters and buffers of one thread.
+/// Counts and buffers of one thread, reused for all of its pixels.
 pub(super) struct PixelTally<P> {
     pub(super) counts: Counts,
     pub(super) means: Means<P>,
-    /// Buffer for the prepared pixel.
+    /// Buffer for the data of a pixel that is prepared for tracing many samples at a time.
     pub(super) pixel: PreparedPixel,
     /// Buffer for sample points.
     pub(super) points: Points,
@@ -30,12 +31,12 @@ impl<P> PixelTally<P> {
     }
 }
 
-/// How often each colour was seen in a pixel.
+/// Number of samples that saw each colour, in one pixel.
 pub(super) struct Counts {
-    /// Counts by slot of the palette.
+    /// The number of samples for each slot (index) of the palette of colours.
     of: Vec<u64>,
-    /// Slots whose count is not 0, in any order. Only these counts are reset, because a palette may
-    /// be long and a pixel sees few of its colours.
+    /// Palette slots (indices of colours) whose count is not 0, in any order. Only these counts are
+    /// reset afterwards, because a palette may be long, while a pixel shows few of its colours.
     seen: Vec<usize>,
 }
 
@@ -54,7 +55,8 @@ impl Counts {
         self.of[slot] += count;
     }
 
-    /// Returns the slots that were seen, in ascending order, and their counts.
+    /// Returns the palette slots (indices of colours) that were seen, in ascending order, with
+    /// their counts.
     fn seen(&mut self) -> impl Iterator<Item = (usize, u64)> {
         self.seen.sort_unstable();
         self.seen.iter().map(|&slot| (slot, self.of[slot]))
@@ -67,12 +69,13 @@ impl Counts {
     }
 }
 
-/// A cache of means of two colours, indexed by a hash of their slots and counts. Most pixels with
-/// more than one colour have two, and most of these have the same counts as an earlier pixel.
+/// A cache of means of two colours. Most pixels that show more than one colour show two, and mostly
+/// an earlier pixel had the same counts of them. An entry is found by a hash of the two colours'
+/// palette slots (indices) and counts.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
-/// Number of means of two colours that are cached. They take 28 KiB and fit into the first-level
-/// cache.
+/// Number of means of two colours that are cached. They take 28 KiB, so they fit into the
+/// first-level cache of a processor.
 const CACHED_MEANS: usize = 512;
 
 impl<P: film::Pixel> Means<P> {
@@ -105,12 +108,12 @@ impl<P: film::Pixel> Means<P> {
 
     fn of_two(&mut self, seen: [(usize, u64); 2], colors: &[[f64; 3]], encoder: &Encoder) -> P {
         if self.0.is_empty() {
-            // The counts in `seen` are not 0, so that `seen` never equals an empty entry of the
-            // cache.
+            // Counts in `seen` are not 0, so `seen` never equals an empty entry of the cache.
             self.0.resize(CACHED_MEANS, ([(0, 0); 2], P::default()));
         }
         let [(a, count), (b, other)] = seen;
-        // Any hash is suitable. Odd prime factors distribute counts and slots over the entries.
+        // Any hash is suitable. Odd prime factors distribute counts and palette slots over the
+        // cache.
         let place = (count as usize)
             .wrapping_add((other as usize).wrapping_mul(7))
             .wrapping_add(a * 67 + b * 131)

@@ -1,8 +1,8 @@
-//! A tile while it is rendered: its pixels so far, and the number of samples of each.
+//! A tile (a rectangle of pixels) while it is rendered.
 
 use crate::{area::Area, film::Pixel};
 
-/// The pixels of a tile, row by row.
+/// A rectangle of pixels, which a thread renders. Pixels are stored row by row.
 pub(super) struct Tile<P> {
     pub(super) area: Area,
     pub(super) samples: SampleCounts,
@@ -11,9 +11,9 @@ pub(super) struct Tile<P> {
     pub(super) unreported: u64,
 }
 
-/// Numbers of samples of the pixels of a tile.
+/// Number of samples in each pixel of a rectangle.
 pub(super) enum SampleCounts {
-    /// The same number for all pixels.
+    /// The same number in all pixels.
     Same(u64),
     /// A number for each pixel, row by row.
     Each(Vec<u64>),
@@ -29,8 +29,8 @@ impl SampleCounts {
 }
 
 impl<P: Pixel> Tile<P> {
-    /// Sets the pixels of a part in which all samples see the colour `color`, except pixels without
-    /// samples. Adds the part's number of samples to `unreported`.
+    /// Sets the pixels of a part of the tile in which all samples see the colour `color`. Pixels
+    /// without samples are left as they are. Adds the number of samples to `unreported`.
     pub(super) fn fill(&mut self, part: Area, color: P) {
         for y in part.y..part.y + part.height {
             let start = self.area.index(part.x, y);

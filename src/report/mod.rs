@@ -1,5 +1,5 @@
-//! Reports on Pinhole itself: how accurate its decisions and numbers are, and how fast its sampling
-//! methods reach an error.
+//! Reports on Pinhole itself: how accurate its arithmetic is, and how fast the errors of its
+//! sampling methods fall.
 
 pub mod numerics;
 pub mod speed;

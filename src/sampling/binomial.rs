@@ -2,18 +2,21 @@
 //! a fraction.
 //!
 //! A trial succeeds if a random number is below p. The first binary digit in which the two numbers
-//! differ decides this. At each digit, about half of the undecided trials are decided, so that the
-//! only number to draw is the number of heads of as many coins as there are undecided trials. For
-//! few coins, random bits are counted. For many, the draw is transformed rejection (BTRS of Hörmann
-//! 1993, "The generation of binomial random variates"), exact except for the rounding of `f64`.
+//! differ decides this. Each digit decides about half of the trials that are still undecided, and
+//! only the number of decided trials has to be drawn. It is the number of heads of fair coins, one
+//! coin for each undecided trial. For few coins, random bits are counted. For many, the number is
+//! drawn by transformed rejection (BTRS of Hörmann 1993, "The generation of binomial random
+//! variates"), exact except for the rounding of `f64`.
 //!
-//! The binomial distribution of `rand_distr` uses the platform's `powf` and `ln`, whose last bits
-//! differ between systems.
+//! The binomial distribution of `rand_distr` is not used: it calls the platform's `powf` and `ln`,
+//! whose last bits differ between systems.
 
 use rand::{Rng, RngExt};
 
 /// Maximum number of fair coins whose heads are drawn by counting random bits, 64 per random
-/// number. Above it, the number of heads is drawn by transformed rejection.
+/// number. The heads of more coins are drawn by transformed rejection. With a much larger maximum,
+/// counting would be slow, because its time grows with the number of coins. With a much smaller
+/// one, Stirling's formula, which the rejection uses, would be inaccurate.
 const MAX_COUNTED: u64 = 512;
 
 /// Draws the number of successes in `n` trials, each with the success probability `part`/`whole`.
@@ -38,7 +41,6 @@ pub fn draw(rng: &mut impl Rng, n: u64, part: u64, whole: u64) -> u64 {
     successes
 }
 
-/// Draws the number of heads of `n` fair coins.
 fn heads(rng: &mut impl Rng, n: u64) -> u64 {
     if n > MAX_COUNTED {
         return reject(rng, n as f64) as u64;
@@ -49,8 +51,8 @@ fn heads(rng: &mut impl Rng, n: u64) -> u64 {
         .sum()
 }
 
-/// Draws the number of heads of `n` fair coins, for large `n`, by transformed rejection (BTRS) with
-/// p = 1/2.
+/// Draws the number of heads of `n` fair coins by transformed rejection (the method BTRS of Hörmann
+/// 1993). `n` must be large.
 fn reject(rng: &mut impl Rng, n: f64) -> f64 {
     let deviation = n.sqrt() / 2.0;
     let b = 1.15 + 2.53 * deviation;
@@ -62,8 +64,8 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
         let (u, v) = (rng.random::<f64>() - 0.5, rng.random::<f64>());
         let us = 0.5 - u.abs();
         let k = ((2.0 * a / us + b) * u + n / 2.0 + 0.5).floor();
-        // Numbers of heads farther than n/4 from n/2 are excluded. They occur less than once in
-        // 10^27 draws (Hoeffding 1963).
+        // Results farther than n/4 from n/2 are rejected. They would occur less than once in 10^27
+        // draws (Hoeffding 1963).
         if (k - n / 2.0).abs() > n / 4.0 {
             continue;
         }
@@ -78,14 +80,15 @@ fn reject(rng: &mut impl Rng, n: f64) -> f64 {
 }
 
 /// Returns the logarithm of the probability of `k` heads in `n` tosses, up to a constant, for `k`
-/// within n/4 of n/2. It uses Stirling's formula for the factorials with a term for its error
-/// (Loader 2000, "Fast and accurate computation of binomial probabilities"). No term is much larger
-/// than the result, so that nothing cancels even for n = 2^53.
+/// within n/4 of n/2. It uses Stirling's formula for the factorials, with a term for the error of
+/// the formula (Loader 2000, "Fast and accurate computation of binomial probabilities"). No term is
+/// much larger than the result, so no digits are lost by cancellation even for n = 2^53.
 fn ln_weight(k: f64, n: f64) -> f64 {
     let stirling_error = |n: f64| (1.0 / 12.0 - 1.0 / 360.0 / (n * n)) / n;
     let ratio = (2.0 * k - n) / n;
     let square = ratio * ratio;
-    // For the ratio r, |r| ≤ 1/2, this is the series of (1 + r) ln(1 + r) + (1 − r) ln(1 − r).
+    // Sums the power series of (1 + r) ln(1 + r) + (1 − r) ln(1 − r), where r is `ratio`, with |r|
+    // ≤ 1/2.
     let (mut sum, mut power) = (0.0, square);
     for double in (2..).step_by(2) {
         let next = sum + 2.0 * power / f64::from(double * (double - 1));
@@ -101,8 +104,9 @@ fn ln_weight(k: f64, n: f64) -> f64 {
 mod tests {
     use super::{super::rng::Key, *};
 
-    /// Checks that the mean and the variance of 20,000 draws of the number of successes in `n`
-    /// trials are within 4 standard errors. A trial succeeds with the probability `part`/`whole`.
+    /// Checks 20,000 draws of the number of successes in `n` trials, each with the probability
+    /// `part`/`whole`: their mean and variance must be within 4 standard errors of the exact
+    /// values.
     fn check(n: u64, part: u64, whole: u64) {
         const DRAWS: u64 = 20_000;
         let p = part as f64 / whole as f64;

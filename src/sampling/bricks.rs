@@ -1,29 +1,30 @@
-//! A pixel divided into n cells of equal area, for every n: rows of cells like bricks.
+//! Divides a pixel into n cells of equal area, for every n: rows of cells, like bricks.
 //!
-//! Row k has n_k cells of width 1/n_k and of height n_k/n, so that every cell has the area 1/n. The
-//! number of rows m is the whole number nearest to √n, or the nearest odd one if n is odd; n_k is
-//! ⌊n/m⌋ or ⌈n/m⌉. The longer rows are spread evenly, and the row lengths are symmetric about the
-//! middle: 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3. (For an odd n, an even number of
-//! rows cannot be symmetric.)
+//! The cells of row k number n_k. Each has the width 1/n_k and the height n_k/n, so that its area
+//! is 1/n. The number m of rows is the whole number nearest to √n, or the nearest odd one if n is
+//! odd, because an odd n cannot be divided symmetrically into an even number of rows. n_k is ⌊n/m⌋
+//! or ⌈n/m⌉. The longer rows are spread evenly, and the row lengths are symmetric about the middle:
+//! 16 = 4 + 4 + 4 + 4, 7 = 2 + 3 + 2, 14 = 3 + 4 + 4 + 3.
 
 use std::ops::Range;
 
-/// The division of a pixel into n cells.
+/// A division of a pixel into n cells of equal area, which are arranged in rows like bricks.
 #[derive(Clone, Copy, Debug)]
 pub struct Bricks {
     n: u64,
-    /// Number m of rows of cells.
+    /// Number of rows of cells.
     rows: u64,
-    /// Length of a short row: ⌊n/m⌋ cells.
+    /// Number of cells in a short row: n divided by the number of rows, rounded down.
     short: u64,
-    /// Number of rows in the upper half that have one cell more than a short row.
+    /// Number of rows in the upper half of the pixel that have one cell more than a short row.
     longer: u64,
 }
 
-/// One row of cells.
+/// A row of the cells into which a pixel is divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BrickRow {
-    /// Number of cells in the rows above. The row begins at the height `first`/n.
+    /// Number of cells in all rows above. In a pixel of n cells, the row begins at the height
+    /// `first`/n.
     pub first: u64,
     /// Number of cells in the row.
     pub cells: u64,
@@ -34,10 +35,10 @@ impl Bricks {
     pub fn new(n: u64) -> Self {
         let root = n.isqrt();
         let rows = if n % 2 == 1 {
-            // `rows` is the odd one of ⌊√n⌋ and ⌊√n⌋ + 1, which is within 1 of √n.
+            // The odd one of ⌊√n⌋ and ⌊√n⌋ + 1 is the odd number nearest to √n.
             root | 1
         } else if n - root * root > root {
-            // `n` exceeds root² + root + 1/4, so that √n > root + 1/2 and is nearer to root + 1.
+            // `n` is more than (root + 1/2)², so √n is nearer to root + 1 than to root.
             root + 1
         } else {
             root
@@ -60,8 +61,8 @@ impl Bricks {
         [self.short, self.short + 1]
     }
 
-    /// Returns each row that contains some of the cells with the indices in `cells`, with the range
-    /// of their columns in the row. Cells are counted row by row.
+    /// Iterates over the rows that contain the cells with the indices `cells`. Each row comes with
+    /// the range of columns in which these cells lie. Cells are counted row by row.
     pub fn parts(&self, cells: Range<u64>) -> impl Iterator<Item = (BrickRow, Range<u64>)> {
         let mut next = cells.start;
         let mut k = self.row_of_cell(next.min(self.n - 1));
@@ -89,7 +90,7 @@ impl Bricks {
     /// Returns the index of the row that contains the cell with the index `i`. Cells are counted
     /// row by row.
     fn row_of_cell(&self, i: u64) -> u64 {
-        // The estimate `k` of the row is wrong by about one row, and is corrected step by step.
+        // The estimate may be wrong by about one row, and is corrected.
         let mut k = (u128::from(i) * u128::from(self.rows) / u128::from(self.n)) as u64;
         while self.cells_above(k) > i {
             k -= 1;

@@ -1,27 +1,28 @@
-//! `halton`: the points (φ₂(i), φ₃(i)), shifted per pixel (Halton 1960; Cranley and Patterson 1976
-//! for the shift).
+//! `halton`: the points (φ₂(i), φ₃(i)) of Halton (1960), randomly shifted in each pixel (Cranley
+//! and Patterson 1976).
 //!
-//! φ_b is the radical inverse: the digits of i in base b, mirrored at the radix point. The sequence
-//! begins at i = 0. The shift wraps around at the pixel's edge. Fractions are 64-bit integers,
-//! rounded up. Each therefore lies in the elementary interval that contains the true value, even if
-//! the true value is the start of the interval.
+//! φ_b(i), the radical inverse, mirrors the digits of i in base b at the radix point. The sequence
+//! begins at i = 0. A shifted point that leaves the pixel enters it again on the other side.
+//! Coordinates are 64-bit fractions, rounded up, so that none falls below the start of the interval
+//! that its leading digits determine.
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Maximum number of radical inverses of the Halton sequence that are stored per base. If a pixel
-/// has more points, the radical inverses are computed for each point.
+/// Maximum number of points whose radical inverses (mirrored digits) are stored. For pixels with
+/// more points, they are computed point by point, which takes longer. The stored numbers take 1
+/// MiB; a larger maximum would need more memory.
 const MAX_STORED: u64 = 1 << 16;
 
-/// The Halton sequence, with its first radical inverses in base 2 and in base 3.
+/// The Halton sequence, with stored radical inverses (mirrored digits) in base 2 and in base 3.
 #[derive(Debug)]
 pub struct Halton {
     inverses: [Vec<u64>; 2],
 }
 
 impl Halton {
-    /// Prepares the first `n` points of the sequence.
+    /// Prepares the first `n` points of the Halton sequence.
     pub fn new(n: u64) -> Self {
         Self {
             inverses: [u64::reverse_bits, radical_inverse_3]
@@ -29,8 +30,8 @@ impl Halton {
         }
     }
 
-    /// Writes to `out` the offsets from the pixel's centre of the points whose indices are in
-    /// `range`, after a random shift that `key` determines.
+    /// Places the points whose indices are in `range`, after a random shift that `key` determines.
+    /// Writes their offsets from the pixel's centre to the two lists of coordinates in `out`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let inverses: [fn(u64) -> u64; 2] = [u64::reverse_bits, radical_inverse_3];
@@ -52,17 +53,17 @@ impl Halton {
     }
 }
 
-/// Returns φ₃(i), the radical inverse in base 3, in units of 2^−64, rounded up. Requires i < 3^40.
-/// The mirrored digits are collected as a whole number, which is divided once.
+/// Returns the number i mirrored in base 3: its digits in reverse order behind the radix point
+/// (φ₃(i), the radical inverse). The result is in units of 2^−64 and rounded up. Requires i < 3^40.
 pub fn radical_inverse_3(i: u64) -> u64 {
+    // The mirrored digits are collected as a whole number, which is divided once at the end.
     let (mut rest, mut mirrored, mut power) = (i, 0_u64, 1_u64);
     while rest > 0 {
         mirrored = 3 * mirrored + rest % 3;
         power *= 3;
         rest /= 3;
     }
-    // The result fits into 64 bits, because the greatest value, 1 − 3^−40, is more than 2^−64 below
-    // 1.
+    // The result fits into 64 bits, because the greatest value, 1 − 3^−40, is less than 1 − 2^−64.
     (u128::from(mirrored) << 64).div_ceil(u128::from(power)) as u64
 }
 

@@ -1,9 +1,10 @@
-//! `hammersley`: the points (i/n, φ₂(i)), shifted per pixel (Hammersley 1960; Cranley and Patterson
-//! 1976 for the shift).
+//! `hammersley`: the points (i/n, φ₂(i)) of Hammersley (1960), randomly shifted in each pixel
+//! (Cranley and Patterson 1976).
 //!
-//! φ₂ is the radical inverse in base 2. The shift wraps around at the pixel's edge. In x, it is a
-//! whole number of strata plus a place within a stratum, so that each of the n columns still
-//! contains exactly one point. In y, it is arbitrary.
+//! φ₂(i) mirrors the binary digits of i at the binary point. A shifted point that leaves the pixel
+//! enters it again on the other side. The shift in y is arbitrary. In x, it moves points by whole
+//! columns of width 1/n and then places them within their columns, so that each of the n columns
+//! still contains exactly one point.
 
 use std::ops::Range;
 
@@ -12,13 +13,13 @@ use super::{
     rng::{Key, scale},
 };
 
-/// The n columns of a Hammersley point set, with stored points for small n.
+/// A Hammersley set of n points, one in each of n columns. Small sets are stored.
 #[derive(Debug)]
 pub struct Hammersley {
     n: u64,
     columns: Strata,
-    /// The n columns, twice in a row, so that n successive columns can be read from any column on;
-    /// empty if there are too many to be stored.
+    /// The n columns, stored twice in a row, so that n successive columns can be read from any
+    /// column on. Empty if there are too many to be stored.
     turned: Vec<Stratum>,
     /// The coordinate y of each point before the shift, in units of 2^−64; empty if there are too
     /// many to be stored.
@@ -26,7 +27,7 @@ pub struct Hammersley {
 }
 
 impl Hammersley {
-    /// Prepares a set of `n` points.
+    /// Prepares a Hammersley set of `n` points.
     pub fn new(n: u64) -> Self {
         let columns = Strata::new(n);
         let stored = (0..n).take_while(|_| columns.stored().is_some());
@@ -38,8 +39,8 @@ impl Hammersley {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
-    /// and `y`, after a random shift that `key` determines.
+    /// Places the points whose indices are in `range`, after a random shift that `key` determines.
+    /// Writes their offsets from the pixel's centre to the lists `x` and `y`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [columns, within, shift] = [0, 1, 2].map(|index| key.bits(index));
@@ -55,7 +56,8 @@ impl Hammersley {
         }
         let least = self.columns.least();
         let place = scale(within, least);
-        // In a column of `least` + 1 places, the chosen place is `place` or the next one.
+        // A column has `least` or `least` + 1 possible places. `more` is what has to be added to
+        // `place` in a column with one more: 0 or 1.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

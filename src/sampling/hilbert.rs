@@ -1,14 +1,15 @@
-//! A fixed order of a picture's pixels that keeps neighbours together: a clipped Hilbert curve.
+//! Orders the pixels of a picture along a Hilbert curve, which keeps neighbours together.
 //!
 //! The curve fills the smallest square that contains the picture and whose side is a power of two
-//! (Hilbert 1891). A pixel's rank is the number of the picture's pixels before it on the curve,
-//! summed quadrant by quadrant. Every aligned square whose side is a power of two is one run of the
-//! order. Whatever is distributed evenly along the curve is therefore even in both directions.
+//! (Hilbert 1891). A pixel's rank is the number of the picture's pixels that come before it on the
+//! curve. It is summed quadrant by quadrant. Pixels of a square whose side is a power of two, and
+//! whose place is a multiple of its side, follow each other without a gap. So whatever is
+//! distributed evenly along the curve is even in both directions of the picture.
 
 use crate::area::Area;
 
-/// Returns the rank of pixel (x, y) along the Hilbert curve. The picture's sides are at most 2^20
-/// pixels.
+/// Returns the rank of the pixel (x, y): the number of the picture's pixels that come before it on
+/// the Hilbert curve. The picture's sides are at most 2^20 pixels.
 pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
     let mut rank = 0;
     let mut side = picture.width.max(picture.height).next_power_of_two();
@@ -21,7 +22,8 @@ pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
         side /= 2;
         let mut step = 0;
         loop {
-            // An upright curve visits the four quadrants in this order: down, right, up.
+            // In its basic orientation, the curve visits the four quadrants in this order: it
+            // begins at the top left, and goes down, right and up.
             let (right, lower) = (step >= 2, step == 1 || step == 2);
             let (right, lower) = if mirrored {
                 (lower, right)
@@ -35,8 +37,8 @@ pub fn rank(picture: Area, x: u32, y: u32) -> u64 {
                 (left, top) = (quadrant_left, quadrant_top);
                 break;
             }
-            // All pixels of the quadrant come before the pixel. Counts those that belong to the
-            // picture.
+            // All pixels of this quadrant come before the pixel (x, y). Those inside the picture
+            // are counted.
             let columns = picture.width.saturating_sub(quadrant_left).min(side);
             let rows = picture.height.saturating_sub(quadrant_top).min(side);
             rank += u64::from(columns) * u64::from(rows);

@@ -1,5 +1,5 @@
 //! `jittered`: one random point in each of n cells of equal area (Cook, Porter and Carpenter 1984,
-//! "Distributed ray tracing"). The cells are [`Bricks`], so that every n is possible.
+//! "Distributed ray tracing"). The cells are [`Bricks`], which exist for every n.
 
 use std::ops::Range;
 
@@ -9,19 +9,20 @@ use super::{
     rng::{Key, scale},
 };
 
-/// Cells of equal area in a pixel, and the strata along their sides.
+/// Cells of equal area in a pixel, and the equal intervals into which its sides are divided.
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,
-    /// Divisions of the pixel's width into columns: those of a short row of cells, and those of a
-    /// longer row.
+    /// Divisions of the pixel's width into equal columns, for a short row of cells and for a longer
+    /// row.
     columns: [Strata; 2],
-    /// Division of the pixel's height into n parts; a row of k cells is k parts tall.
+    /// Division of the pixel's height into n equal parts. A row of k cells is k of these parts
+    /// tall.
     rows: Strata,
 }
 
 impl Jittered {
-    /// Prepares the cells for `n` points.
+    /// Divides a pixel into cells for `n` points.
     pub fn new(n: u64) -> Self {
         let bricks = Bricks::new(n);
         Self {
@@ -31,8 +32,8 @@ impl Jittered {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
-    /// and `y`. Points are counted row by row.
+    /// Places the points whose indices are in `range`; points are counted row by row. Writes their
+    /// offsets from the pixel's centre to the lists `x` and `y`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let [short, _] = self.bricks.lengths();

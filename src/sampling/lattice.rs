@@ -1,73 +1,78 @@
-//! The possible values of a random offset, and the strata that they are divided into.
+//! The possible values of a random offset from a pixel's centre, and equal intervals of them
+//! (strata).
 //!
-//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each is an `f64`, none
-//! lies on a pixel's edge or on its middle, and they are symmetric about 0, so that a mean over all
-//! of them is exactly that of the pixel. An offset is represented by its place: its index k among
-//! all offsets, from 0 to 2^53 − 1.
+//! Random offsets are the 2^53 odd multiples of 2^−54 between −1/2 and 1/2. Each is an `f64`, and
+//! none lies on a pixel's edge or on its centre line. They are symmetric about 0, so that a mean
+//! over all of them is exactly that of the pixel. An offset is represented by its place, i.e. by
+//! its index among all offsets, from 0 to 2^53 − 1.
 
 use super::rng::{scale, scale_by_parts};
 
-/// Number of possible random offsets of a sample from its pixel's centre along one axis.
+/// Number of possible random offsets of a sample from its pixel's centre, along one axis. They are
+/// the odd multiples of 2^−54 between −1/2 and 1/2, each of which is an `f64`.
 const PLACES: u64 = 1 << 53;
 
-/// Maximum number of strata of a pixel's side that are stored; with more, each stratum is computed
-/// when it is used.
+/// Maximum number of strata (equal intervals of a pixel's side) that are stored. If there are more,
+/// each is computed when it is used, which takes longer. The stored numbers take 512 KiB; a larger
+/// maximum would need more memory.
 pub const MAX_STORED: u64 = 1 << 16;
 
-/// Returns the random offset with the index `place`, 0 to 2^53 − 1.
+/// Returns the random offset with the index `place`, from 0 to 2^53 − 1.
 #[inline(always)]
 pub fn offset(place: u64) -> f64 {
     debug_assert!(place < PLACES);
     const ONE: u64 = 1.0f64.to_bits();
     const FIRST: u64 = (0.5 / PLACES as f64).to_bits();
     const SECOND: u64 = (1.5 / PLACES as f64).to_bits();
-    // For k = 2i + b, the offset (2k + 1)/2^54 − 1/2 is the sum of i/2^52 − 1/2 and 1 or 3 units of
-    // 2^−54. The first summand is a difference of numbers from 1 to 2. All operations are exact,
-    // and all processors have them for vectors; few can convert vectors of whole numbers to `f64`.
+    // Let `place` be 2i + b, where b is 0 or 1. The offset, (2·`place` + 1)/2^54 − 1/2, is then the
+    // sum of i/2^52 − 1/2 and of 2b + 1 units of 2^−54. The first summand is computed as a
+    // difference of numbers between 1 and 2. All operations are exact, and every processor has
+    // vector instructions for them. Few can convert vectors of integers to `f64`.
     let even = f64::from_bits(ONE | place >> 1) - 1.5;
     let odd = (place & 1).wrapping_neg();
     even + f64::from_bits(FIRST ^ (odd & (FIRST ^ SECOND)))
 }
 
-/// Converts 64 random bits to an offset. The bits are a fraction of the pixel's side, counted from
-/// its left or top edge.
+/// Converts 64 random bits to an offset from the pixel's centre. The bits are a fraction of the
+/// pixel's side, measured from the left or top edge.
 #[inline(always)]
 pub fn offset_of_bits(bits: u64) -> f64 {
     offset(bits >> 11)
 }
 
-/// The places along a pixel's width or height, divided into n equal strata, 1 ≤ n ≤ 2^53. Each
-/// stratum contains at least one place. A place is the index of one of the 2^53 possible offsets.
+/// The possible offsets along a pixel's width or height, divided into n equal strata, 1 ≤ n ≤ 2^53.
+/// A place is the index of one of the 2^53 offsets; each stratum contains at least one.
 #[derive(Debug)]
 pub struct Strata {
     n: u64,
-    /// Minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
+    /// Minimum number of possible places in a stratum, ⌊2^53/n⌋; some strata have one more.
     least: u64,
-    /// All strata, and the one that would follow the last; empty if n exceeds [`MAX_STORED`].
+    /// All strata, followed by the stratum that would come next. Empty if n exceeds [`MAX_STORED`].
     stored: Vec<Stratum>,
 }
 
-/// One of n strata of places, packed into 64 bits: twice the stratum's first place, plus one if the
-/// stratum has one place more than ⌊2^53/n⌋.
+/// One of n strata, i.e. equal intervals of the 2^53 possible places along a pixel's side. A
+/// stratum has ⌊2^53/n⌋ places or one more. It is stored as one number: twice its first place, plus
+/// 1 if it has one place more.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stratum(u64);
 
 impl Stratum {
-    /// Returns the first place of the stratum.
+    /// Returns the first place in the stratum. A place is the index of a possible offset from the
+    /// pixel's centre.
     #[inline(always)]
     pub fn start(self) -> u64 {
         self.0 >> 1
     }
 
-    /// Returns the number of places that the stratum has beyond the ⌊2^53/n⌋ places of each of the
-    /// n strata: 1 or 0.
+    /// Returns the number of places that the stratum has beyond the minimum, ⌊2^53/n⌋: 0 or 1.
     #[inline(always)]
     pub fn more(self) -> u64 {
         self.0 & 1
     }
 
-    /// Chooses an offset in the stratum by 64 random bits. `least` is ⌊2^53/n⌋, the number of
-    /// places of a stratum without the one that it may have more.
+    /// Chooses an offset in the stratum by 64 random bits. `least` is the minimum number of places
+    /// in a stratum, ⌊2^53/n⌋.
     #[inline(always)]
     pub fn choose(self, least: u64, bits: u64) -> f64 {
         offset(self.start() + scale_by_parts(bits, least + self.more()))
@@ -75,7 +80,7 @@ impl Stratum {
 }
 
 impl Strata {
-    /// Divides the places into `n` strata, 1 ≤ n ≤ 2^53.
+    /// Divides the 2^53 places into `n` strata, 1 ≤ n ≤ 2^53.
     pub fn new(n: u64) -> Self {
         let stored = (0..=n).take_while(|_| n <= MAX_STORED);
         Self {
@@ -85,7 +90,7 @@ impl Strata {
         }
     }
 
-    /// Returns the stratum with index `i`.
+    /// Returns the stratum with the index `i`. Strata are the n equal intervals of a pixel's side.
     #[inline(always)]
     pub fn get(&self, i: u64) -> Stratum {
         match self.stored.get(i as usize) {
@@ -94,18 +99,19 @@ impl Strata {
         }
     }
 
-    /// Returns the n strata. Returns `None` if they are not stored.
+    /// Returns all n strata. Returns `None` if they are not stored.
     #[inline(always)]
     pub fn stored(&self) -> Option<&[Stratum]> {
         (!self.stored.is_empty()).then(|| &self.stored[..self.n as usize])
     }
 
-    /// Returns the minimum number of places of a stratum, ⌊2^53/n⌋; some strata have one more.
+    /// Returns the minimum number of places in a stratum, ⌊2^53/n⌋; some strata have one more.
     pub fn least(&self) -> u64 {
         self.least
     }
 
-    /// Chooses an offset in the stratum with index `i` by 64 random bits.
+    /// Chooses an offset in the stratum with the index `i` by 64 random bits. Strata are the n
+    /// equal intervals of a pixel's side.
     #[inline(always)]
     pub fn choose(&self, i: u64, bits: u64) -> f64 {
         let stratum = self.get(i);
@@ -113,15 +119,15 @@ impl Strata {
     }
 }
 
-/// Computes the stratum with the index `i` of the `n` strata of a pixel's side. The index `n` gives
-/// the one that would follow the last.
+/// Computes the stratum with the index `i` if a pixel's side has `n` strata. The index `n` gives
+/// the stratum that would follow the last.
 fn stratum(i: u64, n: u64) -> Stratum {
     let more = start(i + 1, n) - start(i, n) - PLACES / n;
     Stratum(2 * start(i, n) + more)
 }
 
-/// Returns the first place in the stratum with the index `i` of the `n` strata of a pixel's side:
-/// the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
+/// Returns the first place in the stratum with the index `i` if a pixel's side has `n` strata. It
+/// is the least k ≥ 0 with (2k + 1)/2^54 ≥ i/n.
 fn start(i: u64, n: u64) -> u64 {
     let (i, n) = (u128::from(i), u128::from(n));
     (i << 54).saturating_sub(n).div_ceil(2 * n) as u64
@@ -159,8 +165,9 @@ mod tests {
                     let place = places.start + scale(bits, places.end - places.start);
                     assert_eq!(strata.choose(i, bits), offset(place));
                 }
-                // (2k + 1)/2^54 lies in [i/n, (i + 1)/n) for the first and the last place k, but
-                // not for the places before and after them.
+                // The offset of place k lies at (2k + 1)/2^54 of the pixel's side. This is inside
+                // of the stratum from i/n to (i + 1)/n for its first and last place, but not for
+                // the places before and after.
                 let stratum = |k: u64| (u128::from(2 * k + 1) * u128::from(n)) >> 54;
                 assert_eq!(stratum(places.start), u128::from(i));
                 assert_eq!(stratum(places.end - 1), u128::from(i));

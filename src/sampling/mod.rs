@@ -1,13 +1,13 @@
 //! The positions of a picture's samples.
 //!
 //! In: the scene's [`Sampler`] and the picture's size. Out: how many samples each pixel has, and
-//! where in the pixel they lie. A sample is a pure function of the method, seed, pixel, index, the
-//! pixel's number of samples and the picture's size: no generator has a state that depends on
-//! earlier requests. Any part of a picture can therefore be rendered in any order, on any number of
-//! threads, with the same result.
+//! where in the pixel they lie. A sample is a pure function of the method, the seed, the pixel, its
+//! index and number of samples, and the picture's size. No random generator has a state that
+//! depends on earlier requests. Any part of a picture can therefore be rendered in any order, on
+//! any number of threads, with the same result.
 //!
-//! An offset is relative to the middle of its pixel, x to the right and y down, in [−1/2, 1/2).
-//! Each method has a file:
+//! A sample's position is an offset from the middle of its pixel, x to the right and y down, in
+//! [−1/2, 1/2). Each method has a file:
 //!
 //! | method | file | unbiased |
 //! | --- | --- | --- |
@@ -56,28 +56,27 @@ use crate::{
     scene::{Count, Method, Sampler},
 };
 
-/// The samples of a picture.
+/// Number and positions of the samples in each pixel of a picture.
 #[derive(Debug)]
 pub struct Sampling {
     method: Method,
-    /// Random key of the seed and the method, from which a pixel's own key is derived.
+    /// Random key that depends on the seed and the method. Each pixel's own key is derived from it.
     key: Key,
     total: u64,
     picture: Area,
-    /// Minimum number of samples of a pixel. Not used for `scatter`, where the number varies from
-    /// pixel to pixel.
+    /// Minimum number of samples in a pixel. Not used by the method `scatter`, whose number varies.
     count: u64,
-    /// Number of pixels that have one sample more than the minimum.
+    /// Number of pixels that have one sample more than the minimum number.
     extra: u64,
-    /// Patterns of `count` points and of `count` + 1 points in a pixel. For `scatter`, each pattern
-    /// serves for any number of points.
+    /// Two arrangements of points in a pixel: one of `count` points, and one of `count` + 1. The
+    /// method `scatter` can use either for any number of points.
     patterns: Box<[PointPattern; 2]>,
 }
 
 /// The arrangement of a known number of points in a pixel.
 #[derive(Debug)]
 enum PointPattern {
-    /// No points.
+    /// No points at all.
     Empty,
     Regular(Bricks),
     Random,
@@ -89,15 +88,15 @@ enum PointPattern {
 }
 
 impl Sampling {
-    /// Prepares the samples of a picture whose sides are at least 1 and at most 2^20 pixels. The
-    /// exact method has no samples.
+    /// Prepares the samples of a picture whose sides are 1 to 2^20 pixels. There are no samples if
+    /// the scene's method is `exact`.
     ///
     /// # Panics
     ///
-    /// The picture has no pixels.
+    /// Panics if the picture has no pixels.
     pub fn new(sampler: &Sampler, width: u32, height: u32) -> Self {
-        // The key contains the method's position in the enum `Method`. The positions must not
-        // change, because pictures depend on them.
+        // The key depends on the method's position in the enum `Method`. So the positions must not
+        // change, or else all pictures would.
         let key = Key::new(sampler.seed, sampler.method as u64);
         let pixels = u64::from(width) * u64::from(height);
         let total = match sampler.count {
@@ -118,12 +117,11 @@ impl Sampling {
         }
     }
 
-    /// Returns whether the picture is computed without samples.
+    /// Returns whether the picture is computed exactly, without samples.
     pub fn is_exact(&self) -> bool {
         self.method == Method::Exact
     }
 
-    /// Returns the area of the picture.
     pub(crate) fn picture(&self) -> Area {
         self.picture
     }
@@ -153,14 +151,13 @@ impl Sampling {
         self.counts(Area::pixel(x, y))[0]
     }
 
-    /// Returns the number of samples of each pixel of a part of the picture, row by row. This is
-    /// much faster than one call of [`count`](Self::count) per pixel.
+    /// Returns the number of samples of each pixel in a part of the picture, row by row. This is
+    /// much faster than calling [`count`](Self::count) for each pixel.
     pub fn counts(&self, part: Area) -> Vec<u64> {
         match self.same_count() {
             Some(count) => vec![count; part.pixels() as usize],
             None if self.method == Method::Scatter => {
-                // The key of this part is not that of any pixel, because no pixel has the number
-                // `u64::MAX`.
+                // The key must differ from those of all pixels. No pixel has the number `u64::MAX`.
                 let key = self.key.part(u64::MAX);
                 scatter::counts(key, self.total, self.picture, part)
             }
@@ -168,22 +165,24 @@ impl Sampling {
         }
     }
 
-    /// Returns the number of samples of a pixel if N samples are distributed evenly over P pixels.
-    /// For the pixel with rank i along the Hilbert curve, it is ⌊(i + 1)·N/P⌋ − ⌊i·N/P⌋.
+    /// Returns the number of samples of a pixel if all samples are distributed evenly over the
+    /// picture. With N samples and P pixels, the pixel at position i of the Hilbert curve has ⌊(i +
+    /// 1)·N/P⌋ − ⌊i·N/P⌋ samples.
     fn even_count(&self, x: u32, y: u32) -> u64 {
-        // With N = count·P + extra, only the extra samples vary between pixels. ⌊(i + 1)·extra/P⌋
-        // exceeds ⌊i·extra/P⌋ by one if the remainder of i·extra modulo P is at least P − extra.
+        // The picture has count·P + extra samples, P being its number of pixels, so only the extra
+        // ones vary between pixels. A pixel has one of these if i·extra modulo P is at least P −
+        // extra, where i is its position on the Hilbert curve.
         let (extra, pixels) = (u128::from(self.extra), u128::from(self.picture.pixels()));
         let remainder = u128::from(hilbert::rank(self.picture, x, y)) * extra % pixels;
         self.count + u64::from(remainder + extra >= pixels)
     }
 
-    /// Replaces the points in `out` by the offsets of a pixel's points whose indices are in
-    /// `range`. `count` must be the pixel's [`count`](Self::count), and `range` must end at `count`
-    /// or before.
+    /// Computes the positions of some of a pixel's samples, as offsets from the pixel's middle, and
+    /// replaces the content of `out` by them. `count` must be the pixel's [`count`](Self::count).
+    /// `range` has the samples' indices, and must not exceed `count`.
     ///
-    /// Each call prepares the data that a pixel's points share, so that a call should request a few
-    /// thousand points at once.
+    /// Each call first prepares data that all points of the pixel share. A caller should therefore
+    /// request a few thousand points at once, not single ones.
     pub fn place(
         &self,
         vectors: SimdWidth,
@@ -227,8 +226,8 @@ impl PointPattern {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to
-    /// `out`.
+    /// Places the points whose indices are in `range`. Writes their offsets from the pixel's centre
+    /// to the two lists of coordinates in `out`.
     #[inline(always)]
     fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         match self {

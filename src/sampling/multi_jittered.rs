@@ -1,13 +1,13 @@
 //! `multi_jittered`: one point in each cell of a grid and, at the same time, one in each of n
-//! columns and n rows (Kensler 2013, "Correlated multi-jittered sampling"). `n_rooks` is the grid
-//! of one row, for which only the second property remains (McKay, Beckman and Conover 1979, Latin
-//! hypercube; Shirley 1991 calls it n-rooks).
+//! columns and n rows (Kensler 2013, "Correlated multi-jittered sampling"). `n_rooks` is the
+//! special case of a grid with one row, so that only the second property remains (McKay, Beckman
+//! and Conover 1979, Latin hypercube; Shirley 1991 calls it n-rooks).
 //!
-//! n = a·b points have a grid of a columns and b rows, where b is the greatest divisor of n up to
-//! √n. The point of cell (i, j) lies in the fine column i·b + σ(j) and in the fine row j·a + τ(i),
-//! for two random permutations σ of the b rows and τ of the a columns. Both are the same for the
-//! whole pixel, which is the correlation that Kensler adds to Chiu, Shirley and Wang 1994. A prime
-//! n has b = 1: the Latin hypercube.
+//! For n = a·b points, the grid has a columns and b rows, where b is the greatest divisor of n up
+//! to √n. The point of the cell in column i and row j lies in column i·b + σ(j) of the n columns,
+//! and in row j·a + τ(i) of the n rows. Here σ is a random permutation of the b rows, and τ one of
+//! the a columns. Both are the same for the whole pixel. This is the correlation that Kensler adds
+//! to the method of Chiu, Shirley and Wang (1994). If n is prime, b is 1.
 
 use std::ops::Range;
 
@@ -17,28 +17,28 @@ use super::{
     shuffle::{EMPTY_BUFFER, Shuffle},
 };
 
-/// Number of a pixel's points that are placed at a time. Most pixels have no more points. A larger
-/// number would take time, because the buffer is cleared for every pixel.
+/// Number of points that are placed at a time. Most pixels have no more points. A larger number
+/// would take longer, because a buffer of this length is cleared for every pixel.
 const BATCH: usize = 16;
 
-/// A grid of cells, and the fine strata along its sides.
+/// A grid of cells in a pixel, and the division of the pixel's sides into n intervals.
 #[derive(Debug)]
 pub struct MultiJittered {
     columns: u64,
     rows: u64,
-    /// Division of the pixel's width into n fine strata. The height is divided in the same way.
+    /// Division of the pixel's width into n equal intervals. The height is divided in the same way.
     strata: Strata,
 }
 
 impl MultiJittered {
-    /// Prepares the grid for `n` points. Its numbers of columns and rows differ as little as
+    /// Prepares a grid for `n` points. Its numbers of columns and rows are as nearly equal as
     /// possible.
     pub fn new(n: u64) -> Self {
         let rows = (1..=n.isqrt()).rev().find(|&b| n.is_multiple_of(b));
         Self::with_rows(n, rows.unwrap_or(1))
     }
 
-    /// Prepares the n-rooks grid for `n` points, which has one row.
+    /// Prepares a grid of one row for `n` points.
     pub fn n_rooks(n: u64) -> Self {
         Self::with_rows(n, 1)
     }
@@ -51,13 +51,13 @@ impl MultiJittered {
         }
     }
 
-    /// Returns the numbers of the grid's columns and rows.
+    /// Returns the number of columns and the number of rows of the grid.
     pub fn grid(&self) -> [u64; 2] {
         [self.columns, self.rows]
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to
-    /// `out`. Points are counted row by row.
+    /// Places the points whose indices are in `range`; points are counted row by row. Writes their
+    /// offsets from the pixel's centre to the two lists of coordinates in `out`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, out: [&mut [f64]; 2]) {
         let mut buffers = [EMPTY_BUFFER; 2];
@@ -94,7 +94,7 @@ impl MultiJittered {
         let mut index = 2 * start;
         let mut chosen = [[Stratum::default(); BATCH]; 2];
         for (x, y) in x.chunks_mut(BATCH).zip(y.chunks_mut(BATCH)) {
-            // First, the strata of each point are found one by one.
+            // First, the column and the row of each point are found one by one.
             let [columns, rows] = &mut chosen;
             let mut points = columns.iter_mut().zip(rows).take(x.len());
             while points.len() > 0 {
@@ -110,7 +110,8 @@ impl MultiJittered {
                     (i, j) = (0, j + 1);
                 }
             }
-            // Then a place is chosen in each stratum, in loops that the compiler can vectorize.
+            // Then a random place is chosen in each column and row, in loops that the compiler can
+            // vectorize.
             for (axis, (out, chosen)) in [(0, (x, &chosen[0])), (1, (y, &chosen[1]))] {
                 for (point, (out, stratum)) in (0..).zip(out.iter_mut().zip(chosen)) {
                     *out = stratum.choose(least, key.bits(index + axis + 2 * point));

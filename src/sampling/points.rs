@@ -2,12 +2,11 @@
 
 use glam::DVec2;
 
-/// Number of lanes of the widest SIMD vectors. Lists of sample points' coordinates are padded to a
-/// multiple of this.
+/// Number of `f64` in the widest SIMD vectors. Lists of coordinates are padded to a multiple of it.
 const LANES: usize = 8;
 
-/// Points of a pixel, as one list per coordinate, so that loops over the points are vectorized. One
-/// value is reused for all pixels, to keep its allocations.
+/// Sample points of a pixel, stored as one list per coordinate, so that loops over the points can
+/// be vectorized. One value is reused for all pixels, so that memory is allocated only once.
 #[derive(Clone, Debug, Default)]
 pub struct Points {
     len: usize,
@@ -26,21 +25,21 @@ impl Points {
         self.len == 0
     }
 
-    /// Returns all points in their order.
+    /// Iterates over all points.
     pub fn iter(&self) -> impl Iterator<Item = DVec2> {
         let [x, y] = [&self.x, &self.y].map(|lane| lane[..self.len].iter());
         x.zip(y).map(|(&x, &y)| DVec2::new(x, y))
     }
 
-    /// Returns the lists of coordinates. They are padded to a multiple of eight by arbitrary
-    /// coordinates within the pixel.
+    /// Returns the lists of x and y coordinates. They are padded to a multiple of eight numbers by
+    /// arbitrary coordinates within the pixel.
     pub fn lanes(&self) -> [&[f64]; 2] {
         let end = self.len.next_multiple_of(LANES);
         [&self.x[..end], &self.y[..end]]
     }
 
-    /// Sets the number of points to `count`. Returns the lists of coordinates, with arbitrary
-    /// content, for the caller to overwrite.
+    /// Sets the number of points. Returns the lists of x and y coordinates for the caller to
+    /// overwrite; their content is arbitrary.
     pub(super) fn resized(&mut self, count: usize) -> [&mut [f64]; 2] {
         self.len = count;
         let needed = count.next_multiple_of(LANES);

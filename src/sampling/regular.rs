@@ -1,15 +1,15 @@
-//! `regular`: the centres of equal cells.
+//! `regular`: the centres of cells of equal area.
 
 use std::ops::Range;
 
 use super::bricks::Bricks;
 
-/// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x` and
-/// `y`. The points are the centres of the cells of [`Bricks`], row by row, which are equal in all
-/// pixels.
+/// Places the points whose indices are in `range`. Writes their offsets from the pixel's centre to
+/// the lists `x` and `y`. The points are the centres of the cells of [`Bricks`], row by row, and
+/// are the same in all pixels.
 ///
-/// Point i of a row of n points has x = (2i + 1 − n)/(2n), rounded once. Its mirror image has
-/// exactly −x.
+/// Point i in a row of n points has x = (2i + 1 − n)/(2n), rounded once. Its mirror image in the
+/// row has exactly −x.
 #[inline(always)]
 pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
     let mut points = x.iter_mut().zip(y);
@@ -24,6 +24,6 @@ pub fn place(bricks: &Bricks, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
 /// Divides a pixel's side into `n` equal parts, and joins `parts` of them from the index `first`
 /// on. Returns the middle of the joined parts, as an offset from the pixel's centre.
 fn middle(first: u64, parts: u64, n: u64) -> f64 {
-    // The absolute value of the numerator is at most 2^53, so that only the division rounds.
+    // The numerator is at most 2^53, so it is exact, and only the division rounds.
     (2 * first as i64 + parts as i64 - n as i64) as f64 / (2 * n) as f64
 }

@@ -1,9 +1,10 @@
-//! Counter-based random numbers: the i-th number is a function of i and of its purpose.
+//! Counter-based random numbers: the i-th number is a function of i and of a key, without a state.
 //!
-//! A [`Key`] identifies a purpose (a seed, a method, a pixel, an axis), and `key.bits(i)` is the
-//! i-th 64-bit number for this purpose. This is SplitMix64 (Steele, Lea and Flood 2014, "Fast
-//! splittable pseudorandom number generators") with its state computed instead of stored.
-//! [`CounterRng`] returns the numbers of a key in turn, as a generator of the crate `rand`.
+//! A [`Key`] stands for one use of random numbers (a seed, a method, a pixel, an axis), and
+//! `key.bits(i)` is the i-th 64-bit number for this use. The generator is SplitMix64 (Steele, Lea
+//! and Flood 2014, "Fast splittable pseudorandom number generators") with its state computed
+//! instead of stored. [`CounterRng`] returns the numbers of a key in turn, as a generator of the
+//! crate `rand`.
 
 use std::{convert::Infallible, ops::Range};
 
@@ -13,27 +14,27 @@ use rand::{SeedableRng, TryRng};
 /// golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// Number of pairs of random numbers that [`Key::pairs`] generates for each call of its parameter
-/// `each`.
+/// Number of pairs of random numbers that [`Key::pairs`] generates at a time. Such a batch takes 1
+/// KiB, which fits into the first-level cache of any processor.
 const BATCH: usize = 64;
 
-/// The purpose of random numbers: a hash of a seed, a method, and parts such as a pixel or an axis.
+/// Key that selects a sequence of random numbers: a hash of a seed, a method, and further parts
+/// such as a pixel or an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Key(u64);
 
 impl Key {
-    /// Returns the key for a seed and the number of a sampling method.
+    /// Returns the key for a seed and a sampling method, given by its number.
     pub fn new(seed: u64, method: u64) -> Self {
         Self(mix(mix(seed.wrapping_add(GOLDEN)) ^ method))
     }
 
-    /// Returns the key of a part of this key's purpose, such as a pixel or an axis. Distinct parts
-    /// have distinct keys.
+    /// Derives a key for a part, such as a pixel or an axis. Different parts get different keys.
     pub fn part(self, part: u64) -> Self {
         Self(mix(self.0 ^ mix(part.wrapping_add(GOLDEN))))
     }
 
-    /// Returns the 64 random bits with the index `index`.
+    /// Returns the 64-bit random number with the index `index`.
     #[inline(always)]
     pub fn bits(self, index: u64) -> u64 {
         mix(self
@@ -41,9 +42,9 @@ impl Key {
             .wrapping_add(index.wrapping_add(1).wrapping_mul(GOLDEN)))
     }
 
-    /// Calls `each` with the random numbers for the points in `points`, batch by batch. The
-    /// arguments of `each` are the index of the batch's first point, and one pair of numbers for
-    /// each point. The pair of point i consists of the numbers with the indices 2i and 2i + 1.
+    /// Generates two random numbers for each point with an index in `points`, and passes them to
+    /// `each` in batches. `each` gets the index of the batch's first point, and a pair of numbers
+    /// for each point. Point i has the numbers with the indices 2i and 2i + 1.
     #[inline(always)]
     pub fn pairs(self, points: Range<u64>, mut each: impl FnMut(u64, &[[u64; 2]])) {
         let mut batch = [[0; 2]; BATCH];
@@ -62,7 +63,8 @@ impl Key {
     }
 }
 
-/// A random number generator whose state is a key and the index of the next number.
+/// A random number generator. Its state is a key, which selects a sequence of numbers, and the
+/// index of the next number.
 #[derive(Clone, Debug)]
 pub struct CounterRng {
     key: Key,
@@ -101,31 +103,33 @@ impl TryRng for CounterRng {
     }
 }
 
-/// Maps 64 random bits to a whole number from 0 to `n` − 1, as ⌊bits · n/2^64⌋. The relative error
-/// of a result's probability is below n/2^64 (Lemire 2019, without the rejection).
+/// Maps 64 random bits to a whole number from 0 to `n` − 1, as ⌊bits · n/2^64⌋. The probabilities
+/// of the results differ from 1/n by a relative error below n/2^64 (Lemire 2019, without the
+/// rejection).
 #[inline(always)]
 pub fn scale(bits: u64, n: u64) -> u64 {
     ((u128::from(bits) * u128::from(n)) >> 64) as u64
 }
 
-/// Computes [`scale`] for `n` ≤ 2^53, by operations that compilers can vectorize.
+/// Computes the same as [`scale`], for `n` ≤ 2^53, by operations that compilers can vectorize.
 ///
-/// If the product were split into halves of 32 bits as usual, compilers would recognise a 128-bit
-/// product, which vector instructions do not have. `n` is therefore split at bit 26.
+/// `n` is split at bit 26. If both factors were split into halves of 32 bits, compilers would
+/// recognise a 128-bit product, for which there are no vector instructions.
 #[inline(always)]
 pub fn scale_by_parts(bits: u64, n: u64) -> u64 {
     const LOW: u64 = u32::MAX as u64;
     let (high, low) = (bits >> 32, bits & LOW);
     let (n_high, n_low) = (n >> 26 & LOW, n & ((1 << 26) - 1));
     // The product `bits`·`n` is high·n_high·2^58 + high·n_low·2^32 + low·n_high·2^26 + low·n_low.
-    // None of the four products of parts exceeds 2^59. Each shift drops only bits below the unit of
-    // the next term.
+    // None of these four products of parts exceeds 2^59. Each shift drops only bits that cannot
+    // change the result.
     let rest = low * n_high + ((low * n_low) >> 26);
     let rest = high * n_low + (rest >> 6);
     (high * n_high + (rest >> 26)) >> 6
 }
 
-/// The finalizer of SplitMix64 (Stafford's "Mix13"): a bijection of the 64-bit numbers.
+/// Mixes the bits of a number: the last step of SplitMix64 (Stafford's "Mix13"). Different numbers
+/// have different results.
 #[inline(always)]
 fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -141,7 +145,7 @@ mod tests {
 
     #[test]
     fn the_numbers_are_those_of_splitmix64() {
-        // These numbers are from Vigna's splitmix64.c, with the seed 1234567.
+        // The expected numbers are those of Vigna's splitmix64.c with the seed 1234567.
         let mut rng = CounterRng::seed_from_u64(1_234_567);
         let expected = [
             6_457_827_717_110_365_317,

@@ -1,19 +1,21 @@
-//! `scatter`: points uniform over the whole picture, as a pure function of the pixel.
+//! `scatter`: points that are uniform over the whole picture, computed for each pixel alone.
 //!
-//! The numbers of N uniform points that fall into the pixels are multinomial, and a multinomial
-//! distribution splits: of n points in a rectangle, the number in one half is binomial. Given this
-//! number, the two halves are independent. N is therefore split down a fixed binary tree of
-//! rectangles of pixels, with one draw per node. A rectangle's longer side (its width, if both are
-//! equal) is cut at the greatest power of two below it. Nearly all cuts are therefore into equal
-//! halves, for which a draw only counts random bits. Within its pixel, a point is uniform.
+//! If n points are uniform in a rectangle, the number of points in one half is binomial. Given this
+//! number, the two halves are independent. So the number N of all points is divided down a fixed
+//! binary tree of rectangles of pixels, with one binomial draw per node. This gives the numbers of
+//! points in all pixels their multinomial distribution.
+//!
+//! The longer side of a rectangle is cut (the width, if both are equal), at the greatest power of
+//! two below its length. Nearly all cuts are therefore into equal halves, for which a draw only
+//! counts random bits. Within its pixel, a point is uniform.
 
 use super::{binomial, rng::Key};
 use crate::area::Area;
 
-/// A node of the tree: a rectangle of pixels, and the number of sample points in it.
+/// A node of a binary tree: a rectangle of pixels, and the number of sample points in it.
 #[derive(Clone, Copy)]
 struct Node {
-    /// Path from the root: a leading 1, then one bit per cut.
+    /// Path from the root of the tree: a leading 1, then one bit per cut.
     path: u64,
     area: Area,
     points: u64,

@@ -2,18 +2,22 @@
 
 use super::rng::Key;
 
-/// Maximum length of a permutation whose entries are stored; all such permutations are equally
-/// likely. Entries of a longer permutation are computed one by one, by a hash.
+/// Maximum length of a permutation whose entries are stored, in 8 KiB. Such a permutation is chosen
+/// with equal probability among all. For a longer one, each entry is computed by a hash when it is
+/// used. A larger maximum would need more memory. A smaller one would use the hash more often,
+/// which does not choose all permutations with equal probability.
 const MAX_STORED: u64 = 1 << 12;
 
-/// Maximum length of a permutation that is stored in a [`Buffer`], without an allocation.
+/// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. A
+/// smaller one would allocate memory more often. A larger one would take longer to clear for every
+/// pixel.
 const SHORT: usize = 64;
 
-/// Buffer for the entries of a short permutation. A [`Shuffle`] borrows its buffer, because moving
-/// entries right after they are written stalls processors.
+/// Memory for the entries of a short permutation. A [`Shuffle`] borrows it instead of owning it,
+/// because moving entries right after they are written stalls processors.
 pub type Buffer = [u16; SHORT];
 
-/// Buffer to which no entries are written yet: all zeros.
+/// Buffer without entries, all zeros.
 pub const EMPTY_BUFFER: Buffer = [0; SHORT];
 
 /// A permutation of 0 … n − 1 that a key determines.
@@ -33,8 +37,8 @@ pub enum Shuffle<'a> {
 }
 
 impl<'a> Shuffle<'a> {
-    /// Returns the permutation of 0 … n − 1 that `key` determines. Stores the entries in `buffer`
-    /// if n ≤ 64.
+    /// Returns the permutation of 0 … n − 1 that `key` determines. If n ≤ 64, its entries are
+    /// stored in `buffer`.
     #[inline(always)]
     pub fn new(n: u64, key: Key, buffer: &'a mut Buffer) -> Self {
         if n <= SHORT as u64 {
@@ -49,8 +53,8 @@ impl<'a> Shuffle<'a> {
         }
     }
 
-    /// Returns the stored entries; unused entries may follow the n entries of the permutation.
-    /// Returns `None` if the entries are computed one by one.
+    /// Returns the stored entries, which unused entries may follow. Returns `None` if entries are
+    /// not stored but computed one by one.
     #[inline(always)]
     pub fn stored(&self) -> Option<&[u16]> {
         match self {
@@ -60,7 +64,7 @@ impl<'a> Shuffle<'a> {
         }
     }
 
-    /// Returns the entry at `index` < n.
+    /// Returns the entry at `index`, which must be less than n.
     #[inline(always)]
     pub fn get(&self, index: u64) -> u64 {
         match self {
@@ -71,23 +75,24 @@ impl<'a> Shuffle<'a> {
     }
 }
 
-/// Fills `entries` with a random permutation of 0 … n − 1, where n is their number, by the shuffle
-/// of Fisher and Yates (Durstenfeld 1964, "inside out").
+/// Fills `entries` with a random permutation of 0 … n − 1, where n is the number of entries, by the
+/// "inside out" shuffle of Fisher and Yates (Durstenfeld 1964).
 #[inline(always)]
 fn fisher_yates(entries: &mut [u16], key: Key) {
     for i in 0..entries.len() {
-        // With 32 random bits, the relative bias of the choice of each j is at most 2^12/2^32 =
-        // 2^−20.
+        // 32 random bits suffice: the probability of each j has a relative error of at most
+        // 2^12/2^32 = 2^−20.
         let j = (((key.bits(i as u64) >> 32) * (i as u64 + 1)) >> 32) as usize;
         entries[i] = entries[j];
         entries[j] = i as u16;
     }
 }
 
-/// Computes a single entry of a permutation of 0 … n − 1. A keyed bijection of the numbers that
-/// have as many bits as n − 1 is applied until the result is below n. This "cycle walking" (Black
-/// and Rogaway 2002) gives a bijection of the numbers below n. At least half of the numbers with so
-/// many bits are below n, so that the mean number of steps is at most two.
+/// Computes a single entry of a permutation of 0 … n − 1. The numbers with as many bits as n − 1
+/// are permuted by a function that depends on the key. This function is applied again until the
+/// result is below n ("cycle walking", Black and Rogaway 2002), which gives a permutation of the
+/// numbers below n. At least half of all numbers are below n, so the mean number of steps is at
+/// most two.
 fn permute(index: u64, n: u64, key: Key) -> u64 {
     let bits = u64::BITS - (n - 1).leading_zeros();
     let mask = (1 << bits) - 1;
@@ -96,7 +101,7 @@ fn permute(index: u64, n: u64, key: Key) -> u64 {
     loop {
         for round in 0..4 {
             let random = key.bits(round);
-            // Each operation is a bijection modulo a power of two: a multiplication by an odd
+            // Each operation is invertible modulo a power of two: a multiplication by an odd
             // number, an addition, and an exclusive or of the upper half onto the lower half.
             value = value.wrapping_mul(random | 1).wrapping_add(random >> 32) & mask;
             value ^= value >> half;

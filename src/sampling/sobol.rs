@@ -1,44 +1,47 @@
-//! `sobol`: Sobol' points with Owen's scrambling, per pixel (Sobol' 1967; Owen 1995, "Randomly
-//! permuted (t, m, s)-nets").
+//! `sobol`: Sobol' points (Sobol' 1967), scrambled in each pixel by Owen's method (Owen 1995,
+//! "Randomly permuted (t, m, s)-nets").
 //!
 //! The first coordinate of point i is i with its bits mirrored at the binary point. For the second
 //! coordinate, the bits of i are first multiplied by Pascal's triangle modulo 2. The sequence
 //! begins at i = 0, which must not be left out (Owen 2020). Of the first 2^m points, exactly one
-//! lies in every box of 2^−a by 2^(a−m). The same holds for every further block of 2^m points.
+//! lies in every aligned rectangle of width 2^−a and height 2^(a−m), for each a from 0 to m. The
+//! same holds for every further block of 2^m points.
 //!
-//! Owen's nested uniform scrambling flips a bit of a coordinate, or not, by a random bit that
-//! belongs to the combination of all bits above it. These combinations are the nodes of a binary
-//! tree. The n points differ in their first m = ⌈log₂ n⌉ bits on either axis. Below these bits,
-//! every point is alone in its subtree, so its further bits are independent random bits. This is
-//! therefore the true scrambling, with m decisions per coordinate instead of 53; one 64-bit hash
-//! decides a subtree of six levels. (The one-multiplication scrambles of Laine and Karras were not
-//! tried: they are known to have weak bits, and are no cheaper for the counts that pictures use.)
+//! Owen's scrambling flips each bit of a coordinate, or does not, by a random bit that belongs to
+//! the combination of all higher bits. These combinations are the nodes of a binary tree. In a
+//! pixel with n points, no two points agree in the first m = ⌈log₂ n⌉ bits of a coordinate. So
+//! below these bits every point is alone in its subtree, and its further bits are simply
+//! independent random bits. The result is the true scrambling, with m decisions per coordinate
+//! instead of 53. One 64-bit hash decides six levels of the tree. The cheaper scrambling of Laine
+//! and Karras by multiplications was not tried: it is known to have weak bits, and it is no cheaper
+//! for the numbers of points that pictures use.
 
 use std::ops::Range;
 
 use super::{lattice, rng::Key};
 
-/// Number of levels of the tree of Owen's scrambling that one hash decides. Six levels have 2^6 − 1
-/// nodes, and a hash has 64 bits.
+/// Number of levels of the tree of random bits, in Owen's scrambling, that one hash decides. Six
+/// levels have 2^6 − 1 nodes, for which the 64 bits of a hash are just enough.
 const LEVELS: u32 = 6;
 
-/// Maximum number of Sobol' points whose bits before the scrambling are stored. They differ in at
-/// most 12 bits, so that two hashes decide a point's scrambling. If a pixel has more points, the
-/// bits are computed for each point.
+/// Maximum number of points whose bits before the scrambling are stored. Such points differ in at
+/// most 12 bits, so that two hashes, of six levels each, scramble a point. For more points, the
+/// bits are computed point by point.
 const MAX_STORED: u64 = 1 << (2 * LEVELS);
 
-/// A prefix of the Sobol' sequence, prepared for scrambling.
+/// The first points of the Sobol' sequence, prepared for scrambling.
 #[derive(Clone, Debug)]
 pub struct Sobol {
-    /// The least m for which the number of points is at most 2^m.
+    /// Number of leading bits in which all points differ: the least m for which there are at most
+    /// 2^m points.
     depth: u32,
-    /// The m topmost bits of both coordinates of each point before the scrambling, where m is
-    /// `depth`; empty for more than 4096 points.
+    /// The `depth` highest bits of both coordinates of each point, before the scrambling. Empty for
+    /// more than 4096 points.
     tops: Vec<[u16; 2]>,
 }
 
 impl Sobol {
-    /// Prepares the first `n` points of the sequence.
+    /// Prepares the first `n` points of the Sobol' sequence.
     pub fn new(n: u64) -> Self {
         let depth = u64::BITS - (n - 1).leading_zeros();
         let top = |fraction: u64| high_bits(fraction, depth) as u16;
@@ -51,8 +54,8 @@ impl Sobol {
         }
     }
 
-    /// Writes the offsets of the points whose indices are in `range` from the pixel's centre to `x`
-    /// and `y`, after the scrambling that `key` determines.
+    /// Places the points whose indices are in `range`, after the scrambling that `key` determines.
+    /// Writes their offsets from the pixel's centre to the lists `x` and `y`.
     #[inline(always)]
     pub fn place(&self, key: Key, range: Range<u64>, [x, y]: [&mut [f64]; 2]) {
         let axes = [
@@ -61,8 +64,8 @@ impl Sobol {
         ];
         if !self.tops.is_empty() {
             let tops = &self.tops[range.start as usize..range.end as usize];
-            // `at_leaves` first clears a list whose length is its parameter, so that a shorter list
-            // saves time.
+            // `at_leaves` first clears a list of a fixed length. The length is chosen by the number
+            // of points, because a shorter list takes less time.
             return match self.depth {
                 0..=6 => at_leaves::<{ 1 << 6 }>(&axes, tops, [x, y]),
                 7..=9 => at_leaves::<{ 1 << 9 }>(&axes, tops, [x, y]),
@@ -76,8 +79,8 @@ impl Sobol {
     }
 }
 
-/// Writes the offsets of points to `x` and `y`. `tops` has the topmost bits of the points'
-/// coordinates, which have at most `MOST` different values. The offset of each value is computed
+/// Writes the offsets of points to `x` and `y`. `tops` has the highest bits of the points'
+/// coordinates, which have at most `MOST` different values. The offset for each value is computed
 /// once and then looked up.
 #[inline(always)]
 fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&mut [f64]; 2]) {
@@ -88,9 +91,10 @@ fn at_leaves<const MOST: usize>(axes: &[Owen; 2], tops: &[[u16; 2]], [x, y]: [&m
     }
 }
 
-/// Multiplies the bits of i by Pascal's triangle modulo 2: bit j of the result is the sum modulo 2
-/// of binomial(k, j) times bit k. The binomial is odd if all bits of j are also set in k. One step
-/// for each of the six bits of a position is therefore enough.
+/// Multiplies the bits of a number by Pascal's triangle modulo 2: bit j of the result is the sum,
+/// over all k, of the binomial coefficient (k over j) times bit k, modulo 2. The coefficient is odd
+/// if all bits of j are also set in k, so one step for each of the six bits of a bit's position is
+/// enough.
 fn pascal(mut bits: u64) -> u64 {
     bits ^= (bits >> 1) & 0x5555_5555_5555_5555;
     bits ^= (bits >> 2) & 0x3333_3333_3333_3333;
@@ -100,13 +104,13 @@ fn pascal(mut bits: u64) -> u64 {
     bits ^ (bits >> 32)
 }
 
-/// Owen's scrambling of one axis in one pixel.
+/// Owen's scrambling of one coordinate, in one pixel.
 struct Owen {
     key: Key,
     depth: u32,
-    /// Number of levels of the scrambling tree that the first hash decides.
+    /// Number of levels of the tree of random bits that the first hash decides.
     levels: u32,
-    /// The scrambled value of each combination of the first `levels` bits.
+    /// Scrambled value of each combination of the first `levels` bits.
     top: [u8; 1 << LEVELS],
 }
 
@@ -121,8 +125,8 @@ impl Owen {
         }
     }
 
-    /// Returns the scrambled offset of each combination of the topmost `depth` bits of a
-    /// coordinate. `depth` must be at most 12, so that two hashes decide each combination.
+    /// Returns the offset, after scrambling, for each combination of the `depth` highest bits of a
+    /// coordinate. `depth` must be at most 12, so that two hashes suffice for each combination.
     #[inline(always)]
     fn leaves<const MOST: usize>(&self) -> [f64; MOST] {
         let mut prefixes = [0; MOST];
@@ -146,17 +150,19 @@ impl Owen {
         let count = 1 << self.depth;
         let hashes = (count..2 * count).map(|index| self.key.bits(index));
         for ((leaf, &prefix), hash) in leaves.iter_mut().zip(&prefixes).zip(hashes) {
-            // A single shift by 64 bits, for depth 0, would overflow. There are therefore two
-            // shifts.
+            // The shift is done in two parts, because a single shift by 64 bits, for depth 0, would
+            // overflow.
             let bits = u64::from(prefix) << 1 << (u64::BITS - 1 - self.depth) | hash >> self.depth;
             *leaf = lattice::offset_of_bits(bits);
         }
         leaves
     }
 
-    /// Scrambles a coordinate. `fraction` and the result are in units of 2^−64.
+    /// Scrambles a coordinate. `fraction` and the result are fractions of the pixel's side, in
+    /// units of 2^−64.
     fn scramble(&self, fraction: u64) -> u64 {
-        // A node is identified by a leading 1 and the bits on the path from the root to the node.
+        // A node of the tree is identified by a leading 1, followed by the bits on the path from
+        // the root to the node.
         let mut above = self.levels;
         let part = high_bits(fraction, above);
         let mut scrambled = u64::from(self.top[part as usize]);
@@ -170,18 +176,19 @@ impl Owen {
             flips = self.key.bits(node);
             above = below;
         }
-        // No other point has these topmost bits, so that the last hash gives all remaining bits.
+        // No other point has these highest bits, so the last hash gives all remaining bits.
         scrambled << (u64::BITS - self.depth) | flips >> self.depth
     }
 }
 
-/// Returns the scrambled value of each combination of the first `levels` bits of a subtree. Bits 1,
-/// 2 … 63 of `flips` are the random bits of the subtree's nodes, from the root down.
+/// Returns the scrambled value of each combination of `levels` bits. `flips` has a random bit for
+/// each node of the tree of these combinations: bit 1 for the root, bits 2 and 3 for its children,
+/// and so on.
 #[inline(always)]
 fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     let mut bits = [0; 1 << LEVELS];
     for level in 0..levels {
-        // Replaces each node by its two children. The last node comes first, so that no node is
+        // Replaces each node by its two children. The last node comes first, so that none is
         // overwritten before it is read.
         for node in (0..1 << level).rev() {
             let scrambled = bits[node] << 1;
@@ -192,9 +199,9 @@ fn subtree(flips: u64, levels: u32) -> [u8; 1 << LEVELS] {
     bits
 }
 
-/// Returns the random bits of the nodes on a path down a subtree. The `levels` bits of `part` are
-/// the path. Bits 1, 2 … 63 of `flips` are the random bits of the subtree's nodes, from the root
-/// down.
+/// Returns the random bits of the nodes on a path down a tree. The `levels` bits of `part` are the
+/// path. `flips` has a random bit for each node: bit 1 for the root, bits 2 and 3 for its children,
+/// and so on.
 fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     (0..levels).fold(0, |found, level| {
         let node = 1 << level | part >> (levels - level);
@@ -202,7 +209,7 @@ fn flips_along(flips: u64, part: u64, levels: u32) -> u64 {
     })
 }
 
-/// Returns the `count` topmost bits of a number.
+/// Returns the `count` highest bits of a number.
 fn high_bits(number: u64, count: u32) -> u64 {
     number.checked_shr(u64::BITS - count).unwrap_or(0)
 }

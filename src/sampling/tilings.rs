@@ -1,40 +1,41 @@
-//! The strata of each method: cuts of the pixel into n cells, each of which holds one sample.
+//! Divisions of a pixel into n cells that the sampling methods guarantee to have one sample each.
 //!
-//! In: a method and the number n of a pixel's samples. Out: the cuts that hold for every seed and
-//! every pixel. The cuts follow from the methods' own files: `bricks` has the cells of regular and
+//! In: a method and the number n of a pixel's samples. Out: the divisions that hold for every seed
+//! and every pixel. They follow from the methods' own files: `bricks` has the cells of regular and
 //! jittered samples, and `multi_jittered` its grid.
 
 use super::{bricks::Bricks, multi_jittered::MultiJittered};
 use crate::scene::Method;
 
-/// A cut of a pixel into n cells of equal area, each of which holds exactly one of n samples.
+/// A division of a pixel into n cells of equal area, each of which contains exactly one of n
+/// samples.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Tiling {
-    /// Number of cells in each row, from the top. A row of k cells has the height k/n.
+    /// Number of cells in each row, from the top. A row of k cells has k/n of the pixel's height.
     pub rows: Vec<u64>,
 }
 
 impl Tiling {
-    /// Returns the tiling of a grid of equal cells.
+    /// Returns a division into equal cells, given the numbers of columns and rows.
     fn grid([columns, rows]: [u64; 2]) -> Self {
         Self {
             rows: vec![columns; rows as usize],
         }
     }
 
-    /// Returns whether the cells are columns as tall as the pixel.
+    /// Returns whether the cells are columns, as tall as the pixel.
     pub fn is_columns(&self) -> bool {
         self.rows.len() == 1
     }
 
-    /// Returns whether the cells are rows as wide as the pixel.
+    /// Returns whether the cells are rows, as wide as the pixel.
     pub fn is_rows(&self) -> bool {
         self.rows.iter().all(|&cells| cells == 1)
     }
 }
 
-/// Returns the tilings of a pixel with n ≥ 1 samples that a method guarantees. Columns and rows
-/// come last.
+/// Returns the divisions of a pixel with n ≥ 1 samples in which a method guarantees one sample per
+/// cell. The division into n columns and that into n rows come last.
 pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
     let (columns, rows) = ([n, 1], [1, n]);
     let is_power_of = |base: u64| {
@@ -54,26 +55,27 @@ pub fn tilings(method: Method, n: u64) -> Vec<Tiling> {
         }
         Method::NRooks => vec![columns, rows],
         Method::MultiJittered => vec![MultiJittered::new(n).grid(), columns, rows],
-        // The heights of the points are multiples of 1/n, all shifted by one amount, only if n is a
-        // power of 2.
+        // The heights of the points are multiples of 1/n, plus a common shift, only if n is a power
+        // of 2.
         Method::Hammersley if is_power_of(2) => vec![columns, rows],
         Method::Hammersley => vec![columns],
-        // The points divide an axis evenly if their number is a power of the axis's base, 2 in x or
-        // 3 in y. The shift breaks up every grid of both columns and rows.
+        // The points divide x evenly if their number is a power of 2, and y if it is a power of 3.
+        // No grid of several columns and several rows has one point in each cell, because of the
+        // random shift.
         Method::Halton if is_power_of(2) => vec![columns],
         Method::Halton if is_power_of(3) => vec![rows],
         Method::Halton => vec![],
         Method::Sobol if is_power_of(2) => {
             let depth = n.trailing_zeros();
             let mut grids: Vec<_> = (0..=depth).map(|a| [1 << a, n >> a]).collect();
-            // Grids whose cells are nearest to a square come first.
+            // Grids whose cells are most nearly square come first.
             grids.sort_by_key(|[columns, rows]| columns.max(rows).to_owned());
             grids
         }
         Method::Sobol => vec![],
     };
     let mut grids: Vec<_> = grids.into_iter().map(Tiling::grid).collect();
-    // A grid that equals the columns or the rows is listed once.
+    // A grid of one row or one column is listed only once.
     grids.dedup();
     grids
 }

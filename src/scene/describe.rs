@@ -1,5 +1,5 @@
-//! Describes the language's words in Markdown, from the tables of the schema. Hovers, completion
-//! and `pinhole explain` show these texts.
+//! Describes the words of the scene language in Markdown, from the tables of the language. Hovers,
+//! completion and `pinhole explain` show these texts.
 
 use std::{fmt::Write, ops::Range};
 
@@ -12,7 +12,7 @@ use crate::{
 pub const ABOUT_LET: &str =
     "`let NAME = VALUE` gives a value a name, for what stands further down.";
 
-/// Markdown text about `for` in the head of an object.
+/// Markdown text about `for`, which repeats an object of the scene.
 pub const ABOUT_FOR: &str = "`for INDEX < COUNT` in the head of an object repeats it: the index is 0, 1, 2 and so on up to COUNT - 1. Of several, separated by commas, the last one counts fastest, and a count may depend on the indices before it. A `color` may be a pair: the first where the sum of the indices is even.";
 
 /// Describes every meaning of a word, each with an example: as a kind of block, a field, a method,
@@ -84,7 +84,8 @@ pub fn words() -> impl Iterator<Item = &'static str> {
         .chain(constants)
 }
 
-/// Describes a kind of block, its fields, and the choices among fields that exclude each other.
+/// Describes a kind of block: its help line, its fields, and which fields exclude each other, such
+/// as `fov` and `d` of a camera.
 fn block_page(row: &BlockRow) -> String {
     let mut text = about_block(row);
     for choice in row.choices {
@@ -161,7 +162,7 @@ pub fn about_function(function: &Function) -> String {
     format!("`{}`: {}", signature(function).0, function.help)
 }
 
-/// Returns the signature of a function, and the byte ranges of its parameters.
+/// Returns the signature of a function as text, and the byte range of each parameter in this text.
 pub fn signature(function: &Function) -> (String, Vec<Range<usize>>) {
     let mut label = format!("{}(", function.name);
     let mut parameters = Vec::new();

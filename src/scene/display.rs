@@ -1,7 +1,7 @@
-//! Scene → text, and the check of a scene that was made or changed in code.
+//! Writes a scene as a text, and checks a scene that was made or changed in code.
 //!
-//! The text has a block for each part of the scene, with every field's value in full. What
-//! reading it gives is the same scene: numbers are written with as many digits as their bits need.
+//! The text has a block for each part of the scene, and states every field's value. A number has as
+//! many digits as identify it, so reading the text returns the same scene.
 
 use std::{collections::HashSet, fmt, sync::Arc};
 
@@ -22,7 +22,7 @@ impl Scene {
     ///
     /// # Errors
     ///
-    /// It is not; the mistakes are those of the [text](#impl-Display-for-Scene) that describes it.
+    /// Returns the mistakes that are found in the [text](#impl-Display-for-Scene) of the scene.
     pub fn check(&self) -> Result<(), Mistakes> {
         let sources = Sources::new(Source::from_text("scene", self.to_string()));
         let reading = read(&sources);
@@ -33,8 +33,8 @@ impl Scene {
     }
 }
 
-/// Writes the scene as a text of the language. Repeated objects are written one by one, and
-/// `Ball[3, 1]` is called `Ball_3_1`.
+/// Writes the scene as a text of the language. An object that `for` repeats is written as separate
+/// objects: `Ball[3, 1]` is called `Ball_3_1`.
 impl fmt::Display for Scene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Image {
@@ -76,7 +76,9 @@ impl fmt::Display for Scene {
     }
 }
 
-/// Returns the name by which a text can call an object: that of a repeated one has no brackets.
+/// Returns the name under which an object is written in a text. An object that `for` repeats has a
+/// name with brackets, such as `Ball[3, 1]`, which becomes `Ball_3_1`. If this name is taken,
+/// underscores are appended.
 fn name_in_text(name: &str, object: &Object, taken: &mut HashSet<String>) -> String {
     if object.indices.is_empty() {
         return name.to_owned();
@@ -126,7 +128,8 @@ fn write_camera(camera: &Camera, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     f.write_str("}\n")
 }
 
-/// A value in the language's notation, to the last bit.
+/// Wrapper that formats a value in the language's notation, with all digits that reading it back
+/// needs.
 struct Exactly(Value);
 
 impl fmt::Display for Exactly {
@@ -162,7 +165,8 @@ impl fmt::Display for Exactly {
     }
 }
 
-/// Writes a number with the digits that its bits need, and a power of ten if it is shorter so.
+/// Formats a number with the fewest digits that identify it. An exponent, as in `1e300`, is written
+/// if the plain notation has more than 12 characters and is longer.
 fn digits(number: f64) -> String {
     let [plain, power] = [format!("{number}"), format!("{number:e}")];
     if plain.len() <= power.len().max(12) {

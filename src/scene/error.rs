@@ -1,11 +1,11 @@
-//! Builders of diagnostics about the meaning of a scene.
+//! Makes diagnostics about the meaning of a scene, as opposed to its syntax.
 
 use crate::{
     diagnostic::{Applicability, Diagnostic, Fix, Label, Problems, Severity},
     source::Span,
 };
 
-/// Returns an error with the code `pinhole::CODE`, where CODE is `code`.
+/// Returns an error whose code is `pinhole::` followed by `code`.
 pub fn error(code: &str, message: impl Into<String>) -> Diagnostic {
     Diagnostic {
         severity: Severity::Error,
@@ -19,7 +19,7 @@ pub fn error(code: &str, message: impl Into<String>) -> Diagnostic {
     }
 }
 
-/// Returns a warning with the code `pinhole::CODE`, where CODE is `code`.
+/// Returns a warning whose code is `pinhole::` followed by `code`.
 pub fn warning(code: &str, message: impl Into<String>) -> Diagnostic {
     Diagnostic {
         severity: Severity::Warning,
@@ -27,7 +27,8 @@ pub fn warning(code: &str, message: impl Into<String>) -> Diagnostic {
     }
 }
 
-/// Returns the error that something stands twice in the text, at the spans `first` and `second`.
+/// Returns the error for a duplicate, such as a second definition of a name. The two stand at the
+/// spans `first` and `second`.
 pub fn twice(code: &str, message: String, [first, second]: [Span; 2]) -> Diagnostic {
     error(code, message)
         .at(second, "and again here")
@@ -54,7 +55,7 @@ impl Diagnostic {
         self
     }
 
-    /// Adds one fix for each of `texts`, which writes that text at `span`.
+    /// Adds one fix for each of `texts`. A fix replaces what stands at `span` by its text.
     pub(super) fn writing<S: Into<String>>(
         self,
         span: Span,
@@ -65,18 +66,18 @@ impl Diagnostic {
         self.fixes(texts.map(|text| Fix::write(span, text).with_applicability(applicability)))
     }
 
-    /// Adds the diagnostic to others.
+    /// Adds the diagnostic to `problems`.
     pub(super) fn report(self, problems: &mut Problems) {
         problems.push(self);
     }
 
-    /// Returns whether the diagnostic's code is `pinhole::CODE`, where CODE is `code`.
+    /// Returns whether the diagnostic's code is `pinhole::` followed by `code`.
     pub(super) fn is(&self, code: &str) -> bool {
         self.code.strip_prefix("pinhole::") == Some(code)
     }
 
-    /// Returns whether the diagnostic has a code with which a name or a call may be suggested in
-    /// place of an undefined name.
+    /// Returns whether the diagnostic is about an undefined name, or a function without arguments.
+    /// Its help may suggest another name, or a call.
     pub(super) fn is_of_suggestion(&self) -> bool {
         self.is_of_name() || self.is("function_without_arguments")
     }

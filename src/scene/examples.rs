@@ -37,8 +37,8 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
         DVec3::ONE,
     ];
     let others = POINTS.iter().filter_map(|name| match given(name)? {
-        // The field's own value is left out. For a direction, all points are, so only steps from
-        // the origin are tried.
+        // The field's own value is left out. If the field is a direction, all points are left out,
+        // so only steps from the origin are tried.
         _ if DIRECTIONS.contains(&field.name) || *name == field.name => None,
         Value::Vector(point) => Some(point),
         _ => None,
@@ -66,8 +66,8 @@ pub fn example_beside(field: &FieldRow, given: &dyn Fn(&str) -> Option<Value>) -
     }
 }
 
-/// Returns whether the given vectors of a block do not contradict each other. Vectors that are not
-/// given contradict nothing.
+/// Returns whether the given vectors of a block do not contradict each other. Missing vectors are
+/// ignored.
 fn fits(given: &dyn Fn(&str) -> Option<Value>) -> bool {
     let vector = |name: &str| match given(name)? {
         Value::Vector(vector) => Some(vector),

@@ -11,7 +11,7 @@ use crate::{
     schema::{CAMERA, FieldValue, IMAGE, Value},
 };
 
-/// An image, a camera or a shape: the owner of fields.
+/// Part of a scene that has fields: an image, a camera or a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum FieldOwner {
@@ -48,8 +48,9 @@ impl FieldOwner {
         Some(self)
     }
 
-    /// Returns a field that is used, by its name. The width and the height of an image, which are
-    /// no `f64`s, and the derived fields of a box are not reached so.
+    /// Returns a mutable reference to the field `name`. Returns `None` if the owner does not use
+    /// the field. Also returns `None` for the width and the height of an image, which are not of
+    /// type `f64`, and for the fields of a box that are computed from its corners.
     fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
         match self {
             Self::Image(Image {
@@ -62,8 +63,8 @@ impl FieldOwner {
         }
     }
 
-    /// Returns whether the language's conditions hold. They are checked in `f64`, so a value within
-    /// rounding error of a limit may be misjudged.
+    /// Returns whether the language's conditions on the fields hold, such as a radius above 0. They
+    /// are checked in `f64`, so a value within rounding error of a limit may be misjudged.
     pub fn is_possible(&self) -> bool {
         match self {
             Self::Image(_) => true,

@@ -14,18 +14,19 @@ use crate::{
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Fixed {
-    /// The text.
+    /// The corrected text.
     pub text: String,
     /// The fixes that were applied, in order.
     pub done: Vec<Done>,
-    /// Number of remaining errors that only unsafe fixes correct: these choose among meanings, or
-    /// remove or change something.
+    /// Number of remaining errors that only unsafe fixes correct, if these were not allowed, and
+    /// otherwise 0. A fix is unsafe if it chooses among several meanings, or removes or changes
+    /// something.
     pub held_back: usize,
     /// Number of remaining errors whose fixes insert only a placeholder, i.e. a made-up value, and
     /// so are never applied.
     pub placeholders: usize,
-    /// Number of remaining errors whose fixes were allowed but not applied: there were too many for
-    /// one call, or the text contains bytes that are not UTF-8, which would be lost.
+    /// Number of remaining errors whose fixes were allowed but not applied: the maximum number of
+    /// rounds was reached, or the text contains bytes that are not UTF-8, which would be lost.
     pub waiting: usize,
 }
 
@@ -33,23 +34,26 @@ pub struct Fixed {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Done {
-    /// Place of the problem in the text to which the fix was applied.
+    /// Line and column of the problem in the text to which the fix was applied. Earlier fixes may
+    /// have changed the lines of the file.
     pub place: LineColumn,
     /// The title of the fix.
     pub title: String,
 }
 
-/// Corrects the errors of a file by safe fixes and, if `most` is not [`Applicability::Safe`], by
-/// unsafe ones too. Fixes with placeholders are never applied. Errors in `--set` arguments remain,
-/// and so do warnings, because what a warning reports may be intended.
+/// Corrects the errors of a file. Applies safe fixes, and also unsafe ones unless `most` is
+/// [`Applicability::Safe`]. Fixes with placeholders are never applied. Errors in `--set` arguments
+/// remain, and so do warnings, because what a warning reports may be intended.
 pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     let most = most.min(Applicability::Unsafe);
     /// Maximum number of rounds of fixes. A fix may reveal a hidden mistake, which is fixed in the
-    /// next round, but no text hides so many mistakes behind one another. Errors that have a fix
-    /// after the last round are counted as `waiting`.
+    /// next round. The limit only makes sure that the function ends; texts are expected to need far
+    /// fewer rounds. Errors that have a fix after the last round are counted as `waiting`.
     const ROUNDS: usize = 1000;
-    /// Maximum number of bytes that all rounds read together, which bounds the time. A long text
-    /// therefore has fewer rounds, and may keep mistakes that one reading does not report.
+    /// Maximum number of bytes that all rounds of fixes read together, 32 MiB. It bounds the time.
+    /// A text of 1 MiB gets at most 32 rounds, so a mistake in it that shows only after many other
+    /// fixes may remain. With a larger maximum, fewer mistakes would remain, but the time could be
+    /// longer.
     const READ: usize = 1 << 25;
     let mut sources = sources.clone();
     let mut problems = read(&sources).diagnostics;
@@ -80,7 +84,8 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
         let idle = round.lengthened.values().filter(is_idle).flatten();
         let idle: Vec<Problem> = idle.cloned().collect();
         if !idle.is_empty() {
-            // Repeat the round without the fixes of these problems.
+            // These problems remain although their fixes were applied. Repeat the round without
+            // these fixes.
             staying.extend(idle);
             continue;
         }
@@ -109,7 +114,7 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
     }
 }
 
-/// Identity of a problem, by which it is recognized in a changed text.
+/// Code, message and place of a problem, by which it is recognized in a changed text.
 #[derive(Clone, PartialEq, Eq, Hash)]
 struct Problem {
     code: String,
@@ -131,12 +136,12 @@ impl Problem {
 /// would change the same place, only the first is included; the other is left for the next round.
 struct Round {
     fix: Fix,
-    /// Fixes that lengthen the text, each mapped to the problems that offer it. If all problems of
-    /// a fix remain after it was applied, it is excluded from the next round, since it could be
-    /// applied forever.
+    /// Fixes that lengthen the text, each mapped to the problems that offer it. If all of these
+    /// problems remain after the fix was applied, the fix is excluded from the next round, because
+    /// it could be applied again and again.
     lengthened: HashMap<Vec<Edit>, Vec<Problem>>,
     done: Vec<Done>,
-    /// Number of bytes by which the text grows at each changed offset.
+    /// Maps the offset of each edit to the number of bytes by which the edit lengthens the text.
     growth: BTreeMap<usize, isize>,
 }
 
@@ -195,7 +200,7 @@ impl Round {
         }
     }
 
-    /// Returns the problem with its offset in the text after the edits.
+    /// Returns the problem with the offset that it has after the edits of this round.
     fn moved(&self, problem: &Problem) -> Problem {
         let grown: isize = self
             .growth

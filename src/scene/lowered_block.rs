@@ -1,7 +1,7 @@
 //! A block with evaluated fields.
 //!
-//! In: a block of the tree. Out: the value of each field that it has, and the defaults of the other
-//! fields.
+//! In: a block of the syntax tree. Out: the value of each field that the block has, and the
+//! defaults of the other fields.
 
 use std::sync::LazyLock;
 
@@ -12,7 +12,7 @@ use crate::{
     syntax::tree::Name,
 };
 
-/// A block with the values that its fields are given.
+/// A block with the evaluated fields that it has in the text.
 #[derive(Clone)]
 pub struct LoweredBlock<'s> {
     pub row: &'static BlockRow,

@@ -56,12 +56,12 @@ pub struct Image {
     pub background: Color,
 }
 
-/// The pinhole camera, as the file gives it. Lengths are in metres.
+/// The pinhole camera, described by the fields that a scene file gives. Lengths are in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The eye, through which all rays pass.
     pub eye: DVec3,
-    /// The view direction. A point to look at differs from the eye.
+    /// The view direction. If it is given by a point, the point differs from the eye.
     pub view: View,
     /// The up vector, not zero; it may be parallel to the view direction.
     pub up: DVec3,
@@ -88,13 +88,13 @@ pub enum View {
     Direction(DVec3),
 }
 
-/// Returns the level direction of a camera whose up vector is parallel to its view direction: −z,
-/// or +y if up is parallel to z.
+/// Returns the direction that decides what is at the top of the picture if a camera's up vector is
+/// parallel to its view direction: −z, or +y if up is parallel to z.
 ///
-/// Such a camera shows the same picture as one that first looked along the level direction and was
-/// then tilted. Let h be the component of the level direction that is perpendicular to up. The top
-/// of the picture lies in the direction h if the camera looks against up, and in the direction −h
-/// if it looks along up.
+/// Let h be the component of this direction that is perpendicular to up. The top of the picture
+/// lies in the direction h if the camera looks against up, and in the direction −h if it looks
+/// along up. The picture is the same as if the camera first looked in this direction and was then
+/// tilted.
 pub fn level_direction(up: DVec3) -> DVec3 {
     if up.x == 0.0 && up.y == 0.0 {
         DVec3::Y
@@ -116,7 +116,7 @@ pub enum Lens {
     HorizontalFov(Angle),
 }
 
-/// Method of sampling, number of samples, and seed of the random ones.
+/// Method of sampling, number of samples, and seed of the random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sampler {
     /// Sampling technique, or `exact` for exact integration.
@@ -142,7 +142,8 @@ pub enum Count {
 pub struct Object {
     /// The unique name, if the object has one: `Ball`, or `Ball[3, 1]` if the block is repeated.
     pub name: Option<String>,
-    /// Values of the block's indices, in the order of its head; empty if the block is not repeated.
+    /// Values of the indices of a repeated block, in the order of `for`; empty if the block is not
+    /// repeated.
     pub indices: Box<[u32]>,
     /// The shape.
     pub shape: Shape,
@@ -177,7 +178,8 @@ impl Object {
 }
 
 impl Scene {
-    /// Returns the objects, to change them. They are copied if another scene shares them.
+    /// Returns a mutable reference to the objects. They are copied first if another scene shares
+    /// them.
     pub fn objects_mut(&mut self) -> &mut Vec<Object> {
         Arc::make_mut(&mut self.objects)
     }
@@ -195,13 +197,14 @@ impl View {
     }
 }
 
-/// Returns the side of a pixel at depth 1, in metres. For a distance d to the view plane, it is
+/// Returns the side of a pixel at depth 1, in metres. If the camera has a distance d from the eye
+/// to the view plane, the side is
 ///
 ///   view_height / (height · d),
 ///
-/// where height is in pixels. For a field of view, it is 2·tan(angle/2) divided by the picture's
-/// height or width in pixels. `tan_half` computes tan(angle/2) in the precision that the caller
-/// needs.
+/// where view_height is the height of the window in metres, and height that of the picture in
+/// pixels. If it has a field of view, the side is 2·tan(angle/2) divided by the picture's height or
+/// width in pixels. `tan_half` computes tan(angle/2) in the precision that the caller needs.
 pub fn pixel_size<T: Real>(camera: &Camera, image: &Image, tan_half: impl Fn(Angle) -> T) -> T {
     let [width, height] = [image.width, image.height].map(|pixels| T::from_f64(pixels.into()));
     let slope = |angle| T::from_f64(2.0).times(&tan_half(angle));

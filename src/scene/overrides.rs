@@ -1,7 +1,7 @@
 //! Replaces values of a scene by those of `--set TARGET=VALUE` arguments.
 //!
 //! In: the arguments as they were typed, and all or some items of the file. Out: the items with the
-//! new values, which lowering evaluates.
+//! new values, which are evaluated later.
 
 use super::{
     error::error,
@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// A `--set` argument.
+/// A `--set TARGET=VALUE` argument of the command line.
 #[derive(Clone, Debug)]
 pub struct Override<'s> {
     /// The block of a target `BLOCK.FIELD`; `None` if the target is a `let`.
@@ -49,8 +49,8 @@ pub fn read<'s>(
     overrides
 }
 
-/// Splits the argument `text` into the block, if it has one, the name of the field or `let`, and
-/// the offset of the value.
+/// Splits the argument `text`, such as `camera.roll=30deg`, into the block, if it has one, the name
+/// of the field or `let`, and the offset of the value.
 ///
 /// # Errors
 ///
@@ -129,8 +129,8 @@ pub fn apply<'s>(overrides: &mut Vec<Override<'s>>, items: &mut [Item<'s>]) {
     overrides.retain(|it| !it.put_into(items));
 }
 
-/// Handles the arguments whose targets the file does not have. Adds a block to `items` for a
-/// setting such as the camera, and reports all other arguments.
+/// Handles the arguments whose targets the file does not have. If a target is a field of the image,
+/// the camera or the sampler, adds this block to `items`. Reports all other arguments.
 pub fn add<'s>(
     overrides: Vec<Override<'s>>,
     items: &mut Vec<Item<'s>>,
@@ -189,9 +189,10 @@ impl<'s> Override<'s> {
         false
     }
 
-    /// Returns whether the argument's value can be evaluated at `place` and suits it: `Ok` with the
-    /// field that it is for, or `Err` with the name of a `let`, whose value may use only the names
-    /// defined before it. Returns `false` if the budget of comparisons is spent.
+    /// Returns whether the argument's value has no errors if it is assigned to `place`. This is
+    /// either a field (`Ok`), whose conditions the value must meet, or the name of a `let` (`Err`),
+    /// whose value may use only names defined before it. Returns `false` without a check if
+    /// `budget`, the remaining number of name comparisons, is less than the number of items.
     fn suits(
         &self,
         place: Result<&schema::FieldRow, &str>,
@@ -219,8 +220,8 @@ impl<'s> Override<'s> {
     }
 }
 
-/// Returns the row of the field `name` of a block, which is given by its kind or by an object's
-/// name.
+/// Returns the row of the field `name` in the language's table. `block` is the kind of the block or
+/// an object's name.
 fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema::FieldRow> {
     let object = || {
         items.iter().find_map(|item| match item {
@@ -231,19 +232,21 @@ fn field(block: &str, name: &str, items: &[Item<'_>]) -> Option<&'static schema:
     setting(block).or_else(object)?.field(name)
 }
 
-/// Returns the row of the kind `name` if a scene has at most one such block, as for the camera.
+/// Returns the row of the kind `name` in the language's table, if it is image, camera or sampler. A
+/// scene has at most one such block.
 fn setting(name: &str) -> Option<&'static schema::BlockRow> {
     schema::block(name).filter(|row| !row.is_object)
 }
 
-/// Returns the row of a block's kind. A mistyped kind stands for the nearest one.
+/// Returns the row of a block's kind in the language's table. A mistyped kind stands for the
+/// nearest one.
 fn row(block: &Block<'_>) -> Option<&'static schema::BlockRow> {
     schema::block_or_nearest(block.kind?.text)
 }
 
-/// Returns whether an argument with the block `target` sets fields of `block`. `target` is an
-/// object's name or the keyword of a block that is no object, such as `camera`; in the second case,
-/// `setting` is the row of that kind.
+/// Returns whether a `--set` argument with the block `target` sets fields of `block`. `target` is
+/// an object's name, or the keyword of a block that is no object, such as `camera`. In the second
+/// case, `setting` is the row of this kind of block.
 fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>) -> bool {
     match (row(block), setting) {
         (Some(row), Some(setting)) => row.kind == setting.kind,
@@ -274,13 +277,14 @@ fn objects<'s>(items: &[Item<'s>]) -> Vec<&'s str> {
     names.collect()
 }
 
-/// Help for a target that the scene does not have: which targets are possible.
+/// Help text for a `--set` target that the scene does not have. It says which targets are possible.
 const OTHERS: &str = "name a `let` of the scene, or a field by `BLOCK.FIELD=…`";
 
-/// Maximum number of names that a help text lists. If there are more, the help lists none of them.
+/// Maximum number of names that a help text lists. If there are more, the help lists none of them,
+/// since a longer list would no longer be read.
 const FEW: usize = 8;
 
-/// Returns the error that a target's block is neither in the file nor can be added.
+/// Returns the error for a `--set` target whose block is not in the file and cannot be added.
 fn no_such_block<'s>(
     it: &Override<'s>,
     block: &Name<'s>,
@@ -319,8 +323,8 @@ fn no_such_block<'s>(
         )
 }
 
-/// Returns the error that a target is not a `let` of the file. The target may have been meant as a
-/// block.
+/// Returns the error that the scene has no `let` with the name of a target. The help also covers a
+/// target that was meant as a block or a field.
 fn no_such_let<'s>(
     it: &Override<'s>,
     items: &[Item<'s>],

@@ -1,11 +1,11 @@
 //! Finds out whether the camera sees any object, and whether samples can tell the squares of a
 //! checkerboard apart. Warnings depend on it.
 //!
-//! In: a camera and the objects. Out: the reason why no object is in the picture, if that can be
-//! shown with bounding spheres; and whether a board's squares are too small for the precision of a
-//! sample's coordinates. In a case of doubt an object counts as visible, and so does an object that
-//! another one hides, so that a warning is never false. Computations are in `f64`; each comparison
-//! leaves a margin of [`MARGIN`] times the lengths in it.
+//! In: a camera and the objects. Out: the reason why no object is in the picture, if bounding
+//! spheres show it; and whether a board's squares are too small for the precision of a sample's
+//! coordinates. An object counts as visible if the answer is uncertain, or if another object hides
+//! it, so a warning is never false. Computations are in `f64`; each comparison leaves a margin of
+//! [`MARGIN`] times the lengths in it.
 
 use glam::DVec3;
 
@@ -19,13 +19,14 @@ use crate::{
 };
 
 /// Margin of a comparison, relative to the lengths that are compared. It exceeds all rounding
-/// errors: since the sine of the angle between up and the view direction is at least
-/// `LEAST_SINE`, the relative error of the camera's axes is at most 2^−52/10^−6, about 2·10⁻¹⁰,
-/// and all other errors are smaller.
+/// errors: since the sine of the angle between up and the view direction is at least `LEAST_SINE`,
+/// the relative error of the camera's axes is at most 2^−52/10^−6, about 2·10⁻¹⁰, and all other
+/// errors are smaller. A larger margin would miss objects close to the edge of the picture.
 const MARGIN: f64 = 1e-8;
 
 /// Minimum sine of the angle between up and the view direction for which visibility is judged. If
-/// it is less, the rounding error of the camera's axes may exceed [`MARGIN`].
+/// it is less, the rounding error of the camera's axes may exceed [`MARGIN`]. With a larger
+/// minimum, fewer cameras would be checked.
 pub const LEAST_SINE: f64 = 1e-6;
 
 /// Reason why no object is in the picture.
@@ -40,7 +41,7 @@ pub enum WhyUnseen {
 }
 
 /// Returns the reason why the camera sees no object. Returns `None` if it may see one, or if its
-/// axes are too inaccurate.
+/// axes cannot be computed accurately.
 pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<WhyUnseen> {
     let sight = Sight::new(camera, image)?;
     let sees = |near: f64, far: f64| {
@@ -98,9 +99,10 @@ impl Outside {
 /// Returns whether samples cannot tell the squares of a visible board apart, so that all squares
 /// get the same colour.
 pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) -> bool {
-    // For a camera that looks straight down, up may be parallel to the view direction, and then its
-    // axes are unknown. Any axes will do: however the window is turned, its extents along x and z
-    // are at least its shorter side. With the axes chosen here, one of the extents is equal to it.
+    // For a camera that looks straight down, up may be parallel to the view direction, and then the
+    // camera's axes are unknown. Axes are chosen for which the window's extents along x and z are
+    // its sides. For any other axes, both extents are at least the shorter side, so squares that
+    // are lost with the chosen axes are lost with any.
     let straight = || {
         let (from, to) = camera.view.ends(camera.eye);
         let along_y = (to - from).normalize().y.abs() > 1.0 - MARGIN;
@@ -130,8 +132,8 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// Makes the visible space of a camera. Returns `None` if the camera's axes are too inaccurate;
-    /// see `LEAST_SINE`.
+    /// Makes the visible space of a camera. Returns `None` if the camera's axes cannot be computed
+    /// accurately, for example because up is nearly parallel to the view direction.
     pub fn new(camera: &Camera, image: &Image) -> Option<Self> {
         let (from, to) = camera.view.ends(camera.eye);
         let forward = (to - from).normalize();
@@ -223,12 +225,11 @@ impl Sight {
         n.dot(center - self.eye) + radius < bound - MARGIN * size
     }
 
-    /// Returns whether the plane of a checkerboard at the height h may be visible between the
+    /// Returns whether a checkerboard at the height `height` may be visible between the
     /// depths `near` and `far`.
-    ///
-    /// A ray whose y changes by d per metre of depth hits the plane at the depth (h − e_y)/d, where
-    /// e is the eye.
     fn may_see_plane(&self, height: f64, near: f64, far: f64) -> bool {
+        // A ray that rises by d metres per metre of depth hits the plane at the depth (height of
+        // the plane − height of the eye)/d.
         let above = height - self.eye.y;
         let middle = self.forward.y * above.signum();
         let [across, up] = self.window;
@@ -243,15 +244,16 @@ impl Sight {
         above != 0.0 && most > 0.0 && nearest <= far && farthest >= near
     }
 
-    /// Returns whether nearly all rays hit the board too many squares away from the eye to tell
-    /// squares apart. The coordinate of such a hit, counted in squares, is so large that it has no
-    /// digit left for single squares, and so always counts as even.
-    ///
-    /// A ray r hits a board at the vertical distance h from the eye at the distance |r_x|·h/|r_y|
-    /// along x, and likewise along z. In the window, |r_x| is at most its `extent`, and it is less
-    /// than 2^−10 of the extent in less than a hundredth of the picture. If a number overflows or
-    /// underflows, the comparison is false.
+    /// Returns whether nearly all rays hit the board so far from the eye that the coordinates of
+    /// the hits, counted in squares, have no digits left to tell neighbouring squares apart. All
+    /// such hits count as hits on even squares.
     fn are_lost(&self, board: &Checkerboard) -> bool {
+        // A ray with the direction r hits a board, at the vertical distance h from the eye, at the
+        // horizontal distance |r_x|·h/|r_y| along x, and likewise along z. In the window, |r_x| is
+        // at most its `extent`, and in more than 99 % of the picture, it is at least 2^−10 of the
+        // extent. A coordinate of [`Big::BITS`] bits or more counts as even, and `most` is 2^10
+        // times as large, with a factor of 2 to spare. If a number overflows or underflows, the
+        // comparison is false.
         let [across, up] = self.window;
         let extent = self.forward.abs() + across.abs() + up.abs();
         let height = (board.y - self.eye.y).abs();

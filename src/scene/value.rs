@@ -59,8 +59,8 @@ fn ratio(a: Angle, b: Angle) -> f64 {
     a.in_radians() / b.in_radians()
 }
 
-/// Returns the result of a function, or `None` if an argument has another type. The channels of an
-/// `rgb` may be out of range.
+/// Returns the result of a function, or `None` if an argument has another type than the function
+/// takes. The channels of an `rgb` may be out of range.
 pub fn call(function: &str, arguments: &[Value]) -> Option<Value> {
     use Value::{Number, Vector};
     Some(match (function, arguments) {

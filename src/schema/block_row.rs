@@ -9,12 +9,12 @@ use super::{
 use crate::suggest::{self, is_among};
 
 impl BlockRow {
-    /// Returns the row of a field by its name.
+    /// Returns the row of the field `name`. Returns `None` if the block has no such field.
     pub fn field(&self, name: &str) -> Option<&'static FieldRow> {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns all fields that `written` may stand for, if its meaning is uncertain.
+    /// Returns the fields that `written`, a word of uncertain meaning, may stand for.
     pub fn fields_perhaps(&self, written: &str) -> impl Iterator<Item = &'static FieldRow> {
         let fields = self.fields.iter();
         fields.filter(move |field| is_among(written, field.perhaps))
@@ -32,8 +32,9 @@ impl BlockRow {
         self.fields.iter().map(|field| field.name)
     }
 
-    /// Returns the names of the fields that values without names stand for at the start of the
-    /// block; none if that is not known. `are_vectors` says of each value whether it is a vector.
+    /// Returns the names of the fields that values without names stand for at the start of a block,
+    /// as in `sphere { (0, 1, 0) 2 }`. Returns an empty list if these fields are unknown.
+    /// `are_vectors` says of each value whether it is a vector.
     pub fn names_of_values(&self, are_vectors: &[bool]) -> &'static [&'static str] {
         let is_vector = |name: &&str| self.field(name).map(|field| field.takes == Type::Vector);
         let fits = |names: &&&[&str]| {
@@ -43,20 +44,22 @@ impl BlockRow {
         self.nameless.iter().find(fits).copied().unwrap_or_default()
     }
 
-    /// Returns the choice that contains a field, if there is one.
+    /// Returns the [`Choice`] that a field belongs to: the alternative ways to express the same
+    /// thing. Returns `None` if the field belongs to no choice.
     fn choice(&self, field: &str) -> Option<&'static Choice> {
         let holds = |choice: &&Choice| choice.ways.iter().any(|way| way.contains(&field));
         self.choices.iter().find(holds)
     }
 
-    /// Returns the fields that a field excludes: the fields of the other ways of its [`Choice`].
+    /// Returns the fields that exclude a field, such as `direction` for `lookat`: the fields of the
+    /// other ways of its [`Choice`].
     pub fn excludes(&self, field: &str) -> impl Iterator<Item = &'static str> {
         let ways = self.choice(field).into_iter().flat_map(|it| it.ways);
         let others = ways.filter(move |way| !way.contains(&field));
         others.flat_map(|way| way.iter().copied())
     }
 
-    /// Returns the conditions in [`Self::together`] that contain a field's name.
+    /// Returns the conditions on several fields, such as `near < far`, that mention the field.
     pub fn rules_of(&self, field: &str) -> impl Iterator<Item = &'static str> {
         self.together.iter().copied().filter(move |rule| {
             let mut words = rule.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
@@ -64,8 +67,8 @@ impl BlockRow {
         })
     }
 
-    /// Returns the fields of a minimal block: the required ones, and of each choice those fields of
-    /// the first way that have no default.
+    /// Returns the fields of a minimal block: the required ones and, if there are alternatives,
+    /// those fields of the first alternative that have no default.
     pub fn least_fields(&self) -> Vec<&'static FieldRow> {
         let is_needed = |field: &&FieldRow| match field.preset {
             Preset::Required => true,

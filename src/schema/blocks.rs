@@ -11,7 +11,7 @@ use Condition::{
 };
 use Condition::{NotZero, Whole};
 
-/// The table's row for a kind of block.
+/// Row for a kind of block in the table of the language.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct BlockRow {
@@ -30,33 +30,35 @@ pub struct BlockRow {
     pub fields: &'static [FieldRow],
     /// Groups of fields that express the same thing in different ways and exclude each other.
     pub choices: &'static [Choice],
-    /// Conditions that relate several fields, as formulas with the fields' names.
+    /// Conditions that relate several fields, such as `near < far`, as formulas with the fields'
+    /// names.
     pub together: &'static [&'static str],
-    /// Words that people use by mistake to give several fields at once, with a list of the values;
-    /// and these fields.
+    /// Words that people use by mistake to give several fields at once, as in
+    /// `resolution (640, 480)`, each with the names of these fields.
     pub several: &'static [(&'static str, &'static [&'static str])],
-    /// Sets of words that people use together by mistake, such as three names for the three
-    /// coordinates of one field.
+    /// Sets of words that people use together by mistake, such as `x y z` for the coordinates of a
+    /// centre.
     ///
     /// The words of a set are separated by spaces, and sets by `|`. The second element names either
-    /// the one field whose parts the words stand for, or one field for each word.
+    /// the one field whose coordinates or colours the words stand for, or one field for each word.
     pub parted: &'static [(&'static str, &'static [&'static str])],
     /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,
     /// Words of other programs that correspond to no field, each with the help, which says what to
     /// write instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
-    /// Lists of fields that values without names stand for, at the start of the block.
+    /// Lists of fields that values without names stand for at the start of a block, as in
+    /// `sphere { (0, 1, 0) }`.
     pub nameless: &'static [&'static [&'static str]],
-    /// The fields that an editor writes for a new object. It replaces `{at}` by a free place,
-    /// `{across}` by the direction from there towards the camera, `{size}` by half the extent there
-    /// is room for, `{twice}` by the whole, and `{below}` by a height below everything.
+    /// The fields that an editor writes for a new object. The editor replaces `{at}` by a free
+    /// place, `{across}` by the direction from this place to the camera, `{size}` by half of the
+    /// object's size, `{twice}` by the whole size, and `{below}` by a height below all objects.
     pub added: &'static str,
 }
 
 /// Typed handle of a field, whose values have the Rust type `T`.
 ///
-/// Code refers to a field by such a constant, so that a misspelt name does not compile.
+/// Code refers to a field by a constant of this type, so that a misspelt name does not compile.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldHandle<T> {
     /// The field's name.
@@ -80,7 +82,7 @@ impl<T> FieldHandle<T> {
 }
 
 impl<T: FieldValue> FieldHandle<T> {
-    /// Returns a reference to the field's value if the name is the field's.
+    /// Returns `value` if `name` is the field's name, and otherwise `None`.
     pub fn of<'a>(self, name: &str, value: &'a mut T) -> Option<&'a mut dyn FieldValue> {
         (name == self.name).then_some(value)
     }
@@ -88,9 +90,9 @@ impl<T: FieldValue> FieldHandle<T> {
 
 /// Makes the kinds of blocks, their rows, and a handle for each field.
 ///
-/// The head of a block gives its kind, and the type and the name of its handles. A line in the
-/// first braces gives a field's name, type, preset and help; then any other columns of its row. The
-/// second braces hold columns of the block's row.
+/// The words before the first braces give the kind of block, and the type and the name of its
+/// handles. A line in the first braces gives a field's name, type, preset and help; then any other
+/// columns of its row. The second braces hold columns of the block's row.
 macro_rules! blocks {
     ($($kind:ident $handles:ident $constant:ident {
         $($field:ident $takes:ident $preset:ident $(($default:literal))? $help:literal $($more:ident($value:expr))*;)*
@@ -142,7 +144,7 @@ macro_rules! blocks {
     };
 }
 
-/// Template of a row, without fields or additional words. The table's rows override parts of it.
+/// Template of the table's rows, without fields or additional words. A row replaces some columns.
 const BLOCK: BlockRow = BlockRow {
     kind: BlockKind::Image,
     name: "",
@@ -160,7 +162,8 @@ const BLOCK: BlockRow = BlockRow {
     added: "",
 };
 
-/// Returns the names of fields of a block, by their handles.
+/// Lists the names of some fields of a block. `$handles` is the constant with the block's field
+/// handles, such as `CAMERA`.
 macro_rules! names {
     ($handles:ident $($field:ident)*) => {
         &[$($handles.$field.name),*]
@@ -352,7 +355,7 @@ blocks! {
     }
 }
 
-/// Conditions on the width or height of the picture in pixels.
+/// Conditions on the width or height of the picture in pixels: a whole number from 1 to 2^20.
 const PIXELS: &[Condition] = &[Whole, AtLeast(1.0), AtMostTwoTo(20)];
 
 /// Condition on a length, which must be positive.

@@ -49,7 +49,7 @@ pub struct Function {
     pub takes: &'static [Type],
     /// Names of the parameters, for the signature in editors; empty if the types explain them.
     pub parameters: &'static [&'static str],
-    /// Whether more arguments than those of `takes` may follow, all of the last type in it.
+    /// Whether more arguments may follow those of `takes`. They have the type of its last element.
     pub more: bool,
     /// The type of the result.
     pub gives: Type,
@@ -74,7 +74,8 @@ impl Function {
         }
     }
 
-    /// Returns the type of the argument at `index`; `None` if the function does not take so many.
+    /// Returns the type of the argument at `index`. Returns `None` if the function takes fewer
+    /// arguments.
     pub fn parameter(&self, index: usize) -> Option<Type> {
         let last = self.takes.last().filter(|_| self.more);
         self.takes.get(index).or(last).copied()
@@ -84,7 +85,7 @@ impl Function {
     pub fn example(&self) -> &'static [&'static str] {
         use Type::{Angle, Number, Vector};
         match self.takes {
-            // The arguments in the next arm would give a dot product of 0, which few fields accept.
+            // The arguments are chosen so that the dot product is not 0, which few fields accept.
             [Vector, Vector] if self.gives == Number => &["(1, 2, 3)", "(0, 1, 0)"],
             [Vector, Vector] => &["(1, 0, 0)", "(0, 1, 0)"],
             [Vector] => &["(1, 2, 3)"],

@@ -63,14 +63,14 @@ impl Method {
     ];
 }
 
-/// Writes the method's word in the language.
+/// Writes the method's name in the language, such as `multi_jittered`.
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
 }
 
-/// Reads the method's word in the language.
+/// Parses the method's name in the language, such as `multi_jittered`.
 impl FromStr for Method {
     type Err = UnknownMethod;
 
@@ -79,7 +79,7 @@ impl FromStr for Method {
     }
 }
 
-/// A word that is the name of no method.
+/// Error for a word that is not the name of a method.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("there is no method `{0}`; the methods are {list}", list = suggest::list(method_names()))]
 pub struct UnknownMethod(String);
@@ -99,7 +99,7 @@ pub fn nearest_method(written: &str) -> Option<&'static str> {
     tried.or_else(|| suggest::nearest(written, method_names()))
 }
 
-/// Returns whether `written` can mean no other technique than the one that is named `near`.
+/// Returns whether `written` can only mean the technique that is named `near`.
 pub fn is_sure_method(written: &str, near: &str) -> bool {
     let mut tried = ALSO_TRIED.iter();
     tried.any(|(method, words)| method.name() == near && is_among(written, words))

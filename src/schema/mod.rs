@@ -1,7 +1,7 @@
 //! The tables of the language: its blocks and their fields, types, defaults and conditions, each
 //! with a line of help.
 //!
-//! Each fact about the language stands here once. Lowering fills the scene from these tables,
+//! Each fact about the language stands here once. A scene gets its defaults from these tables,
 //! suggestions are chosen from them, and the language's reference is tested against them.
 //!
 //! `types` defines the language's types and `row_types` most columns of the table. The rows are in
@@ -71,7 +71,7 @@ pub enum Predefined {
 }
 
 impl Predefined {
-    /// Returns the kind of meaning in words, for messages, such as "a function".
+    /// Returns what the name means in words, for messages, such as "a function".
     pub fn noun(&self) -> &'static str {
         match self {
             Self::Function(_) => "a function",

@@ -1,4 +1,4 @@
-//! Columns of the language's tables: what is known about a field, its preset, its conditions, and
+//! Columns of the language's tables: what is known about a field, its default, its conditions, and
 //! choices among fields.
 
 use std::fmt;
@@ -8,19 +8,19 @@ use glam::DVec3;
 use super::types::{Type, Value};
 use crate::math::compare_half_turns;
 
-/// Fields that exclude each other, grouped into ways to express the same thing. A block uses one of
-/// the ways.
+/// Fields that exclude each other. They are grouped into alternative ways to express the same
+/// thing, and a block uses the fields of one way only.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Choice {
-    /// The fields of each way. A block that uses a way must have those of its fields whose preset
-    /// is [`Preset::Alternative`].
+    /// The alternative ways, each a list of fields. In a block that uses a way, a field of this way
+    /// is required if its preset is [`Preset::Alternative`].
     pub ways: &'static [&'static [&'static str]],
-    /// The reason why a block can use only one of the ways, for messages.
+    /// Reason, for messages, why a block can use only one of the alternative ways.
     pub why: &'static str,
 }
 
-/// The table's row for a field.
+/// Row for a field in the table of the language.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct FieldRow {
@@ -78,12 +78,13 @@ impl FieldRow {
     }
 }
 
-/// Default of a field: what holds if a block does not have the field.
+/// What holds if a block does not have a field: the field's default, or whether it is required.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Preset {
     /// No default: the field is required.
     Required,
-    /// No default: the field is required if the block uses its way of a [`Choice`].
+    /// No default: the field belongs to one way of a [`Choice`], i.e. one of several alternatives,
+    /// and is required if the block uses this way.
     Alternative,
     /// No default: the field may be left out.
     Nothing,

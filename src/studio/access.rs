@@ -1,11 +1,13 @@
 //! Controls access to the host.
 //!
 //! The page's files contain no secret and are served to any request for this host. A WebSocket
-//! connection gives access to the scene's file, so it requires a token. Other pages in the same
-//! browser can connect as well, but they cannot forge the headers that are checked: `Host`, because
-//! the name of a foreign host may resolve to this machine, and `Origin`. The browser never sends a
-//! token by itself: the token is in the fragment of the address, which is not sent, and cookies,
-//! which would be sent to all servers of a machine, are not used.
+//! connection gives access to the scene's file, so it requires a token.
+//!
+//! Other pages in the same browser can connect, too, but they cannot forge two headers that are
+//! checked: `Host`, because the name of a foreign host may resolve to this machine, and `Origin`.
+//! The browser never sends a token by itself: the token is in the fragment of the address, which
+//! browsers do not send. Cookies are not used, since browsers would send them to all servers on the
+//! machine.
 
 use std::{
     io,
@@ -24,15 +26,16 @@ use subtle::ConstantTimeEq as _;
 
 use crate::lock::lock;
 
-/// Path of the host's address at which pages connect by a WebSocket.
+/// Path in the host's address at which pages open a WebSocket.
 pub const SOCKET: &str = "/socket";
 
-/// Lifetime of the token in the address with which the host starts a browser. A page that shows it
-/// later is refused. Even on a slow machine, a browser starts within this time.
+/// Lifetime of the token in the address with which the host starts a browser. A page that shows the
+/// token later is refused. Even on a slow machine, a browser starts within a minute. The time is
+/// short, because other users of the machine can read the address in the command line.
 const LIFETIME: Duration = Duration::from_secs(60);
 
-/// Returns the status and the reason if a request to the host at `port` must be refused, whether it
-/// has a token or not. Returns `None` if it is allowed.
+/// Decides whether a request to the host at `port` must be refused, whether it has a token or not.
+/// Returns the HTTP status and the reason, or `None` if the request is allowed.
 pub fn refusal(
     port: u16,
     method: &Method,
@@ -59,38 +62,39 @@ pub fn refusal(
     }
 }
 
-/// Returns the value of a header; `None` if there is none. If there are several values, or the
-/// value is not a text, returns an empty text, which is never valid.
+/// Returns the value of a header; `None` if the header is missing. If it has several values, or a
+/// value that is not a text, returns an empty text, which is never valid.
 fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().unwrap_or_default();
     Some(if values.next().is_none() { value } else { "" })
 }
 
-/// The tokens of a host.
+/// The tokens of a host, and the pages that have used them.
 #[derive(Debug)]
 pub struct Access {
-    /// Token in the printed address. It admits any number of pages, at any time.
+    /// Token in the address that is printed for the user. It admits any number of pages, at any
+    /// time.
     printed: String,
     started: Mutex<Started>,
 }
 
-/// State of the browser that the host starts. This browser's token is in a command line, which all
-/// users of the machine can read.
+/// State of the browser that the host starts. The browser gets its token in a command line, which
+/// all users of the machine can read.
 #[derive(Debug)]
 struct Started {
-    /// Token in the command line. It is valid once.
+    /// Token in the command line. It can be used only once.
     once: String,
     /// Time until which the token in the command line is valid.
     until: Instant,
-    /// Session of the page that has shown the token; `None` before that.
+    /// Session of the page that has used the token in the command line; `None` before that.
     session: Option<Pass>,
 }
 
-/// Permission for a page to use WebSocket connections.
+/// Permission for a page to open WebSocket connections. It can be revoked.
 #[derive(Clone, Debug)]
 pub struct Pass {
-    /// Token that the page shows when it connects again.
+    /// Token that the page sends when it connects again.
     pub token: String,
     is_over: Arc<AtomicBool>,
 }
@@ -103,21 +107,22 @@ impl Pass {
         }
     }
 
-    /// Returns whether the connection must end, because a second page has used the address with
-    /// which this one began.
+    /// Returns whether the permission is revoked and the connection must end. This happens if a
+    /// second page uses the address with which the first page was opened.
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::SeqCst)
     }
 }
 
-/// Reason why a page is not admitted, and the code with which its WebSocket is closed.
+/// Reason why a page is not admitted. Its number is the code with which the page's WebSocket is
+/// closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotAdmitted {
-    /// The token is not one of this host; it may be from an earlier run.
+    /// The token does not belong to this host. It may belong to an earlier run.
     Unknown = 4001,
-    /// The address with which a browser was started was used too late.
+    /// The address with which a browser was started was used after its lifetime.
     Late = 4002,
-    /// The address with which a browser was started was used twice.
+    /// The address with which a browser was started was used a second time.
     Twice = 4003,
 }
 
@@ -138,15 +143,15 @@ impl Access {
         })
     }
 
-    /// Returns the token of the printed address, and the token of the address with which a browser
+    /// Returns two tokens: of the address that is printed, and of the address with which a browser
     /// is started.
     pub fn tokens(&self) -> [String; 2] {
         let started = lock(&self.started);
         [self.printed.clone(), started.once.clone()]
     }
 
-    /// Admits a page that shows a token at the time `now`. If the token from the command line is
-    /// shown a second time, also ends the session of the first page.
+    /// Admits a page that sends a token at the time `now`. If the token from the command line is
+    /// sent a second time, refuses it and also ends the session of the first page.
     ///
     /// # Errors
     ///
@@ -158,7 +163,7 @@ impl Access {
         }
         if is_equal(token, &started.once) {
             return match &started.session {
-                // The first page may belong to somebody who has read the command line, so its
+                // The first page may belong to another user who has read the command line, so its
                 // session ends, too.
                 Some(session) => {
                     session.is_over.store(true, Ordering::SeqCst);
@@ -210,8 +215,8 @@ mod tests {
         let late = Access::new().unwrap();
         let [printed, once] = late.tokens();
         assert_eq!(late.admit(&once, later(70)).err(), Some(NotAdmitted::Late));
-        // A token that was shown in time is used up. If it is shown again at any time, both pages
-        // are refused, since the first page may not be the user's.
+        // A token that was sent in time is used up. If it is sent again, both pages are refused,
+        // since the first page may not be the user's.
         let used = Access::new().unwrap();
         let [_, once] = used.tokens();
         let first = used.admit(&once, later(50)).unwrap();

@@ -1,8 +1,7 @@
-//! Limits the time, the bytes and the number of connections that have not shown a token.
+//! Limits the time, the bytes and the number of connections that have not sent a valid token.
 //!
 //! Any program on this machine can connect and keep a connection open without sending anything. If
-//! there are too many such connections, the oldest is closed, so that idle connections do not
-//! exclude others.
+//! there are too many idle connections, the oldest is closed, so that they do not exclude others.
 
 use std::{
     collections::VecDeque,
@@ -28,21 +27,22 @@ use tokio::{
     time::timeout,
 };
 
-/// Maximum number of open connections that have not shown a token; for a further one, the oldest is
-/// closed. A page has up to three while it loads, and one until it has shown its token.
+/// Maximum number of open connections that have not sent a valid token. For a further one, the
+/// oldest is closed. A page needs at most three while it loads, and one until it has sent its
+/// token, so that 64 suffice for many pages. More would let other programs use more of the machine.
 const MOST: usize = 64;
 
-/// Time after which a connection that has not shown a token is closed. It suffices for a request
-/// and the start of the response, or for the handshake of a WebSocket and the token. On one
-/// machine, these take milliseconds.
+/// Time after which a connection that has not sent a valid token is closed. On one machine, a
+/// request with its response, or a WebSocket handshake with the token, takes milliseconds. Five
+/// seconds suffice even if the machine is slow.
 const LIFETIME: Duration = Duration::from_secs(5);
 
-/// Maximum number of bytes that a connection may send before it has shown a token. A connection
-/// that sends more fails. A browser's request has about 1 KiB, unless other programs on this
-/// machine have set many cookies.
+/// Maximum number of bytes that a connection may send before it has sent a valid token. A
+/// connection that sends more fails. A browser's request has about 1 KiB, or more if other programs
+/// on this machine have set many cookies. 32 KiB leave room for these.
 const LONGEST: usize = 32 << 10;
 
-/// State of a connection, shared by the connection and its request handlers.
+/// State of a connection, which the connection shares with the handlers of its requests.
 #[derive(Clone, Debug, Default)]
 pub struct Visitor(Arc<VisitorState>);
 
@@ -53,7 +53,7 @@ struct VisitorState {
 }
 
 impl Visitor {
-    /// Lifts the limits, because the token was shown.
+    /// Lifts the limits of the connection, because it has sent a valid token.
     pub fn admit(&self) {
         self.0.is_admitted.store(true, Ordering::SeqCst);
     }
@@ -69,11 +69,11 @@ impl Connected<IncomingStream<'_, Door>> for Visitor {
     }
 }
 
-/// A listener that limits each connection until it has shown a token.
+/// A listener that limits each connection until the connection has sent a valid token.
 #[derive(Debug)]
 pub struct Door {
     listener: TcpListener,
-    /// Connections without a token, the oldest first.
+    /// Connections that have not sent a valid token, the oldest first.
     strangers: VecDeque<Weak<VisitorState>>,
 }
 
@@ -106,7 +106,7 @@ impl Listener for Door {
 
     async fn accept(&mut self) -> (Connection, SocketAddr) {
         let (stream, address) = Listener::accept(&mut self.listener).await;
-        // Without this option, small messages are sent later, but nothing fails.
+        // If the option cannot be set, small messages are sent later, but nothing fails.
         let _ = stream.set_nodelay(true);
         self.make_place();
         let visitor = Visitor::default();
@@ -119,14 +119,14 @@ impl Listener for Door {
     }
 }
 
-/// A connection that fails as soon as it exceeds a limit before the token was shown.
+/// A connection that fails if it exceeds a limit before it has sent a valid token.
 pub struct Connection {
     stream: TcpStream,
     visitor: Visitor,
-    /// Number of bytes that may still be sent before the token is shown.
+    /// Number of bytes that the connection may still send before it has sent a valid token.
     left: usize,
-    /// Future that becomes ready when the connection's time is over or a newer connection needs its
-    /// place; `None` after that.
+    /// Future that is ready when the connection's time is over or a newer connection needs its
+    /// place. It is `None` afterwards.
     stay: Option<Pin<Box<dyn Future<Output = ()> + Send>>>,
 }
 
@@ -144,8 +144,8 @@ impl Connection {
         }
     }
 
-    /// Fails if no token was shown and the connection's time is over or a newer connection needs
-    /// its place.
+    /// Fails if the connection has not sent a valid token, and its time is over or a newer
+    /// connection needs its place.
     fn check(&mut self, context: &mut Context<'_>) -> io::Result<()> {
         if self.visitor.is_admitted() {
             return Ok(());

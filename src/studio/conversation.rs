@@ -1,8 +1,8 @@
 //! Serves one page over a WebSocket connection.
 //!
-//! A request of a page may supersede earlier ones, so all messages that have arrived are handled
-//! before the next slice of work. Without work, the thread waits for the socket, and regularly
-//! checks the scene's file and the picture that another thread renders.
+//! A request of a page may replace earlier ones, so all messages that have arrived are handled
+//! before the work continues. Without work, the thread waits for the socket. At regular intervals,
+//! it checks the scene's file and the picture that another thread renders.
 
 use std::{
     convert::Infallible,
@@ -35,27 +35,29 @@ use crate::{
     threads,
 };
 
-/// Maximum length of a message from a page, in bytes; a longer one ends the connection. It is
-/// longer than any text that an editor in a browser can hold, and small compared with the memory of
-/// a machine.
+/// Maximum length of a message from a page, in bytes: 64 MiB. A longer message ends the connection.
+/// The limit is longer than any text that an editor in a browser can handle, and small compared
+/// with the memory of a machine.
 pub const LONGEST: usize = 64 << 20;
 
-/// Maximum time to wait for a message of the page before the scene's file and the picture are
-/// checked again. A user does not notice a delay of this length.
+/// Maximum time to wait for a message of the page before the scene's file and the progress of a
+/// picture are checked again. A user does not notice a delay of 50 ms; a much shorter time would
+/// keep an idle processor busy.
 const WAIT: Duration = Duration::from_millis(50);
 
-/// Maximum time to wait for a page to receive a message. After that, the connection ends. A browser
-/// on this machine receives messages at once, unless it is stopped.
+/// Maximum time to wait until a page receives a message. After this time, the connection ends. A
+/// browser on the same machine receives messages at once, unless it is stopped.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// Minimum time between two messages that tell the page the progress of a download.
+/// Minimum time between two messages about the progress of a download. A progress bar that moves
+/// five times a second looks continuous enough; more messages would only take time.
 const PROGRESS: Duration = Duration::from_millis(200);
 
-/// Maximum time to wait for the page's answer to a close frame. It is shorter than the time for
-/// which the host, when it ends, waits for its connections.
+/// Maximum time to wait for the page's answer to a close frame. It must be shorter than the 500 ms
+/// that the host, when it ends, waits for its connections.
 const FAREWELL: Duration = Duration::from_millis(200);
 
-/// Serves the page until it disconnects, its [`Pass`] is over, or the host ends. The tasks of
+/// Serves the page until it disconnects, its [`Pass`] is revoked, or the host ends. The tasks of
 /// `runtime` transport the messages.
 pub fn converse(
     runtime: Handle,
@@ -74,8 +76,8 @@ pub fn converse(
         known: 0,
         download: None,
     };
-    // The connection has one thread pool for all of its pictures. If no threads can be started, the
-    // connection ends, and the page connects again.
+    // All pictures of a connection are rendered in one thread pool. If no threads can be started,
+    // the connection ends, and the page connects again.
     let _ = threads::install(None, || {
         let Err(end) = conversation.run();
         conversation.cancel(None);
@@ -83,7 +85,7 @@ pub fn converse(
     });
 }
 
-/// End of a connection, with the code with which the socket is closed; `None` if the socket is
+/// End of a connection. Contains the code with which the socket is closed; `None` if the socket is
 /// closed or broken already.
 struct Closing(Option<CloseCode>);
 
@@ -93,18 +95,18 @@ struct Conversation<'a> {
     pass: &'a Pass,
     ending: &'a watch::Receiver<bool>,
     server: Server,
-    /// The scene's file, which all pages share.
+    /// The file of the scene, which all pages share.
     file: &'a Mutex<SceneFile>,
-    /// Version of the file's content that the page has received; 0 before the first one.
+    /// Version number of the file's content that the page has received; 0 if it has received none.
     known: u64,
     download: Option<Download>,
 }
 
-/// A picture's file that is rendered on another thread for the page.
+/// A picture that is rendered to a file on another thread, and then sent to the page.
 struct Download {
     request: Value,
     watch: Arc<Watch>,
-    /// Time of the last message about the progress.
+    /// Time of the last message about the render's progress.
     last_progress: Instant,
     thread: JoinHandle<Message>,
 }
@@ -140,8 +142,8 @@ impl Conversation<'_> {
         Err(Closing(Some(close_code::NORMAL)))
     }
 
-    /// Reads a message of the page. Returns `None` if there is none yet. If the server has work to
-    /// do, does not wait for one: even the shortest timeout, a millisecond, would delay the work
+    /// Reads a message of the page. Returns `None` if none arrives in time. Does not wait if the
+    /// server has work to do, since even the shortest timeout, a millisecond, would delay the work
     /// too much.
     fn read(&mut self) -> Result<Option<SocketMessage>, Closing> {
         let socket = &mut self.socket;
@@ -174,17 +176,16 @@ impl Conversation<'_> {
                 Err(_) if start.elapsed() > WRITE_TIMEOUT => return Err(Closing(None)),
                 Err(_) => {}
             }
-            // A page that does not receive must not prevent the host or its session from ending.
+            // Even if a page receives nothing, the host and the page's session must be able to end.
             if let Some(code) = over(self.pass, self.ending) {
                 return Err(Closing(Some(code)));
             }
         }
     }
 
-    /// Closes the socket with a code, if there is one. Until the socket is closed, messages that
-    /// the page has sent are still read for a short time, because unread messages would reset the
-    /// connection before the code arrives. If the page itself sent a close frame, the socket
-    /// answers it meanwhile.
+    /// Closes the socket, with a code if there is one. Messages that the page has sent are still
+    /// read for a short time, because unread messages would reset the connection before the code
+    /// arrives. If the page itself has sent a close frame, the socket answers it during this time.
     fn close(&mut self, Closing(code): Closing) {
         if let Some(code) = code {
             let reason = "".into();
@@ -207,8 +208,8 @@ impl Conversation<'_> {
         texts.try_for_each(|text| self.send(SocketMessage::text(text)))
     }
 
-    /// Sends the file to the page if the page has another version. If another page holds the file's
-    /// lock, does nothing; the next call will send the file.
+    /// Sends the file's content to the page if the page has another version. Does nothing while
+    /// another page locks the file; a later call sends the content.
     fn send_file(&mut self) -> Result<(), Closing> {
         let mut file = match self.file.try_lock() {
             Ok(file) => file,
@@ -219,8 +220,8 @@ impl Conversation<'_> {
         if version == self.known {
             return Ok(());
         }
-        // Drafts are sent only to a new page. Any other page has a text, which a draft would
-        // replace.
+        // Drafts are sent only to a page that has just connected. On any other page, a draft would
+        // replace the text that is being edited.
         let is_first = self.known == 0;
         let drafts = if is_first { file.drafts() } else { Vec::new() };
         self.known = version;
@@ -238,7 +239,7 @@ impl Conversation<'_> {
         self.notify("studio/file", params)
     }
 
-    /// Sends the progress of the download, at most once per [`PROGRESS`] interval.
+    /// Sends the progress of the download, at most once per time [`PROGRESS`].
     fn send_progress(&mut self) -> Result<(), Closing> {
         let now = Instant::now();
         match &mut self.download {
@@ -272,7 +273,7 @@ impl Conversation<'_> {
         }
     }
 
-    /// Answers a request to the host, or starts the download that it asks for.
+    /// Answers a request to the host. If it asks for a download, starts the download instead.
     fn answer(&mut self, request: Request) -> Result<(), Closing> {
         if download::is_asked_for(&request) {
             return self.render(request);
@@ -285,8 +286,8 @@ impl Conversation<'_> {
                 let is_new = file.path().is_none();
                 match file.save(text, field("base"), field("name")) {
                     Ok(version) => {
-                        // The page has the file's new content now. It does not know the path of a
-                        // new scene, so a new scene is sent.
+                        // The page that has saved has the new content already. But it does not know
+                        // the path of a new scene, so a new scene is sent to it.
                         if !is_new {
                             self.known = version;
                         }
@@ -312,7 +313,7 @@ impl Conversation<'_> {
         self.send_all(vec![response(id, answer)])
     }
 
-    /// Renders a picture's file on another thread while this connection is served.
+    /// Renders a picture to a file on another thread, while this connection is served.
     fn render(&mut self, request: Request) -> Result<(), Closing> {
         let id = request.id.clone();
         let failed = |why: &str| vec![response(id.clone(), Err(Refusal::failed(why)))];
@@ -336,7 +337,8 @@ impl Conversation<'_> {
         }
     }
 
-    /// Cancels the download that the request `wanted` has started, or any download if it is `None`.
+    /// Cancels the download that the request with the identifier `wanted` has started. If `wanted`
+    /// is `None`, cancels any download.
     fn cancel(&self, wanted: Option<&Value>) {
         if let Some(download) = &self.download
             && wanted.is_none_or(|wanted| *wanted == download.request)
@@ -346,8 +348,8 @@ impl Conversation<'_> {
     }
 }
 
-/// Returns the code with which the socket must be closed if the host ends or the page's [`Pass`] is
-/// over, and otherwise `None`.
+/// Returns the code with which the socket must be closed, if the host ends or the page's [`Pass`]
+/// is revoked. Returns `None` if the connection continues.
 fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
     if *ending.borrow() {
         return Some(close_code::AWAY);
@@ -355,7 +357,8 @@ fn over(pass: &Pass, ending: &watch::Receiver<bool>) -> Option<CloseCode> {
     pass.is_over().then_some(NotAdmitted::Twice as CloseCode)
 }
 
-/// Returns the close code for an invalid message; `None` if the connection itself is broken.
+/// Returns the code with which the socket is closed after an invalid message. Returns `None` if the
+/// connection itself is broken.
 fn fault(error: axum::Error) -> Option<CloseCode> {
     use tungstenite::Error;
     match *error.into_inner().downcast().ok()? {

@@ -1,7 +1,7 @@
-//! Renders the picture of a text as a file that a page downloads, with the scene's own sampler.
+//! Renders the picture of a text to a file that a page downloads. Uses the scene's own sampler.
 //!
-//! The engine in the browser has one thread and renders the file in slices ([`Sliced`]). The host
-//! on this machine uses several threads (`threaded_download`).
+//! The host on this machine renders the file on several threads (`threaded_download`). The engine
+//! that runs in the browser has only one thread, so it renders the file in slices ([`Sliced`]).
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use lsp_server::{Message, Notification, Request, RequestId};
@@ -17,23 +17,24 @@ use crate::{
     tracer::World,
 };
 
-/// Method of a request for a picture as a PNG.
+/// Method of a request for a picture as a PNG file.
 const PNG: &str = "studio/png";
-/// Method of a request for a picture as an EXR.
+/// Method of a request for a picture as an EXR file.
 pub(super) const EXR: &str = "studio/exr";
 
-/// Returns whether a request asks for a picture's file.
+/// Returns whether a request asks for a picture as a file.
 pub fn is_asked_for(request: &Request) -> bool {
     [PNG, EXR].contains(&&*request.method)
 }
 
-/// Makes the message about the progress of a render: `share` is the part that is done, from 0 to 1.
+/// Makes the message about the progress of a render. `share` is the fraction of the work that is
+/// done, from 0 to 1.
 pub fn progress(share: f64) -> Message {
     let params = json!({ "share": share });
     Notification::new("studio/progress".to_owned(), params).into()
 }
 
-/// Reads the scene of the text in a request's parameters. Returns the scene and the text.
+/// Reads the scene in the field `text` of a request's parameters. Returns the scene and its text.
 pub(super) fn scene(params: &Value) -> Result<(Scene, String), Refusal> {
     let text = params.get("text").and_then(Value::as_str);
     let text = text.ok_or_else(|| Refusal::invalid("there is no `text`"))?;
@@ -55,10 +56,10 @@ pub(super) fn recipe(scene: String) -> Recipe {
     }
 }
 
-/// A picture's file that is rendered in slices.
+/// A picture that is rendered to a file in slices.
 #[derive(Debug)]
 pub struct Sliced {
-    /// The request for the file.
+    /// Identifier of the request for the file.
     pub request: RequestId,
     text: String,
     world: World,
@@ -66,8 +67,8 @@ pub struct Sliced {
 }
 
 impl Sliced {
-    /// Begins to render the file that a request asks for. EXR is refused, since the tables of its
-    /// compression methods would be a quarter of the code that a browser loads.
+    /// Begins to render the file that a request asks for. Refuses to make an EXR file, since the
+    /// tables of EXR's compression methods would be a quarter of the code that a browser loads.
     ///
     /// # Errors
     ///
@@ -88,7 +89,7 @@ impl Sliced {
         })
     }
 
-    /// Renders a slice. Returns the message to send, and whether the message is the final answer.
+    /// Renders a slice. Returns the message to send, and whether this message is the final answer.
     pub fn advance(&mut self) -> (Message, bool) {
         match catch_panics(|| self.slice()) {
             Ok(None) => (progress(self.slices.share()), false),

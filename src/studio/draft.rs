@@ -1,9 +1,10 @@
-//! Stores drafts of a scene, i.e. texts that a page has not saved. Only the user can read them.
+//! Stores drafts of a scene, i.e. texts that were not saved on a page. Only the user can read them.
 //!
-//! The drafts of a scene are in a file in the user's state folder, named after the scene's
+//! All drafts of a scene are in one file in the user's state folder, named after the scene's
 //! canonical path. A browser's own storage is not suitable: it belongs to a port, and the host has
-//! another port in each run. Each page stores one draft under its own key, so that pages do not
-//! overwrite each other's drafts. A draft is removed when its text is saved or when it is too old.
+//! another port in each run. Each page stores its draft under a key of its own, so that pages do
+//! not overwrite each other's drafts. A draft is removed when its text is saved or when it is too
+//! old.
 
 use std::{
     io,
@@ -18,22 +19,25 @@ use crate::files;
 /// A function that reads a file up to the maximum length of a scene.
 pub type Read = fn(&Path) -> io::Result<Vec<u8>>;
 
-/// Time after its last change for which the file with the drafts of a scene is stored: 30 days.
+/// Time since its last change after which the file with the drafts of a scene is removed: 30 days.
+/// A compromise: after a shorter time, drafts could be lost too early; after a longer one, many
+/// forgotten texts would be stored.
 const LIFETIME: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
 /// Maximum number of drafts that are stored for a scene. If there are more, the oldest are removed.
+/// Each open page stores one draft, and users rarely have more than a few pages open.
 const MOST: usize = 10;
 
-/// Draft: a text that a page has not saved.
+/// A draft, i.e. a text that was not saved on a page.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 pub struct Unsaved {
-    /// The key under which a page stores the draft. Each page has a key of its own.
+    /// Key under which the draft is stored. Each page has a key of its own.
     pub id: String,
-    /// The name of a new scene's file, if the page has chosen one.
+    /// File name of a new scene, if the user has chosen one.
     pub name: Option<String>,
     pub text: String,
-    /// Content of the scene's file when the page began to edit it; `None` for a new scene, which
-    /// has no file.
+    /// Content of the scene's file when the page began to edit it; `None` for a new scene without a
+    /// file.
     base: Option<String>,
     /// Time at which the draft was made, in seconds since 1970.
     time: u64,
@@ -53,13 +57,13 @@ impl Unsaved {
     }
 }
 
-/// Path of the file with a scene's drafts; `None` if the system has no state folder.
+/// Path of the file with the drafts of a scene; `None` if the system has no folder for them.
 #[derive(Debug, Default)]
 pub struct Drafts(Option<PathBuf>);
 
 impl Drafts {
     /// Returns the location of the drafts of the scene at `path`. For a new scene, `path` is the
-    /// folder in which the scene would be saved. Also removes drafts of any scene that are too old.
+    /// folder in which it would be saved. Also removes the drafts of all scenes that are too old.
     pub fn of(path: &Path) -> Self {
         let place = || {
             let folder = files::kept_folder("drafts")?;
@@ -72,14 +76,14 @@ impl Drafts {
         Self(place())
     }
 
-    /// Reads the drafts, the newest first. Returns an empty list if the file cannot be read.
+    /// Reads the drafts, the newest first. Returns an empty list if they cannot be read.
     pub fn kept(&self, read: Read) -> Vec<Unsaved> {
         let read = || serde_json::from_slice(&read(self.0.as_deref()?).ok()?).ok();
         read().unwrap_or_default()
     }
 
-    /// Replaces the stored drafts by the first [`MOST`] of `drafts`, which must be sorted with the
-    /// newest first.
+    /// Replaces the stored drafts by the first [`MOST`] of `drafts`, whose order must be from the
+    /// newest to the oldest.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! Serves the page: its files to any client on this machine, and a WebSocket connection to pages
-//! that [`Access`] admits.
+//! Serves the page. Any client on this machine gets the page's files. Only pages that [`Access`]
+//! admits get a WebSocket connection.
 
 use std::{
     io,
@@ -33,9 +33,9 @@ use super::{
     scene_file::SceneFile,
 };
 
-/// Maximum time that the host waits, when it ends, for its connections to finish a save and to
-/// close. After that, the host ends in any case, even during a save on a disk that does not
-/// respond.
+/// Maximum time that the host, when it ends, waits for its connections to finish a save and to
+/// close. Then the host ends in any case, even if a disk does not respond. Half a second suffices
+/// for a usual save, and is short enough for a user who has pressed Ctrl+C.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// HTML of Studio's page, as `npm run build` writes it.
@@ -45,7 +45,7 @@ const SCRIPT: &[u8] = include_bytes!("../../studio/page/dist/studio.js");
 /// Style sheet of Studio's page, as `npm run build` writes it.
 const STYLE: &[u8] = include_bytes!("../../studio/page/dist/studio.css");
 
-/// The host of a page on this machine, and the scene that the page edits.
+/// The host that serves a page on this machine, and the scene that the page edits.
 #[derive(Debug)]
 pub struct Host {
     listener: TcpListener,
@@ -58,13 +58,14 @@ pub struct Host {
 struct Shared {
     access: Access,
     file: Mutex<SceneFile>,
-    /// Whether the host ends. Each connection holds a receiver until the connection has ended.
+    /// Whether the host ends. Each connection holds a receiver of this value until the connection
+    /// ends.
     ending: watch::Sender<bool>,
 }
 
 impl Host {
-    /// Listens at a port that only this machine can reach. If `port` is 0, the system chooses a
-    /// free port.
+    /// Listens at a port that only programs on this machine can reach. If `port` is 0, the system
+    /// chooses a free port.
     ///
     /// # Errors
     ///
@@ -83,23 +84,24 @@ impl Host {
         })
     }
 
-    /// Returns two addresses of the page. The first one is printed for the user. The second one is
-    /// valid once, and is used in a command line, which other users of the machine can read.
+    /// Returns two addresses of the page. The first is printed for the user. The second is given to
+    /// a browser in a command line, which other users of the machine can read, so it is valid only
+    /// once.
     pub fn addresses(&self) -> [String; 2] {
         let port = self.port;
         let tokens = self.shared.access.tokens();
         tokens.map(|token| format!("http://127.0.0.1:{port}/#token={token}"))
     }
 
-    /// Serves until `end` is ready. A save in progress is completed, unless it takes longer than
-    /// `FAREWELL`.
+    /// Serves pages until the future `end` is ready. A save in progress is completed, unless it
+    /// takes longer than half a second.
     ///
     /// # Errors
     ///
     /// Returns an error if the system's event queue cannot be set up.
     pub fn serve(self, end: impl Future<Output = ()>) -> io::Result<()> {
-        // The runtime's only thread transports messages; each connection does its work on a thread
-        // of its own.
+        // The runtime's only thread transports messages. Each connection does its work on its own
+        // thread.
         let runtime = Builder::new_current_thread()
             .enable_io()
             .enable_time()
@@ -117,7 +119,7 @@ impl Host {
             let _ = timeout(FAREWELL, self.shared.ending.closed()).await;
             Ok::<_, io::Error>(())
         })?;
-        // A connection that has not ended may still use the runtime, so the runtime is never
+        // A connection that has not ended yet may still use the runtime, so the runtime is never
         // dropped.
         std::mem::forget(runtime);
         Ok(())
@@ -140,8 +142,8 @@ fn routes(port: u16, shared: Arc<Shared>) -> MakeService {
         .into_make_service_with_connect_info::<Visitor>()
 }
 
-/// Refuses requests that are not for this host. Adds headers to each response that forbid caching,
-/// guessing of types, and referrers.
+/// Refuses requests that are not meant for this host. Adds headers to each response that forbid
+/// caching, guessing of content types, and referrers.
 async fn guard(State(port): State<u16>, request: Request, next: Next) -> Response {
     let refusal = access::refusal(port, request.method(), request.uri(), request.headers());
     let mut response = match refusal {
@@ -166,8 +168,8 @@ async fn guard(State(port): State<u16>, request: Request, next: Next) -> Respons
     response
 }
 
-/// Serves the page's HTML. Its content security policy allows styles with a nonce, since the editor
-/// creates some styles while it runs.
+/// Serves the HTML of the page. Since the editor creates some styles while it runs, the content
+/// security policy allows styles with a nonce, i.e. a random word for this response.
 async fn index() -> Response {
     let Ok(nonce) = access::secret() else {
         let why = "There is no randomness.\n";
@@ -195,8 +197,8 @@ async fn socket(
         .on_upgrade(async move |socket| admit(&shared, &visitor, socket).await)
 }
 
-/// Waits for the first message, which is a token, and begins to serve the page if the token is
-/// valid. [`Connection`](super::connection_limits::Connection) limits the waiting time.
+/// Waits for the first message, which must be a token. If the token is valid, begins to serve the
+/// page. [`Connection`](super::connection_limits::Connection) limits the waiting time.
 async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
     let Some(Ok(Message::Text(token))) = socket.recv().await else {
         return;
@@ -211,8 +213,7 @@ async fn admit(shared: &Arc<Shared>, visitor: &Visitor, mut socket: WebSocket) {
             let reason = "".into();
             let goodbye = Message::Close(Some(CloseFrame { code, reason }));
             let _ = socket.send(goodbye).await;
-            // Messages that are still unread would reset the connection before the code arrives, so
-            // they are read here.
+            // Unread messages would reset the connection before the code arrives, so they are read.
             while let Some(Ok(_)) = socket.recv().await {}
         }
     }
@@ -223,6 +224,6 @@ fn begin(shared: Arc<Shared>, pass: Pass, socket: WebSocket) {
     let runtime = Handle::current();
     let ending = shared.ending.subscribe();
     let thread = thread::Builder::new().name("connection".to_owned());
-    // A panic of the thread ends its connection only, so its result is ignored.
+    // A panic of the thread ends only its own connection, so the result is ignored.
     let _ = thread.spawn(move || converse(runtime, socket, &pass, &ending, &shared.file));
 }

@@ -1,5 +1,5 @@
-//! Reads, watches and saves the file of a scene. Studio reads and writes no other files, except
-//! drafts and new scenes in the same folder.
+//! Reads, watches and saves the file of a scene. Besides this file, Studio reads and writes only
+//! drafts, and new scenes in the same folder.
 
 use std::{
     io,
@@ -14,30 +14,32 @@ use crate::{
     source::Source,
 };
 
-/// What is at a path: a text, or `None` if there is no file. The error is the reason why a file
-/// there cannot be read as text; such a file must not be overwritten.
+/// Content found at a path: a text, or `None` if there is no file. The error says why a file cannot
+/// be read as text; such a file must not be overwritten.
 pub type FileText = Result<Option<String>, String>;
 
 /// The file of a scene, or a new scene that has no file yet.
 #[derive(Debug)]
 pub struct SceneFile {
     read: Read,
-    /// The folder in which a new scene is saved.
+    /// Folder in which a new scene is saved.
     folder: PathBuf,
     path: Option<PathBuf>,
     /// Content of the file when it was last read or saved.
     content: FileText,
-    /// Number of the content, which increases by one with each change of `content`.
+    /// Version number of `content`, which increases by one with each change.
     version: u64,
-    /// Slot with the file's content after each change of the file. If it is `None`, a change by
-    /// another program is found only on saving.
+    /// Slot in which the watcher puts the file's content after each change. It is `None` if the
+    /// file cannot be watched; a change by another program is then noticed only when the scene is
+    /// saved.
     watch: Option<Arc<Latest<FileContent>>>,
     drafts: Drafts,
-    /// New scenes in the same folder that pages have saved, and may save again.
+    /// New scenes in the same folder that pages have saved under another name. Pages may save these
+    /// files again.
     beside: Vec<PathBuf>,
 }
 
-/// Error: a text was not saved.
+/// Reason why a text was not saved.
 #[derive(Debug, PartialEq, Eq)]
 pub enum NotSaved {
     /// The file has changed since the page read it. Contains the file's current content.
@@ -89,7 +91,7 @@ impl SceneFile {
         })
     }
 
-    /// Makes a new scene, which has no file yet and will be saved in `folder`.
+    /// Makes a new scene. It has no file yet; its file will be in `folder`.
     pub fn new(folder: PathBuf, read: Read) -> Self {
         Self {
             read,
@@ -115,12 +117,12 @@ impl SceneFile {
             .into_owned()
     }
 
-    /// Returns the content when the file was last read or saved.
+    /// Returns the file's content at the time when the file was last read or saved.
     pub fn content(&self) -> &FileText {
         &self.content
     }
 
-    /// Returns the drafts that differ from the file, the newest first.
+    /// Returns the drafts whose text differs from the file's content, the newest first.
     pub fn drafts(&self) -> Vec<Unsaved> {
         let content = self.content.as_ref().ok().and_then(Option::as_deref);
         let mut drafts = self.drafts.kept(self.read);
@@ -128,7 +130,8 @@ impl SceneFile {
         drafts
     }
 
-    /// Replaces the draft with the key `id`, or removes it if `unsaved` is `None`.
+    /// Replaces the draft that a page has stored under the key `id`. If `unsaved` is `None`,
+    /// removes it.
     ///
     /// # Errors
     ///
@@ -140,8 +143,9 @@ impl SceneFile {
         self.drafts.keep(&drafts)
     }
 
-    /// Reads the file again if the watcher reports a change, and returns the version. The content
-    /// from the watcher is not used, since a page may have saved a newer one meanwhile.
+    /// Reads the file again if the watcher reports a change, and returns the version number. The
+    /// content from the watcher itself is not used, since a page may have saved a newer one
+    /// meanwhile.
     pub fn refresh(&mut self) -> u64 {
         if let (Some(path), Some(watch)) = (&self.path, &self.watch)
             && watch.try_take().is_some()
@@ -166,8 +170,8 @@ impl SceneFile {
     }
 
     /// Saves the text `new` if the file still contains `base`, the content that the page began to
-    /// edit. A new scene, also one beside the open file, needs a name that no file has. Removes
-    /// drafts with the same text. Returns the version.
+    /// edit. With another `name`, saves a new scene in the same folder; no file may have this name
+    /// yet. Removes drafts with the text `new`. Returns the version number of the content.
     ///
     /// # Errors
     ///
@@ -232,7 +236,7 @@ impl SceneFile {
                 self.version += 1;
             }
         }
-        // Only drafts of the saved text are removed.
+        // Only the drafts with the saved text are removed.
         drafts.retain(|it| it.text != new);
         let _ = self.drafts.keep(&drafts);
         if !is_other {
@@ -251,8 +255,8 @@ fn create(name: &str, path: &Path, text: &str) -> Result<(), NotSaved> {
 fn text(bytes: io::Result<Vec<u8>>) -> io::Result<String> {
     let bytes = bytes?;
     let no_text = |why| io::Error::new(io::ErrorKind::InvalidData, why);
-    // In UTF-16, about half of the bytes are zero, so a text without zero bytes need not be tested
-    // further.
+    // In UTF-16, about half of the bytes of a scene are zero. So a text without zero bytes is not
+    // UTF-16.
     if bytes.contains(&0) && Source::from_bytes("", bytes.clone()).is_utf16() {
         return Err(no_text("it is UTF-16, not UTF-8: save it as UTF-8"));
     }
@@ -269,12 +273,11 @@ fn check_name(name: &str) -> Result<(), &'static str> {
         Some(_) if name.contains(['/', '\\']) || name.starts_with('.') => {
             Err("the name is that of a file in the current folder, and no path")
         }
-        // Windows does not allow these characters in names, and a colon there can lead to another
-        // drive.
+        // Windows does not allow these characters in names. A colon can even lead to another drive.
         Some(_) if name.contains(is_odd) => {
             Err("the name of a file has none of `: * ? \" < > |`, and no control character")
         }
-        // On Windows, these names are devices, even with a dot and more text after them.
+        // On Windows, these names are devices, even if a dot and more text follow them.
         Some(stem) if is_device(stem.split('.').next().unwrap_or_default()) => {
             Err("the name is that of a device")
         }
@@ -309,8 +312,8 @@ mod tests {
 
     #[test]
     fn what_is_saved_between_reading_and_writing_is_kept() {
-        /// Reads a file. If the file contains `mine`, then lets another program save it, right
-        /// after reading.
+        /// Reads a file. If the file contains `mine`, another program then saves a text over it,
+        /// right after reading.
         fn read_and_saved(path: &Path) -> io::Result<Vec<u8>> {
             let bytes = files::read(path, 99)?;
             if bytes == b"mine" {

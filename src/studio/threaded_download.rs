@@ -1,5 +1,5 @@
-//! Renders a picture's file on several threads, while the connection continues and sends the
-//! progress.
+//! Renders a picture to a file on several threads. Meanwhile, the connection continues and sends
+//! the progress.
 
 use std::{
     error::Error,
@@ -22,24 +22,26 @@ use crate::{
     tracer::World,
 };
 
-/// Progress and cancellation of a render, shared between threads.
+/// Progress and cancellation of a render, shared between its threads and the connection.
 #[derive(Debug, Default)]
 pub struct Watch {
     pub cancel: AtomicBool,
-    /// Number of samples, or of pixels of an exact picture, that are done.
+    /// Number of samples that are done or, for a picture that is computed exactly, number of
+    /// pixels.
     done: AtomicU64,
     expected: AtomicU64,
 }
 
 impl Watch {
-    /// Returns the share of the work that is done, from 0 to 1.
+    /// Returns the fraction of the work that is done, from 0 to 1.
     pub fn share(&self) -> f64 {
         let [done, expected] = [&self.done, &self.expected].map(|it| it.load(Ordering::Relaxed));
         (done as f64 / expected.max(1) as f64).min(1.0)
     }
 }
 
-/// Answers a request for a picture's file. The file has the same bytes as that of `pinhole render`.
+/// Answers a request for a picture as a file. The file is identical to the one that
+/// `pinhole render` writes.
 pub fn answer(request: Request, watch: &Watch) -> Message {
     let Request { id, method, params } = request;
     response(id, catch_panics(|| file(&method, &params, watch)))

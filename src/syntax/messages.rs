@@ -16,7 +16,7 @@ pub const ODD_SPACE: Message = Message::new(["odd_space", "{0} is no white space
 pub const UNCLOSED_COMMENT: Message = Message::new(["unclosed_comment", "a comment is never closed", "the comment starts here and takes the rest of the text", "write `*/` where it ends, or begin it with `//` if it is one line"]);
 pub const NESTED_COMMENT: Message = Message::new(["nested_comment", "comments do not nest: the first `*/` ends this one", "this opens no other comment", ""]).safe();
 pub const COMMENT_SIGN: Message = Message::new(["comment_sign", "a comment begins with `//`, not with `{0}`{1}", "`//` should stand here", "write `//`; the comment takes the rest of the line"]).safe();
-// Messages about items.
+// Messages about items, i.e. definitions and blocks.
 pub const MISSING_NAME: Message = Message::new(["missing_name", "a `let` lacks its name", "a name should stand here", "write a name of letters, digits and `_`, such as `let height = 2`"]);
 pub const BAD_NAME: Message = Message::new(["bad_name", "`{0}` cannot be a name", "a name should stand here", "a name is made of the letters a to z, digits and `_`, and does not start with a digit{1}"]);
 pub const MISSING_EQUALS: Message = Message::new(["missing_equals", "`let {0}` lacks its `=`", "`=` should stand here", ""]).safe();
@@ -26,10 +26,10 @@ pub const MISPLACED_LET: Message = Message::new(["misplaced_let", "a `let` stand
 pub const MISSING_KIND: Message = Message::new(["missing_kind", "a block lacks its kind", "what is this?", "write what it is before the `{`, such as `sphere {`"]);
 pub const BAD_HEAD: Message = Message::new(["bad_head", "only a kind and a name stand before a `{`", "this does not belong here", "write `{0} {`, and then its fields"]).safe();
 pub const BAD_REPETITION: Message = Message::new(["bad_repetition", "{0}", "not written so", "{1}"]);
-/// Message about the indices in an object's head, `for INDEX < COUNT`, if no more specific message
-/// applies.
+/// Message about a mistake in `for INDEX < COUNT`, which repeats an object. It is used if no more
+/// specific message applies.
 pub const REPEATED: &str = "an object is repeated by `for INDEX < COUNT`";
-/// Help for the message [`REPEATED`].
+/// Help for a mistake in `for INDEX < COUNT`, which repeats an object: an example.
 pub const REPEATED_SO: &str = "write, for example, `sphere for i < 8 { center (i, 1, 0) }`: i is 0, 1, 2, … 7; of two indices, as in `for i < 8, j < i`, the second counts within the first";
 pub const MISPLACED_INDICES: Message = Message::new(["bad_repetition", "indices stand in the head of an object", "not in its block", "write them before the `{`, as in `sphere for i < 8 {`"]);
 pub const COUNT_WITH_LAST: Message = Message::new(["bad_repetition", "an index ends before its count, and is never equal to it", "not written so", ""]);
@@ -78,8 +78,8 @@ const STATEMENTS: &[[&str; 3]] = &[
     ["function fn def fun lambda return class struct", "functions of one's own", "give each result a name with `let NAME = VALUE`"],
 ];
 
-/// Returns the plural noun and the help from the row of [`STATEMENTS`] that contains `word`.
-/// Returns `None` if `word` starts no statement of another language.
+/// Returns a plural noun for the statements of another language that start with `word`, such as
+/// "loops", and the help. Returns `None` if `word` starts no such statement.
 pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])
@@ -90,7 +90,8 @@ pub fn statement(word: &str) -> Option<[&'static str; 2]> {
 const LEFT_HANDED: &str = "; turn the sign of every z (`pinhole explain left_handed`)";
 
 /// Patterns that recognize files of other programs. A file matches a row if it starts as the row
-/// says, contains enough of the row's strings, and none of its characters. The columns of a row:
+/// says, contains enough of the row's strings, and contains none of the row's forbidden characters.
+/// The columns of a row:
 ///
 /// - the name of the format;
 /// - the possible beginnings of the file, of at most five characters, white space left out,

@@ -1,10 +1,10 @@
 //! Parses a text into a syntax tree.
 //!
-//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds. pest
-//! parses the items that follow the grammar (`parser`). Any other item is read token by token by an
-//! error recovery (`tokens`, `recovery`), which reports one problem for each mistake and makes
-//! nodes of what it understands. Names are looked up only to choose between explanations of a
-//! mistake.
+//! In: a text. Out: its syntax tree, its comments and its problems. Parsing always succeeds. pest,
+//! a parser generated from the grammar, reads the items that follow the grammar (`parser`). Any
+//! other item is read token by token by an error recovery (`tokens`, `recovery`), which reports one
+//! problem for each mistake and makes nodes of what it understands. Names are looked up only to
+//! choose between explanations of a mistake.
 
 #![cfg_attr(
     not(test),
@@ -37,7 +37,8 @@ pub use tree::Tree;
 use crate::{diagnostic::Diagnostic, source::Span};
 
 /// Maximum depth of nested parentheses, signs and calls in a value. A deeper value is reported as a
-/// problem, so that parsing cannot overflow its stack.
+/// problem, because parsing it could overflow the stack. No usual value nests nearly as deep. A
+/// larger maximum would need threads with a larger stack.
 pub const NESTING_LIMIT: usize = 256;
 
 /// Result of parsing.
@@ -53,9 +54,9 @@ pub struct Parsed<'s> {
     /// Whether a mistake, such as an unclosed comment, hides a part of the text. No missing block
     /// or field is then reported, since the hidden part may contain it.
     pub is_cut: bool,
-    /// Whether an item follows the grammar but was probably meant otherwise, such as a block with a
-    /// field that it does not have, and recovery found no better reading. Recovery may decide that
-    /// by the line ends, so a formatted copy of such a text must be parsed again to see whether it
-    /// has syntax errors.
+    /// Whether an item follows the grammar but was probably meant otherwise, such as a block with
+    /// an unknown field, and error recovery found no better reading. Error recovery depends on line
+    /// ends, so a formatted copy of the text must be parsed again to see whether it has syntax
+    /// errors.
     pub is_doubtful: bool,
 }

@@ -1,10 +1,10 @@
 //! Parses a text into the tree.
 //!
-//! In: a source. Out: its tree, comments and problems. pest parses every item that follows the
-//! grammar, a few kilobytes at a time. The functions here convert pest's pairs to nodes and are
-//! named after the grammar's rules. `recovery` reads an item that pest rejects. It also reads an
-//! item that pest accepts but that was probably meant otherwise, such as a block with a field that
-//! it does not have.
+//! In: a source. Out: its tree, comments and problems. pest, a parser generated from the grammar,
+//! reads every item that follows the grammar, a few kilobytes at a time. The functions here convert
+//! pest's pairs (matches of grammar rules) to nodes and are named after the rules. `recovery` reads
+//! an item that pest rejects. It also reads an item that pest accepts but that was probably meant
+//! otherwise, such as a block with a field that it does not have.
 //!
 //! A text without mistakes can be split after each `}` and before each `let`: in such a text, every
 //! `}` ends a block and every `let` starts a definition.
@@ -38,7 +38,7 @@ use crate::{
     source::{Source, SourceId, Span},
 };
 
-/// pest's parser of the grammar's rules.
+/// Parser of the grammar's rules, which pest generates.
 #[derive(pest_derive::Parser)]
 #[grammar = "grammar/scn.pest"]
 struct Grammar;
@@ -51,18 +51,20 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
         .op(Op::prefix(Rule::sign))
 });
 
-/// Stack size, in bytes, of the threads that parse. Without optimization, pest and recovery use
-/// tens of kilobytes of stack for each level of nesting, and there are at most 256 levels
+/// Stack size, in bytes, of the threads that parse. Without optimization, pest and error recovery
+/// use tens of kilobytes of stack for each level of nesting, and there are at most 256 levels
 /// ([`NESTING_LIMIT`](super::NESTING_LIMIT)). All levels together fit into half of this size.
 pub const STACK_BYTES: usize = 64 << 20;
 
 /// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
 /// shorter value cannot nest deep, since each level takes at least one byte, so it is parsed on the
-/// caller's stack. That saves most of the threads for the defaults of fields, which are short.
+/// caller's stack. Most defaults of fields are shorter than 32 bytes and need no thread. With a
+/// much larger minimum, a value could overflow a small stack.
 const SHORT_VALUE_BYTES: usize = 32;
 
-/// Minimum number of bytes that pest reads at a time; it reads on to the next split point of the
-/// text. For a whole file at once, pest's pairs would take much memory.
+/// Minimum number of bytes that pest, the generated parser, reads at a time. It reads on to the
+/// next place where the text can be split. pest keeps all matches of grammar rules in memory until
+/// it has read its part of the text, so a much larger number would take much memory.
 pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.
@@ -99,7 +101,7 @@ pub fn parse_unless<'s>(source: &'s Source, id: SourceId, cancel: &AtomicBool) -
 }
 
 /// Reads the item at `at`, which does not follow the grammar, and returns its end. If the text at
-/// `at` can only continue the definition before it, removes the node of that definition and reads
+/// `at` can only continue the definition before it, removes the node of this definition and reads
 /// the definition again from its start.
 fn recover_item(recovery: &mut Recovery<'_, '_>, text: &str, mut at: usize) -> usize {
     if let Some(Item::Definition(last)) = recovery.items.last()
@@ -161,15 +163,15 @@ fn with_stack<T: Send>(work: impl Fn() -> T + Sync) -> T {
     })
 }
 
-/// Converter of pest's pairs into nodes of the tree.
+/// Converter of pest's pairs, i.e. matches of grammar rules, into nodes of the syntax tree.
 pub struct TreeBuilder<'w, 's> {
     text: &'s str,
     id: SourceId,
     words: &'w Vocabulary<'s>,
-    /// Start of the slice that pest reads; pest's offsets count from it.
+    /// Byte offset of the text that pest reads. The positions that pest returns count from it.
     base: usize,
     /// Whether the last item follows the grammar but has an unknown field or function, so that
-    /// recovery should read it again.
+    /// error recovery should read it again.
     doubtful: bool,
 }
 
@@ -185,10 +187,10 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         }
     }
 
-    /// Reads items of the text in `range` with pest, and adds their nodes to `recovery`. Returns
-    /// the end of the last item, and `true`. If pest's reading of an item is doubtful, recovery
-    /// reads the item again; if it finds another end of the item, stops there and returns that end
-    /// and `false`.
+    /// Parses the items in `range` with pest, and adds their nodes to `recovery`. Returns the end
+    /// of the last item, and `true`. An item that was probably meant otherwise is read again by
+    /// error recovery. If this reading ends elsewhere, stops there and returns the new end and
+    /// `false`.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();
@@ -309,8 +311,8 @@ impl<'w, 's> TreeBuilder<'w, 's> {
         {
             return self.operand(operand);
         }
-        // The closures for operands, signs and operators share `self`. Each borrows it only while
-        // it makes a node.
+        // The closures for operands, signs and operators share `self`. Each closure borrows it only
+        // while it makes a node.
         let this = std::cell::RefCell::new(self);
         PRECEDENCE
             .map_primary(|pair| this.borrow_mut().operand(pair))

@@ -23,8 +23,8 @@ use crate::{
     threads,
 };
 
-/// Maximum number of threads that parse one file. A single thread lowers the items of all parts, so
-/// more parsers would only wait for that thread.
+/// Maximum number of threads that parse one file. One thread alone turns the parsed items into a
+/// scene, so more parsing threads would only wait for it.
 const MOST_THREADS: usize = 4;
 
 /// Parses a file in parts of at least `bytes` bytes and passes the items of each part to `each`, in
@@ -69,8 +69,9 @@ pub fn parse_in_parts<'s>(
     };
     let count = threads::available().min(parts.len()).min(MOST_THREADS);
     thread::scope(|scope| {
-        // Thread i parses the parts i, i + count, i + 2·count and so on. Its channel holds one
-        // result, so the thread runs at most two of its parts ahead of the consumer.
+        // Thread i parses the parts i, i + count, i + 2·count and so on, where count is the number
+        // of threads. Its channel holds one result, so the thread runs at most two of its parts
+        // ahead of the consumer.
         let parsed: Vec<mpsc::Receiver<_>> = (0..count)
             .map(|first| {
                 let (found, results) = mpsc::sync_channel(1);
@@ -99,8 +100,8 @@ pub fn parse_in_parts<'s>(
     })
 }
 
-/// Returns the byte ranges of the parts. Each part ends at a split point and has at least `bytes`
-/// bytes, except the last one.
+/// Returns the byte ranges of the parts. Each part ends where the text can be split, after a `}` or
+/// before a `let`. Each has at least `bytes` bytes, except the last one.
 fn ranges(source: &Source, bytes: usize, scan: &Scan) -> Vec<Range<usize>> {
     let (mut parts, mut from) = (Vec::new(), source.bom_len());
     while let Some(to) = first_from(&scan.split_points, from + bytes.max(1)) {

@@ -17,8 +17,8 @@ pub struct Message {
 }
 
 impl Message {
-    /// Makes a message from its code, message, label and help. Fixes of the problem are marked as
-    /// unsafe; see [`Message::safe`].
+    /// Makes a message from its code, message, label and help. Fixes of the problem are unsafe
+    /// unless [`Message::safe`] marks them as safe.
     pub const fn new(texts: [&'static str; 4]) -> Self {
         Self {
             texts,

@@ -17,9 +17,10 @@ use crate::{
     source::{SourceId, Span},
 };
 
-/// Minimum distance, in bytes, between two [`Scan::split_points`]; a nearer point is left out,
-/// which saves memory. The distance is small compared with
-/// [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), the number of bytes that pest reads at a time.
+/// Minimum distance, in bytes, between two recorded places where a text can be split for parsing. A
+/// nearer place is left out, which saves memory. The distance is small compared with
+/// [`CHUNK_BYTES`](super::parser::CHUNK_BYTES), the minimum number of bytes that are parsed at a
+/// time, so hardly more than this minimum is parsed.
 const SPLIT_SPACING_BYTES: usize = 256;
 
 /// Result of scanning a text.
@@ -29,7 +30,7 @@ pub struct Scan {
     comments: Vec<Span>,
     /// Offsets where more parentheses and minuses are open than [`NESTING_LIMIT`] allows in a
     /// value. Subtraction signs are counted as if they were negations, so the count may be too
-    /// high. Recovery reads the items at these offsets and counts exactly.
+    /// high. Error recovery reads the items at these offsets and counts exactly.
     pub deep: Vec<usize>,
     /// Ascending offsets where a text without mistakes can be split: after a `}` or before a
     /// `let`. Two of them are at least [`SPLIT_SPACING_BYTES`] apart.
@@ -48,7 +49,8 @@ impl Scan {
         // open parentheses, and for each open parenthesis the number of minuses before it.
         let (mut minuses, mut outside, mut open) = (0, 0, Vec::new());
         let mut is_told = false;
-        // Number of tokens between two checks for cancellation.
+        // Number of tokens between two checks for cancellation. A much larger number would delay
+        // cancellation, and a much smaller one would slow the scan.
         const STRIDE: usize = 1 << 14;
         for count in 0_usize.. {
             let token = lexer.token();
@@ -112,7 +114,7 @@ impl Scan {
         self.odd_spaces.extend(alone.take(room));
     }
 
-    /// Adds a split point, unless it is too near the previous one.
+    /// Records a place where the text can be split, unless it is too near the previous one.
     fn add_split_point(&mut self, place: usize) {
         if self
             .split_points
@@ -145,8 +147,8 @@ impl Scan {
         let hides = |place: &Span| text[place.start..].starts_with('\r');
         parsed.is_cut |= self.odd_spaces.iter().any(hides);
         if let Some(open) = self.open_comment(text) {
-            // An unclosed comment hides the rest of the text. Problems that only this causes are
-            // dropped.
+            // An unclosed comment hides the rest of the text. Problems that only the hidden text
+            // causes are dropped.
             parsed.problems.retain(|problem| {
                 let first = problem.labels.first().map_or(0, |label| label.span.end);
                 problem.code != "pinhole::unclosed_block" && first < open.start

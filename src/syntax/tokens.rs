@@ -2,8 +2,8 @@
 //!
 //! In: a text and an offset. Out: one token after the other, including comments; between two tokens
 //! there is only white space. The lexer does not know the grammar, so it accepts any text: a
-//! character that starts no other token is a token by itself. Recovery, the editor and the scan use
-//! the lexer; the formatter walks the tree instead.
+//! character that starts no other token is a token by itself. Error recovery, the editor and the
+//! scan before parsing use the lexer; the formatter walks the tree instead.
 
 /// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -237,7 +237,7 @@ pub fn numeric_part(written: &str) -> &str {
 
 /// Returns whether a name occurs in a text outside its comments.
 pub fn has_name(text: &str, name: &str) -> bool {
-    // Most texts do not contain the name at all, so that the lexer does not run.
+    // Most texts do not contain the name at all. For these, the lexer does not run.
     let mut lexer = Lexer::new(text, 0);
     text.contains(name)
         && loop {

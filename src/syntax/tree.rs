@@ -75,8 +75,8 @@ impl Definition<'_> {
     }
 }
 
-/// A block: `KIND NAME? { FIELD VALUE … }`, or with indices `KIND NAME? for INDEX < COUNT, … {
-/// FIELD VALUE … }`. The part before the `{` is its head.
+/// A block: `KIND NAME? { FIELD VALUE … }`, or with indices
+/// `KIND NAME? for INDEX < COUNT, … { FIELD VALUE … }`. The part before the `{` is its head.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Block<'s> {
@@ -197,8 +197,8 @@ impl<'s> Value<'s> {
         Self { kind, span }
     }
 
-    /// Returns the direct parts of a value, in order: arguments, elements or operands. Empty for a
-    /// value without parts.
+    /// Returns the arguments, elements or operands of a value, in order. Returns an empty list for
+    /// any other value, such as a number.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             ValueKind::Call(call) => call.arguments.iter().map(|e| &e.value).collect(),
@@ -253,8 +253,8 @@ pub enum ValueKind<'s> {
         /// The operators and their right operands, in order.
         rest: Vec<Step<'s>>,
     },
-    /// A missing value after a field's name. Lowering reports it, since lowering knows the fields:
-    /// the value may be missing, or the name may have been meant as a value.
+    /// A missing value after a field's name. It is reported later, when the fields of the block are
+    /// known: the value may be missing, or the name may have been meant as a value.
     Missing,
     /// Text that was not understood; a problem was reported for it.
     Bad,

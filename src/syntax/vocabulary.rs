@@ -1,8 +1,8 @@
-//! The words that recovery knows.
+//! The words that error recovery knows.
 //!
-//! The grammar accepts any name as a field, a kind or a value. To explain a mistake, recovery must
-//! know which names exist: in `radius color olive`, `color` is a field, so the value of `radius` is
-//! missing. Names are looked up in the schema and among the definitions of the text.
+//! The grammar accepts any name as a field, a kind or a value. To explain a mistake, error recovery
+//! must know which names exist: in `radius color olive`, `color` is a field, so the value of
+//! `radius` is missing. Names are looked up in the schema and among the definitions of the text.
 
 use std::{collections::HashMap, sync::OnceLock};
 
@@ -50,7 +50,7 @@ impl<'s> Vocabulary<'s> {
         row.is_some_and(|row| row.must.contains(&Condition::Whole))
     }
 
-    /// Returns whether all parts of a field's value must be greater than 0.
+    /// Returns whether all coordinates of a field's value must be greater than 0.
     pub fn is_positive(&self, kind: &str, field: &str) -> bool {
         let row = schema::block(kind).and_then(|row| row.field(field));
         row.is_some_and(|row| row.must.contains(&Condition::EachMoreThanZero))
@@ -111,7 +111,7 @@ impl<'s> Vocabulary<'s> {
     }
 
     /// Returns whether a name surely stands for a number: pi, an index, or a name that is defined
-    /// as one.
+    /// as a number.
     pub fn is_factor(&self, name: &str) -> bool {
         name == "pi" || self.lets().get(name).copied().unwrap_or(false)
     }
@@ -122,8 +122,8 @@ impl<'s> Vocabulary<'s> {
     }
 
     /// Returns whether a field that follows the grammar was perhaps meant otherwise: the block
-    /// `kind` has no such field, the value is the name of a field, or the field takes a word and
-    /// its value is something else.
+    /// `kind` has no such field, the value is the name of a field, or the field takes the name of a
+    /// method and its value is something else.
     pub fn is_doubtful(&self, kind: &str, field: &Field<'_>) -> bool {
         let row = schema::block_or_nearest(kind);
         let takes = row.and_then(|row| Some(row.field(field.name.text)?.takes));

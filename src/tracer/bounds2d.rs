@@ -20,20 +20,21 @@ use crate::{
 /// Bounds of an object as seen from the eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Extent {
-    /// Ranges of X and Y, as in [`Direction`](super::camera::Direction), in which rays hit the
-    /// object.
+    /// Ranges of the components X (to the right) and Y (down) of a ray's direction in which rays
+    /// may hit the object.
     pub across: [Interval; 2],
-    /// Maximum of the object's inverse depth.
+    /// Upper bound of the inverse depths of the object's points.
     pub nearest: f64,
 }
 
-/// Amount by which a bound of an object that is computed as a quotient is widened, as a fraction of
-/// the bound's value: 2^−40. The few rounding errors of such a bound amount to 2^−50.
+/// Fraction of its value by which a computed bound of an object is widened: 2^−40. It is far more
+/// than the few rounding errors of such a bound, about 2^−50, so that the bound is certainly not
+/// too tight.
 const QUOTIENT_SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Minimum of a number that an object's bounds are computed from. An object with a smaller one
-/// counts as unbounded. Rounding errors, 2^−53 of a number, then stay far above 1e-308, below which
-/// `f64` loses digits.
+/// Minimum of the lengths and products of lengths from which an object's bounds are computed. If
+/// one is smaller, the object counts as unbounded. A number of at least this size has rounding
+/// errors of 2^−53 of itself, because it is far above 1e-308, below which `f64` loses digits.
 const SMALLEST: f64 = 1e-280;
 
 impl Object<f64> {
@@ -46,7 +47,7 @@ impl Object<f64> {
         face: Option<u8>,
     ) -> (Self, Option<Extent>) {
         let (object, corners) = if let Shape::Triangle(shape) = shape {
-            // A triangle's corners are at hand when it is prepared.
+            // Preparing a triangle also computes its corners.
             let (triangle, corners) = triangle::prepare(double, shape).unzip();
             (
                 Object::Convex(triangle.unwrap_or_else(Convex::nothing)),
@@ -58,12 +59,14 @@ impl Object<f64> {
         let object = object.narrowed(&fast.window);
         let ahead = fast.window.z;
         let hull = match (&object, shape.cuboid(), corners) {
-            // In such a wide view, products with Z (`ahead`) may underflow and lose digits.
+            // In an extremely wide view, the component Z (`ahead`) of all rays' directions is so
+            // small that products with it may underflow and lose digits.
             _ if ahead < SMALLEST => Hull::Unbounded,
             (Self::Sphere(sphere), ..) => of_sphere(sphere, ahead),
             (_, Some(cuboid), _) => of_corners(&cuboid::corners(fast, cuboid), ahead),
             (_, None, Some(corners)) => of_corners(&corners, ahead),
-            // What covers the window is near enough for any other kind.
+            // Other kinds of objects have no convex hull to bound. They get the whole window as
+            // bounds, and only their depth is limited.
             (_, None, None) => Hull::Unbounded,
         };
         let extent = match hull {
@@ -86,8 +89,7 @@ enum Hull {
     Behind,
     /// All of the hull is in front of the eye.
     Ahead(Extent),
-    /// The hull is on both sides of the eye, or unlimited, or its numbers exceed the range of
-    /// `f64`.
+    /// The hull is on both sides of the eye, or infinite, or its numbers exceed the range of `f64`.
     Unbounded,
 }
 
@@ -99,22 +101,22 @@ impl Extent {
     }
 }
 
-/// Returns the bounds of a sphere from its tangents through the eye. `ahead` is the Z of all
-/// directions.
-///
-/// In the plane of the X (or Y) axis and the Z axis, the ball is a disc with the centre (c, z) and
-/// the radius R. Two lines through the origin are tangent to it. Their slopes are
-///
-/// (c·z ± R·√(c² + z² − R²))/(z² − R²).
+/// Returns the bounds of a sphere as the eye sees it, from the lines through the eye that touch it.
+/// `ahead` is the component Z of all rays' directions.
 fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
+    // In the plane of the X (or Y) axis and the Z axis, the sphere is a circle with the centre (c,
+    // z) and the radius R. Two lines through the origin are tangent to it. Their slopes are
+    //
+    // (c·z ± R·√(c² + z² − R²))/(z² − R²).
     let Some(([x, y, z], radius)) = sphere.ball() else {
         return Hull::Unbounded;
     };
     if z + radius < 0.0 {
         return Hull::Behind;
     }
-    // z − R and z + R have one rounding each, so that their product has a small relative error. If
-    // the product is positive, its sum with c² has a small relative error, too.
+    // The differences z − R and z + R of the centre's z and the radius R have one rounding each, so
+    // that their product has a small relative error. If the product is positive, its sum with c²
+    // has a small relative error, too.
     let below = (z - radius) * (z + radius);
     if !(z > radius && below > SMALLEST) {
         return Hull::Unbounded;
@@ -133,8 +135,9 @@ fn of_sphere(sphere: &Sphere<f64>, ahead: f64) -> Hull {
     })
 }
 
-/// Returns the bounds of a convex hull from its corners: the slopes X and Y of its points lie
-/// between those of the corners. `ahead` is the Z of all directions.
+/// Returns the bounds of a convex hull as the eye sees it, from its corners relative to the eye.
+/// The quotients x/z and y/z of the hull's points lie between those of the corners. `ahead` is the
+/// component Z of all rays' directions.
 fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     let mut across = [Interval {
         low: f64::INFINITY,
@@ -166,7 +169,7 @@ fn of_corners<T: Real>(corners: &[Ball3<T>], ahead: f64) -> Hull {
     if greatest < 0.0 {
         return Hull::Behind;
     }
-    // This condition is also true if an overflow has left NaN.
+    // The condition is also true if an overflow has left NaN.
     if !(least > SMALLEST && greatest >= least) {
         return Hull::Unbounded;
     }

@@ -38,9 +38,9 @@ fn normalized(v: &Dyadic3) -> [Big; 3] {
     v.each_ref().map(|x| x.to_big().over(&length))
 }
 
-/// Returns a + b, or 0 if the sum does not exceed the errors of a and b, at most four roundings
-/// each. With a roll of 45 degrees, components of u and v that should be 0 are such sums of
-/// opposite numbers.
+/// Returns a + b, or 0 if the absolute value of the sum does not exceed the errors of a and b, at
+/// most four roundings each. It is used to turn the camera's axes u and v by the roll. With a roll
+/// of 45 degrees, some components are sums of opposite numbers, and must become exactly 0.
 fn sum(a: &Big, b: &Big) -> Big {
     let sum = a.plus(b);
     let lost = (a.magnitude() + b.magnitude()) * (8.0 * Big::UNIT);
@@ -106,22 +106,22 @@ impl Basis {
 /// Bounds on the [`Direction`]s of rays through sample points.
 #[derive(Clone, Copy, Debug)]
 pub struct Window<R> {
-    /// Maximum of |X|.
+    /// Maximum of |X|, the component to the right of a ray's direction.
     pub x: R,
-    /// Maximum of |Y|.
+    /// Maximum of |Y|, the component downwards of a ray's direction.
     pub y: R,
-    /// The value of Z.
+    /// Z, the component ahead, which is the same for all rays.
     pub z: R,
 }
 
 impl<R: Copy> Window<R> {
-    /// Returns the bounds of |X|, |Y| and Z, in this order.
+    /// Returns the bounds of the components of a ray's direction: of |X|, |Y| and Z, in this order.
     pub fn sizes(&self) -> [R; 3] {
         [self.x, self.y, self.z]
     }
 }
 
-/// The camera in one precision.
+/// The camera of a picture, with its numbers in the precision `T`.
 #[derive(Clone, Debug)]
 pub struct Camera<T: Real> {
     /// Position of the eye, in world coordinates.
@@ -132,9 +132,9 @@ pub struct Camera<T: Real> {
     pub exponent: i32,
     /// Unit vectors to the right, down and ahead, in world coordinates.
     pub axes: [Ball3<T>; 3],
-    /// Side of a pixel, in units of X and Y of a [`Direction`].
+    /// Side of a pixel, in the unit of X and Y, the first two components of a [`Direction`].
     pub pitch: T,
-    /// The Z of all [`Direction`]s.
+    /// Component Z of all [`Direction`]s.
     pub z: T,
     /// Half the picture's width and height, in pixels.
     pub half: DVec2,
@@ -146,13 +146,13 @@ pub struct Camera<T: Real> {
 /// X and Y are at most 5 · [`UNIT`](Real::UNIT).
 #[derive(Clone, Debug)]
 pub struct Direction<T> {
-    /// X, to the right.
+    /// Component X of the direction, to the right.
     pub x: T,
-    /// Y, down.
+    /// Component Y of the direction, downwards.
     pub y: T,
-    /// Z, ahead.
+    /// Component Z of the direction, ahead.
     pub z: T,
-    /// X² + Y² + Z².
+    /// Squared length of the direction, X² + Y² + Z².
     pub square: T,
 }
 

@@ -28,10 +28,11 @@ pub struct VisibilityCandidate {
     /// Whether every ray through the part of the picture hits the object between the near and the
     /// far plane.
     pub is_whole: bool,
-    /// Interval that contains the inverse depths of everything that may be seen of the object.
+    /// Interval that contains the inverse depths of everything that may be seen of the object. An
+    /// inverse depth is a constant of the camera divided by the depth.
     pub(crate) inverse_depth: Interval,
-    /// Which crossings of a ray with the object may be seen: the first one, unless the near plane
-    /// may cut the object.
+    /// Which of a ray's crossings with the object may be seen: only the first one, unless the near
+    /// plane may cut the object.
     pub(crate) crossings: Crossings,
     /// Bounds of the object in the view plane. Outside of them, the object is not seen.
     pub(super) bounds: Rectangle,
@@ -44,7 +45,8 @@ impl VisibilityCandidate {
     }
 }
 
-/// Replaces `out` by the candidates in `among` that may be seen in `part`. Both are in file order.
+/// Replaces `out` by the objects in `among` that may be seen in the area `part`. Both lists are in
+/// file order.
 pub fn narrowed(
     world: &World,
     part: Area,
@@ -58,10 +60,10 @@ pub fn narrowed(
     visible_of(world, &patch, objects, out);
 }
 
-/// Replaces `out` by all objects that may be seen in `part`, in file order. Returns `false`, and
-/// leaves `out` unchanged, if there seem to be more than `most` objects, or if `is_worth` returns
-/// `false`. `is_worth` is called with the number of objects, and with the mean number of objects
-/// whose bounds contain a ray through the part.
+/// Replaces `out` by all objects that may be seen in the area `part`, in file order. Returns
+/// `false`, and leaves `out` unchanged, if the quadtree lists too many objects, certainly more than
+/// `most`, or if `is_worth` returns `false`. `is_worth` is called with the number of objects, and
+/// with the mean number of objects whose bounds contain a ray through the area.
 #[must_use]
 pub fn within(
     world: &World,
@@ -91,14 +93,15 @@ pub fn within(
     true
 }
 
-/// Returns the ranges of the inverse depths of the near and the far plane over a patch. An entry is
-/// `None` if the scene does not have this plane.
+/// Returns the ranges of the inverse depths of the near and the far plane over the rectangle
+/// `patch` of the view plane. An entry is `None` if the scene does not have this plane.
 pub(super) fn clips_over(world: &World, patch: &Patch) -> [Option<Interval>; 2] {
     [&world.geometry.fast.near, &world.geometry.fast.far]
         .map(|clip| Some(clip.as_ref()?.over(patch).or_all()))
 }
 
-/// Replaces `out` by the objects in `among` that may be seen in a patch. Both are in file order.
+/// Replaces `out` by the objects in `among` that may be seen in the rectangle `patch` of the view
+/// plane. Both lists are in file order.
 pub(crate) fn visible_among(
     world: &World,
     patch: &Patch,
@@ -113,8 +116,8 @@ pub(crate) fn visible_among(
     );
 }
 
-/// Replaces `out` by the objects in `among` that may be seen in a patch. Both are in file order;
-/// `among` has each object's bounds as well.
+/// Replaces `out` by the objects in `among` that may be seen in the rectangle `patch` of the view
+/// plane. Both lists are in file order; `among` has each object's bounds as well.
 fn visible_of(
     world: &World,
     patch: &Patch,
@@ -124,7 +127,7 @@ fn visible_of(
     out.clear();
     let [near, far] = clips_over(world, patch);
     // `hidden` is the greatest minimum of the inverse depth among the objects that every ray
-    // through the patch hits. An object whose maximum inverse depth is below it is hidden.
+    // through the rectangle hits. An object whose maximum inverse depth is below it is hidden.
     let mut hidden = f64::NEG_INFINITY;
     for (object, bounds) in among {
         let Some(mut candidate) = cover(world, object, patch, near, far) else {
@@ -145,9 +148,9 @@ fn visible_of(
     }
 }
 
-/// Returns the object with the index `index` as a candidate for a patch. `near` and `far` are the
-/// ranges of the inverse depths of the clip planes over the patch. Returns `None` if the object is
-/// certainly not seen in the patch.
+/// Returns the object with the index `index`, classified by how it is seen in the rectangle `patch`
+/// of the view plane. `near` and `far` are the ranges of the inverse depths of the near and the far
+/// plane over the rectangle. Returns `None` if the object is certainly not seen there.
 pub(super) fn cover(
     world: &World,
     index: usize,
@@ -195,9 +198,9 @@ pub(super) fn cover(
     Some(candidate)
 }
 
-/// Removes flat objects of `candidates` that the nearest flat object hides in the whole patch,
-/// although the ranges of their depths overlap. Of parallel layers, only the nearest remains. Of
-/// objects in one plane, only the first in the file remains.
+/// Removes flat objects of `candidates` that the nearest flat object hides in the whole rectangle
+/// `patch`, although the ranges of their depths overlap. Of parallel layers, only the nearest
+/// remains. Of objects in one plane, only the first in the file remains.
 fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCandidate>) {
     let is_flat = |candidate: &&VisibilityCandidate| {
         let object = f64::object(&world.geometry, candidate.object);
@@ -219,9 +222,9 @@ fn drop_covered(world: &World, patch: &Patch, candidates: &mut Vec<VisibilityCan
     }
 }
 
-/// Returns whether the object `front`, which every ray through the patch hits, certainly hides the
-/// object `back` in the whole patch. The decision compares the forms of their planes; the result is
-/// `false` if `front` or `back` is a sphere.
+/// Returns whether the object `front` certainly hides the object `back` in the whole rectangle
+/// `patch`. Every ray through the rectangle must hit `front`. The decision compares the inverse
+/// depths of the objects' planes; the result is `false` if `front` or `back` is a sphere.
 pub(crate) fn covers(world: &World, front: usize, back: usize, patch: &Patch) -> bool {
     let [a, b] = [front, back].map(|object| f64::object(&world.geometry, object));
     let (a, b) = match (a.surface_kind(), b.surface_kind()) {

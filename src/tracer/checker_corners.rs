@@ -24,23 +24,28 @@ use crate::{
     math::{Double, ROUND, Real, UP, floor},
 };
 
-/// Minimum ratio of the form ℓ in a board coordinate N/ℓ ([`CheckerForms`]) to the error bound f of
-/// ℓ; with a smaller ratio, the coordinate's error counts as unbounded. With e the error bound of
-/// N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ for ratios from 4 on. The
-/// error bound uses the factor 4 instead of 4/3.
+/// Minimum ratio of ℓ to its error bound f, where ℓ is the denominator of a board coordinate N/ℓ, a
+/// quotient of linear forms. With a smaller ratio, the coordinate's error counts as unbounded.
+///
+/// With e the error bound of N, (N ± e)/(ℓ ± f) differs from N/ℓ by at most 4/3 · (e + f·|N/ℓ|)/ℓ
+/// for ratios from 4 on. The error bound of the coordinate uses the factor 4 instead of 4/3, which
+/// leaves a margin.
 const MIN_CLEARANCE: f64 = 4.0;
 
-/// Maximum error of a board coordinate, in squares; with a larger error, the squares that a pixel
-/// shows are not computed. At 1/4, the square that a pixel's corner lies in is certain only if the
-/// corner lies in the middle half of that square's width.
+/// Maximum error of a board coordinate, in squares, at which the squares that a pixel shows are
+/// computed from the coordinates of its corners. With an error of 1/4, the square at a corner is
+/// certain only if the corner lies in the middle half of the square's width. With a larger error,
+/// few squares would be certain.
 const MAX_ERROR: f64 = 0.25;
 
-/// Maximum side of a block of pixels at whose corners the board's squares are computed together, in
-/// pixels. It is also the side of the squares with which quartering begins.
+/// Maximum side of a block of pixels at whose corners a board's squares are computed together, in
+/// pixels. It is also the side of the areas with which quartering begins, and must therefore be a
+/// power of two. A smaller block would compute more corners per pixel, because a block of n² pixels
+/// has (n + 1)² corners. A larger block would need larger arrays.
 pub(super) const SIDE: usize = 32;
 
-/// Number of entries for the pixel corners in a row of a block: there are 33 corners, rounded up to
-/// whole vectors of eight.
+/// Number of entries for the pixel corners in a row of a block of pixels. The row has 33 corners,
+/// which are rounded up to whole vectors of eight.
 const LANES: usize = 40;
 
 /// The squares of a board that one pixel shows, known from the squares at the pixel's corners.
@@ -50,8 +55,9 @@ pub struct CheckerPixel {
     /// The squares at the pixel's four corners, by their indices in x and in z. The order of the
     /// corners is top left, top right, bottom left, bottom right.
     pub(crate) corners: [[f64; 4]; 2],
-    /// Whether the pixel's corners certainly lie in the squares `corners`. If not, they lie in
-    /// these squares of a board whose lines are displaced by at most the error bounds of `squares`.
+    /// Whether the pixel's corners certainly lie in the squares `corners`. If not, a corner may lie
+    /// in a neighbouring square, but then it is no farther from the line between both squares than
+    /// the error bounds of `squares`.
     pub(crate) is_certain: bool,
 }
 
@@ -79,7 +85,7 @@ struct CornerRow {
 /// The squares of a checkerboard that a run of pixels, or one pixel, shows.
 #[derive(Clone, Copy, Debug)]
 pub enum ShownSquares<'a> {
-    /// One colour, in a run of pixels; `true` for the second colour.
+    /// A run of pixels that show one colour; `true` if it is the second colour.
     One(bool),
     /// A few squares, in one pixel.
     Squares(&'a CheckerPixel),
@@ -197,8 +203,8 @@ impl BoardBlock {
         }
     }
 
-    /// Calls `each` with the runs and pixels of row `row`, which lies between the rows of corners
-    /// `above` and `below`. Stops if `each` breaks.
+    /// Calls `each` with the runs of pixels that show one colour, and with the other pixels, in row
+    /// `row`. The row lies between the rows of corners `above` and `below`. Stops if `each` breaks.
     fn row(
         &self,
         row: u32,
@@ -362,7 +368,7 @@ fn compare_simd(above: &CornerRow, below: &CornerRow, out: &mut [f64; SIDE]) {
 }
 
 /// The position on a checkerboard as ratios of linear forms: x = N₀/ℓ and z = N₁/ℓ, in squares. x
-/// and z rounded down are the indices of a square.
+/// and z rounded down are the indices of a square. `across` has N₀ and N₁, and `below` is ℓ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CheckerForms {
     pub(crate) across: [LocalForm; 2],
@@ -387,23 +393,24 @@ impl CheckerForms {
         }
     }
 
-    /// Returns the least value of ℓ over the rectangle. Returns `None` if it is not clearly
-    /// positive.
+    /// Returns the least value over the rectangle of the form `below`, the denominator of the
+    /// board's coordinates. Returns `None` if it is not clearly positive.
     fn least(&self) -> Option<f64> {
         let least = self.below.factors[2] - self.below.spread() * UP;
         (least > MIN_CLEARANCE * self.below.rad).then_some(least)
     }
 
-    /// Returns an upper bound of the error of the board coordinate `across`/ℓ, whose absolute value
-    /// is at most `greatest`. The value of ℓ must be at least `least`.
+    /// Returns an upper bound of the error of the board coordinate whose numerator is `across` and
+    /// whose denominator is the form `below`. `greatest` is the maximum absolute value of the
+    /// coordinate, and `least` the minimum of the denominator.
     fn slack(&self, across: &LocalForm, greatest: f64, least: f64) -> f64 {
         let inherited = (across.rad + greatest * self.below.rad) * MIN_CLEARANCE / least;
         (inherited + (greatest + 1.0) * LOCAL_ROUNDING) * UP
     }
 
     /// Returns the ranges of the squares in the rectangle, in x and in z, as first and last square.
-    /// A range may have one square too many at each end. Returns `None` if ℓ is not clearly
-    /// positive or an error is too large.
+    /// A range may have one square too many at each end. Returns `None` if the denominator of the
+    /// board's coordinates is not clearly positive or an error is too large.
     pub(super) fn ranges(&self) -> Option<[(f64, f64); 2]> {
         let least = self.least()?;
         let inverse = CORNERS.map(|(x, y)| 1.0 / self.below.at(x, y));

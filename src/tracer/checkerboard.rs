@@ -19,8 +19,9 @@ use crate::{
 };
 
 /// Maximum number of squares by which the origin of a board's coordinates is moved to the part of
-/// the board that a rectangle shows ([`Checkerboard::local`]). If it is farther away, the origin is
-/// not moved, because a rounded quotient of this size need not be the nearest whole number.
+/// the board that a rectangle shows ([`Checkerboard::local`]). If the part is farther away, the
+/// origin is not moved: the number of squares is a rounded quotient, and above 2^52 it need not be
+/// the nearest whole number.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -36,7 +37,9 @@ pub struct Checkerboard<T: Real> {
     /// plane. N/ℓ, where ℓ is `below`, is the coordinate in squares, measured from the line between
     /// squares that is nearest to the eye.
     pub across: [Form<T>; 2],
-    /// Whether the sum of the indices of the two lines nearest to the eye, in x and in z, is odd.
+    /// Whether the two colours change places. The board's coordinates are measured from the two
+    /// lines that are nearest to the eye, one in x and one in z. The colours change places if the
+    /// sum of the numbers of these lines, counted from the world's origin, is odd.
     pub odd: bool,
 }
 
@@ -46,16 +49,16 @@ pub struct Checkerboard<T: Real> {
 /// squares.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalBoard {
-    /// Factors of x, y and 1 in N₀ and N₁. In the highest precision, numbers may exceed the range
-    /// of `f64`. All forms are then scaled by one power of two that brings the largest factor to
-    /// about 1.
+    /// Factors of x, y and 1 in the numerators N₀ and N₁ of the board's coordinates. In the highest
+    /// precision, numbers may exceed the range of `f64`. All forms are then scaled by one power of
+    /// two that brings the largest factor to about 1.
     pub across: [[f64; 3]; 2],
-    /// Factors of x, y and 1 in ℓ.
+    /// Factors of x, y and 1 in ℓ, the denominator of the board's coordinates.
     pub below: [f64; 3],
-    /// Error bounds of the values of N₀, N₁ and ℓ in the rectangle, without the rounding of the
-    /// factors to `f64`.
+    /// Error bounds of the values of the numerators N₀ and N₁ and of the denominator ℓ of the
+    /// board's coordinates in the rectangle. The rounding of the factors to `f64` is not included.
     pub rads: [f64; 3],
-    /// Whether the square from (0, 0) to (1, 1) has the second colour.
+    /// Whether the square from (0, 0) to (1, 1) in the board's coordinates has the second colour.
     pub odd: bool,
 }
 
@@ -77,9 +80,9 @@ impl<T: Real> Checkerboard<T> {
             EyeOffset::new(camera.eye.z, square),
         );
         let numerator = |axis: usize, from_square: &EyeOffset| {
-            // With e the eye, r the ray's direction and h the board's height relative to the eye, x
-            // = e_x + λ·r_x, so that x/square = e_x/square + (r_x/square)/ℓ. All of it is brought
-            // over the denominator ℓ = r_y/h.
+            // With e the eye, r the ray's direction and h the board's height relative to the eye,
+            // the ray hits the board at x = e_x + r_x/ℓ, where ℓ = r_y/h. Therefore x/square =
+            // (ℓ·e_x/square + r_x/square)/ℓ, and the numerator is a linear form.
             let along = camera.turned(&axis_vector(axis));
             let exponent = -libm::frexp(square).1;
             let side = Ball::exact(square).scaled(exponent);
@@ -109,13 +112,14 @@ impl<T: Real> Checkerboard<T> {
         Ok(odd)
     }
 
-    /// Expands the board's forms about the direction `center` of a rectangle, to those of
-    /// [`LocalBoard`]. `sides` are the sides of the rectangle in X and Y, which become the unit.
-    ///
-    /// A multiple of ℓ is subtracted from N₀ and N₁, which moves the origin to a nearby corner of
-    /// squares. The multiple makes N₀ and N₁ small at the corner of the rectangle where ℓ is
-    /// greatest; elsewhere, ℓ may be almost 0.
+    /// Returns the board over a rectangle of the view plane, as a function of the offset from the
+    /// rectangle's centre. `center` is the direction through the centre. `sides` are the sides of
+    /// the rectangle in X and Y, the units of the offset.
     pub fn local(&self, center: &Direction<T>, sides: &[T; 2]) -> LocalBoard {
+        // A multiple of the denominator ℓ of the board's coordinates is subtracted from their
+        // numerators N₀ and N₁, which moves the origin to a nearby corner of squares. The multiple
+        // makes N₀ and N₁ small at the corner of the rectangle where ℓ is greatest; elsewhere, ℓ
+        // may be almost 0.
         let local = |form: &Form<T>| {
             let [a, b, _] = form.factors();
             let factors = [a.times(&sides[0]), b.times(&sides[1]), form.at(center).mid];
@@ -135,8 +139,9 @@ impl<T: Real> Checkerboard<T> {
             odd ^= times as i64 & 1 == 1;
             let multiple = T::from_f64(times);
             let factors = [0, 1, 2].map(|i| factors[i].minus(&below[i].times(&multiple)));
-            // The error bound of ℓ covers at least 12 roundings. Twice the bound therefore also
-            // covers the roundings of the multiple of ℓ and of its difference from N₀ or N₁.
+            // The error bound of the denominator ℓ covers at least 12 roundings. Twice the bound
+            // therefore also covers the roundings of the multiple of ℓ and of its difference from
+            // the numerator N₀ or N₁.
             (factors, own_rad + rad * (2.0 * times.abs()))
         });
         let mut forms = [a, b, (below, rad)];

@@ -25,24 +25,27 @@ pub type Face<T> = (u8, Form<T>);
 /// A convex object with flat faces, prepared for one picture.
 #[derive(Clone, Debug)]
 pub struct Convex<T: Real> {
-    /// The forms of the edges, each ≥ 0 on the object's side; then the inverse depths of the first
-    /// faces, which rays hit first; then those of the second faces, which rays hit behind them.
+    /// Linear forms over the view plane in three groups. First come the forms that bound the
+    /// object, each ≥ 0 on the object's side. Then come the inverse depths of the faces that rays
+    /// hit first, and then those of the faces that rays hit behind them.
     forms: Vec<Form<T>>,
-    /// Number of edges.
+    /// Number of the forms that bound the object.
     edges: u8,
-    /// Number of edges and first faces together: the index in `forms` of the first of the second
-    /// faces.
+    /// Index in `forms` of the first face that rays hit behind another one: the number of the
+    /// bounding forms plus the number of the faces that rays hit first.
     firsts: u8,
-    /// Number of each face's plane: those of the first faces, then those of the second faces.
+    /// Number of each face's plane. The faces that rays hit first come before those behind them.
     planes: [u8; 6],
-    /// Whether the eye is inside the object. A ray then first hits the nearest of the first faces'
-    /// planes; if the eye is outside, the farthest.
+    /// Whether the eye is inside the object. A ray may cross the planes of several of the faces
+    /// that rays hit first. If the eye is inside, the nearest of these crossings lies on the
+    /// object; if it is outside, the farthest does.
     is_inside: bool,
 }
 
 impl<T: Real> Convex<T> {
-    /// Builds an object from its edges and at most six faces: `fronts`, which the eye sees from
-    /// outside, and `backs`, which it sees from inside. Without `fronts`, the eye is inside.
+    /// Builds an object. `edges` are forms that are ≥ 0 on the object's side. `fronts` are the
+    /// faces that the eye sees from outside, and `backs` those that it sees from inside; together
+    /// they are at most six. Without `fronts`, the eye is inside.
     pub fn new(edges: Vec<Form<T>>, fronts: Vec<Face<T>>, backs: Vec<Face<T>>) -> Self {
         let is_inside = fronts.is_empty();
         let firsts = if is_inside { backs.len() } else { fronts.len() };
@@ -94,14 +97,15 @@ impl<T: Real> Convex<T> {
         &self.forms[..usize::from(self.firsts)]
     }
 
-    /// Returns whether the eye is inside the object. A ray then first hits the nearest of the first
-    /// faces' planes.
+    /// Returns whether the eye is inside the object. Of the ray's crossings with the planes of
+    /// [`firsts`](Self::firsts), the nearest then lies on the object; from outside, the farthest
+    /// does.
     pub fn is_inside(&self) -> bool {
         self.is_inside
     }
 
-    /// Returns the surface part of the face with the index `face`. The index counts the first faces
-    /// before the second ones.
+    /// Returns the face with the index `face` as a part of the object's surface. The faces that
+    /// rays hit first are counted before those that rays hit behind them.
     pub fn part(&self, face: usize) -> SurfacePart {
         SurfacePart::Plane(self.planes[face])
     }
@@ -147,19 +151,18 @@ impl<T: Real> Convex<T> {
     }
 
     /// Returns the ray's crossing with the object behind the first one. The ray must hit the
-    /// object. Returns `None` if the object has no second faces.
+    /// object. Returns `None` if rays hit the object only once.
     pub fn second(&self, r: &Direction<T>) -> Option<Crossing<T>> {
         self.extreme(self.firsts().len(), self.seconds(), r, Ordering::Greater)
     }
 
-    /// Returns the crossing of the ray with that one of the planes of `faces` that has the least
-    /// inverse depth, or the greatest if `which` is `Greater`. `start` is the index of the first of
-    /// `faces` among all faces. Returns `None` if there are no faces.
+    /// Returns the crossing of the ray with one of the planes of `faces`: the plane with the least
+    /// inverse depth, or with the greatest if `which` is `Greater`. `start` is the index of the
+    /// first of `faces` among all faces. Returns `None` if there are no faces.
     ///
-    /// If two inverse depths are not clearly different, the centre of the returned ball may differ
-    /// from the exact extreme, by at most the larger of the two radii. The crossing then belongs to
-    /// an edge, not to a plane: just outside of an edge, a ray hits one plane slightly before it
-    /// hits the box in the other.
+    /// If the two extreme inverse depths differ by no more than their errors, the crossing is
+    /// assigned to an edge, not to a plane. Its inverse depth may then be wrong by at most the
+    /// larger of the two errors.
     #[inline]
     fn extreme(
         &self,
@@ -184,6 +187,8 @@ impl<T: Real> Convex<T> {
             // as clear.
             let is_clear = distance > rad * (2.0 * UP);
             if !is_clear {
+                // The crossing cannot be assigned to one plane: just outside of an edge, a ray
+                // hits one plane slightly before it hits the box in the other.
                 extreme.part = SurfacePart::Edge;
                 let is_number = distance >= T::Radius::ZERO;
                 extreme.inverse_depth.rad = if is_number { rad } else { T::Radius::INFINITE };
@@ -215,7 +220,7 @@ impl Convex<f64> {
     }
 
     /// Returns the range of the inverse depths at which rays that start outside leave the object.
-    /// Returns `None` if the object has no second faces.
+    /// Returns `None` if rays hit the object only once.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let faces = self.seconds().iter().map(|face| face.over(patch));
         Interval::fold(faces, f64::max)

@@ -45,8 +45,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
     }
     for (i, front) in &fronts {
         // An edge of the box's silhouette lies between a front face and a back face that are not
-        // parallel. If only one face is prepared, only that face's own edges are needed; they imply
-        // the others.
+        // parallel. If only one face is prepared, only the face's own edges are needed; the other
+        // edges follow from them.
         let is_bound = |j: &u8| i / 2 != j / 2 && only.is_none_or(|only| [*i, *j].contains(&only));
         let bounding = backs.iter().filter(|(j, _)| is_bound(j));
         edges.extend(bounding.map(|(_, back)| front.minus(back)));

@@ -1,10 +1,9 @@
 //! The curves that separate what is seen in a pixel, or in a part of one: lines and conics.
 //!
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
-//! and the curves where their depths are equal, in the coordinates of that sub-pixel. The
-//! silhouette of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line, a
-//! plane and a sphere in the cone of a circle, two spheres in their radical plane.
-//!
+//! and the curves where their depths are equal, in the coordinates of the sub-pixel. The silhouette
+//! of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line, a plane and a
+//! sphere on the cone of rays through a circle, two spheres in their radical plane.
 //! Errors: each form is computed anew in the sub-pixel's coordinates and in high precision, with an
 //! error bound for its values there. The result is therefore right to the last bits of an `f64`,
 //! however far the sub-pixel is from the picture's centre.
@@ -13,12 +12,13 @@ use crate::math::{Ball, Ball3, Double, Radius, Real};
 
 use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_pixel::SubPixel};
 
-/// Error bound of a boundary line ([`BoundaryLine::rad`]) from which on the line is computed again
-/// in a higher precision than double-double: eight unit roundoffs of `f64`. Storing the line's
-/// factors as `f64` alone costs three.
+/// Minimum error bound of a boundary line ([`BoundaryLine::rad`]) at which the line is computed
+/// again in a higher precision than double-double. The value is eight unit roundoffs of `f64`. A
+/// much smaller one would be useless, because storing the line's factors as `f64` alone costs
+/// three.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
-/// A curve that separates objects in a pixel.
+/// A curve that separates what is seen in a pixel.
 #[derive(Clone, Debug)]
 pub enum Boundary {
     /// A line.
@@ -30,7 +30,7 @@ pub enum Boundary {
 /// The line ax + by + c = 0, scaled so that the greater of |a| and |b| is 1.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundaryLine {
-    /// The factors a, b and c.
+    /// The factors a, b and c of the line's equation ax + by + c = 0.
     pub factors: [f64; 3],
     /// Error bound of the value of ax + by + c in the pixel.
     pub rad: f64,
@@ -40,7 +40,7 @@ pub struct BoundaryLine {
 /// magnitude.
 #[derive(Clone, Copy, Debug)]
 pub struct Conic {
-    /// The factors A, B, C, D, E and F.
+    /// The factors of the conic's equation Ax² + 2Bxy + Cy² + 2Dx + 2Ey + F = 0, from A to F.
     pub factors: [Double; 6],
     /// Error bound of the value of the conic's quadratic form in the pixel.
     pub rad: f64,
@@ -76,7 +76,7 @@ type Quadratic<T> = [Ball<T>; 6];
 pub struct SubPixelFrame<T: Real> {
     /// The direction (X, Y, Z) through the sub-pixel's centre.
     center: Ball3<T>,
-    /// The sub-pixel's side, in units of X and Y.
+    /// Side of the sub-pixel, in the unit of the components X and Y of a ray's direction.
     pitch: Ball<T>,
 }
 
@@ -109,18 +109,17 @@ impl<T: Real> SubPixelFrame<T> {
         ([a, b, middle], form.rad())
     }
 
-    /// Returns the silhouette of a sphere,
-    ///
-    /// Q = R² r·r − |c × r|² = 0,
-    ///
-    /// where c is the centre, R the radius and r the ray's direction. For an eye on the sphere's
-    /// surface, returns the line c·r = 0 instead.
-    ///
-    /// For an eye outside, returns the line c·r = 0 in addition. No ray on this line hits the
-    /// sphere, but the line separates the conic's two branches, in front of the eye and behind it.
-    /// If the sphere is almost a plane, to a part in 1e200, no precision distinguishes the two
-    /// branches.
+    /// Returns the silhouette of a sphere: the conic on which rays touch it. If the eye is on the
+    /// sphere's surface, returns instead the line that separates the rays into the sphere from the
+    /// others. If the eye is outside, also returns the line on which rays are perpendicular to the
+    /// direction of the centre.
     pub fn silhouette(&self, sphere: &Sphere<T>) -> Vec<Boundary> {
+        // The conic is Q = R² r·r − |c × r|² = 0, where c is the centre, R the radius and r the
+        // ray's direction. The line is c·r = 0.
+        //
+        // If the eye is outside, no ray on the line hits the sphere, but the line separates the
+        // conic's two branches, in front of the eye and behind it. If the sphere is almost a plane,
+        // to a part in 1e200, no precision distinguishes the two branches.
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {
@@ -158,16 +157,17 @@ impl<T: Real> SubPixelFrame<T> {
         }
     }
 
-    /// Returns the curve of rays that hit two spheres at equal depths, by the spheres' radical
-    /// plane. On it, |q − c|² − R² is equal for both spheres, so that
-    ///
-    /// 2 (c' − c)·q = C' − C,
-    ///
-    /// with the centres c and c', and C = c·c − R². Returns `None` for concentric spheres.
+    /// Returns the curve of rays that hit two spheres at equal depths. Returns `None` for
+    /// concentric spheres.
     fn spheres(&self, a: &Sphere<T>, b: &Sphere<T>) -> Option<Boundary> {
+        // The curve lies in the radical plane of the spheres. For a point q of this plane, |q − c|²
+        // − R² is equal for both spheres, with the centre c and the radius R of each. With c and c'
+        // the two centres, and C = c·c − R² of each sphere, it follows that
+        //
+        // 2 (c' − c)·q = C' − C.
         let ((c, square), (d, other)) = (a.parts(), b.parts());
-        // The two spheres have units of length of their own. The lengths of one are converted to
-        // the unit of the other.
+        // Each sphere has its own unit of length. The lengths of `b` are converted to the unit of
+        // `a`.
         let exponent = libm::frexp(a.scale()).1 - libm::frexp(b.scale()).1;
         let d = d.map(|x| x.scaled(exponent));
         let other = other.scaled(2 * exponent);
@@ -185,14 +185,17 @@ impl<T: Real> SubPixelFrame<T> {
         Some(self.circle(&c, &square, &linear, &h))
     }
 
-    /// Returns the cone of rays through the circle in which the plane n·q = h intersects a sphere.
-    /// A ray of direction r hits the plane at q = (h/(n·r)) r, so that the cone is
-    ///
-    /// |h r − (n·r) c|² = R² (n·r)².
-    ///
-    /// `plane` is n·r as a linear form. The left side is a sum of squares that are small near the
-    /// circle. The formula therefore does not cancel if the sphere is small and far away.
+    /// Returns the cone of rays through the circle in which a plane intersects a sphere. `c` is the
+    /// sphere's centre, and `square` the square of its radius. The points q of the plane satisfy
+    /// n·q = `h`; `plane` is n·r as a linear form, where r is a ray's direction.
     fn circle(&self, c: &Ball3<T>, square: &Ball<T>, plane: &Linear<T>, h: &Ball<T>) -> Boundary {
+        // A ray of direction r hits the plane at q = (h/(n·r)) r. With the radius R, the cone is
+        // therefore
+        //
+        // |h r − (n·r) c|² = R² (n·r)².
+        //
+        // The left side is a sum of squares that are small near the circle. The formula therefore
+        // does not cancel if the sphere is small and far away.
         let r = self.directions();
         let offsets = [0, 1, 2].map(|i| [0, 1, 2].map(|k| h * &r[i][k] - &c[i] * &plane[k]));
         let outside = sum(offsets.each_ref().map(|x| product(x, x)));
@@ -244,10 +247,10 @@ fn line<T: Real>(factors: &[T; 3], rad: T::Radius) -> Boundary {
     let factors = factors
         .each_ref()
         .map(|x| x.scaled(exponent).over(&slope).to_f64());
-    // Unit of the rounding errors of the quotients and of their conversion to `f64`.
+    // Maximum relative rounding error of the quotients, and of their conversion to `f64`.
     let unit = f64::UNIT + 8.0 * T::UNIT;
     let rounding = unit * (factors[0].abs() + factors[1].abs() + factors[2].abs());
-    // The error bound covers the roundings of the quotient and of the slope's conversion to `f64`.
+    // The error bound covers the roundings of the quotient, and the rounding of the slope to `f64`.
     let rad = rad.scaled(exponent).to_f64() / slope.to_f64().abs() * (1.0 + 8.0 * f64::UNIT);
     Boundary::Line(BoundaryLine {
         factors,
@@ -294,19 +297,21 @@ fn double<T: Real>(x: &T) -> Double {
 }
 
 impl Conic {
-    /// Returns an upper bound of the area between the true conic and the computed one, in pixels.
-    /// All points between them satisfy |F| ≤ ε, where F is the computed form and ε its error bound.
-    /// The result is the least of three bounds of the area of these points:
-    ///
-    /// - By the coarea formula, 2ε · length/(least gradient). A conic in the pixel is no longer
-    ///   than twice the pixel's perimeter.
-    /// - For an ellipse, 2πε/√(AC − B²), the difference of two ellipses' areas.
-    /// - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg (1973)
-    ///   for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest |F| is at
-    ///   least 1/16: some factor is at least 1/2, and each factor is a combination of values of F.
-    ///   The factor A combines three values with the weights 2, 4 and 2, and the other factors
-    ///   fewer.
+    /// Returns an upper bound of the area between the true conic and the computed one, in square
+    /// pixels. It is the least of three bounds, because each of them is poor for some conics.
     pub fn doubtful_area(&self) -> f64 {
+        // All points between the two conics satisfy |F| ≤ ε, where F is the computed form and ε its
+        // error bound. The area of these points has three bounds:
+        //
+        // - By the coarea formula, 2ε · length/(least gradient). A conic in the pixel is no longer
+        //   than twice the pixel's perimeter.
+        // - For an ellipse, 2πε/√(AC − B²), the difference of two ellipses' areas. A, B and C are
+        //   the factors of x², 2xy and y².
+        // - In any case, 4 · 2 · √(ε/(greatest |F|)), by the inequality of Brudnyi and Ganzburg
+        //   (1973) for polynomials of degree 2 on a convex set of area 1 in the plane. The greatest
+        //   |F| is at least 1/16: some factor is at least 1/2, and each factor is a combination of
+        //   values of F. The factor A combines three values with the weights 2, 4 and 2, and the
+        //   other factors fewer.
         let [a, b, c, d, e, _] = self.factors.map(|factor| factor.hi);
         let turn = libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
         let gradient = 2.0 * (libm::hypot(d, e) - 0.5 * turn);
@@ -324,11 +329,11 @@ impl Conic {
     }
 
     /// Returns an interval that contains the values of the conic's form over the pixel.
-    ///
-    /// Extremes lie at corners, or where the derivative vanishes along a side or in all directions.
-    /// An extreme may be computed at an inaccurate position. This hardly matters, because the form
-    /// differs there by half the product of the distance and the gradient, which is almost 0.
     pub fn over_pixel(&self) -> Interval {
+        // Extremes lie at corners, or where the derivative vanishes along a side or in all
+        // directions. An extreme may be computed at an inaccurate position. This hardly matters,
+        // because the form differs there by half the product of the distance and the gradient,
+        // which is almost 0.
         let [a, b, c, d, e, f] = self.factors.map(|factor| factor.hi);
         let at = |x: f64, y: f64| x * (a * x + 2.0 * (b * y + d)) + y * (c * y + 2.0 * e) + f;
         let mut range = Interval {

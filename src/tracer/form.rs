@@ -16,15 +16,16 @@ pub struct Form<T: Real> {
     /// Error bound of a computed value of the form in the camera's window.
     rad: T::Radius,
     /// A tighter error bound for a single ray: for the direction (X, Y, Z), the form's value is
-    /// wrong by at most `rads[0]`·|X| + `rads[1]`·|Y| + `rads[2]`·|Z|. The bound `rad` holds in the
-    /// whole window, and is far too large in the middle of a very wide view. Only the highest
-    /// precision has this field: what a lower one leaves in doubt, the next decides.
+    /// wrong by at most `rads[0]`·|X| + `rads[1]`·|Y| + `rads[2]`·|Z|. In the middle of a very wide
+    /// view, this is far less than `rad`, which holds in the whole window. Only the highest
+    /// precision has this field, because the other precisions leave doubtful decisions to the next
+    /// one.
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
-/// Number of roundings in a value of a linear form ([`Form`]): five in a coordinate, one in its
-/// product with a factor, two in the sum, and half as many again for the products of rounding
-/// errors.
+/// Number of roundings in a value of a linear form ([`Form`]). A coordinate has five, its product
+/// with a factor one, and the sum two. The total of eight is increased by half to cover the
+/// products of rounding errors.
 const FORM_ROUNDINGS: f64 = 12.0;
 
 impl<T: Real> Form<T> {
@@ -37,8 +38,8 @@ impl<T: Real> Form<T> {
             v[2].mid.times(&camera.z),
         ];
         let inherited = v[0].rad * window.x + v[1].rad * window.y + v[2].rad * window.z;
-        // In the widest views, Z may be so small that it is not a normal number. Its rounding error
-        // is then a fixed amount instead of a fraction of it.
+        // In the widest views, Z may be below the normal numbers of `f64`. Its rounding error is
+        // then a fixed amount instead of a fraction of Z.
         let lost = v[2].size() * T::TINY;
         let rad = (inherited + lost + rounding(&factors, window)) * UP;
         let by_component = |x: &Ball<T>| (x.rad + x.size() * (FORM_ROUNDINGS * T::UNIT)) * UP;
@@ -81,8 +82,8 @@ impl<T: Real> Form<T> {
         let sum = sizes[0] + sizes[1] + sizes[2];
         Self {
             factors: [0, 1, 2].map(|i| self.factors[i].minus(&other.factors[i])),
-            // This bound of the rounding errors of the difference assumes that |X|, |Y| and Z are
-            // at most 1.
+            // The bound of the rounding errors of the difference assumes that |X|, |Y| and Z are at
+            // most 1.
             rad: (self.rad + other.rad + sum * (FORM_ROUNDINGS * T::UNIT)) * UP,
             // The error bounds of a form contain the rounding errors of its factors. Twice the sum
             // of the two forms' bounds therefore also covers the rounding errors of the difference.
@@ -120,7 +121,7 @@ fn rounding<T: Real>(factors: &[T; 3], window: &Window<T::Radius>) -> T::Radius 
     let [a, b, c] = factors.each_ref().map(Real::magnitude);
     (a * window.x + b * window.y + c) * (FORM_ROUNDINGS * T::UNIT)
         + T::TINY * (a + b)
-        // Each of fewer than 16 products may be too small for a normal number, and then has an
+        // Each of fewer than 16 products may be below the normal numbers. The product then has an
         // error of at most half of the least positive number.
         + T::TINY * 8.0
 }

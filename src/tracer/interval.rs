@@ -11,7 +11,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// How an object covers a rectangle in which it may be seen.
+/// Coverage of a rectangle by an object that may be seen in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cover {
     /// Whether every ray through the rectangle hits the object.
@@ -20,7 +20,7 @@ pub struct Cover {
     pub inverse_depth: Interval,
 }
 
-/// Position of an interval of numbers relative to 0.
+/// Position of an interval relative to 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Side {
     Above,

@@ -19,15 +19,16 @@ use crate::{
 
 /// Upper bound of the rounding error of a [`LocalForm`]'s value, divided by the sum of the absolute
 /// values of the form's factors. It counts one rounding for each factor, one for the factor's
-/// division by the error bound ([`LocalForm::line`]), and two for products and sums, because
-/// offsets are at most ½.
+/// division by the error bound ([`LocalForm::line`]), and two for products and sums, which are
+/// small because offsets are at most ½.
 const LINEAR_ROUNDING: f64 = 4.0 * f64::UNIT;
 /// Upper bound of the rounding error of a [`LocalQuadratic`]'s value, divided by the sum of the
-/// absolute values of the form's factors. Each of the six terms has at most five roundings; the
-/// terms' products and sums stay within 16 roundings of that sum.
+/// absolute values of the form's factors. Each of the form's six terms has at most five roundings.
+/// With those of the terms' products and sums, the total is at most 16 roundings of the sum of
+/// absolute values.
 pub const LOCAL_ROUNDING: f64 = 16.0 * f64::UNIT;
-/// Error bound for underflow in the value of a form: each of its at most 16 products may be too
-/// small for a normal number, and then loses at most half of the least positive number.
+/// Error bound for underflow in the value of a form. Each of the form's at most 16 products may be
+/// below the normal numbers of `f64`, and then loses at most half of the least positive number.
 const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 
 /// A rectangle of the view plane.
@@ -35,7 +36,8 @@ const UNDERFLOW_ERROR: f64 = 16.0 * f64::TINY;
 pub struct Patch {
     /// The direction through the rectangle's centre.
     pub center: Direction<f64>,
-    /// The sides in units of X and Y.
+    /// Width and height of the rectangle, in the unit of the components X and Y of a ray's
+    /// direction.
     pub sides: [f64; 2],
 }
 

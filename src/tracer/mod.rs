@@ -1,8 +1,8 @@
 //! What a ray hits: the scene's objects as seen from the eye.
 //!
 //! In: a [`Scene`](crate::scene::Scene). Out: for a sample point of the picture, the colour seen
-//! there, as a slot of the palette. The tracer knows no text and no names: an object is its index
-//! in the file.
+//! there, as an index into the palette of all colours. The tracer knows no text and no names: an
+//! object is its index in the file.
 //!
 //! All rays share the eye, so that everything happens in the view plane, where boundaries are lines
 //! and conics. Of the surfaces at a point, the nearest has the greatest inverse depth, which is a

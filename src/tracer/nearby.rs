@@ -12,17 +12,17 @@ use super::{
 };
 use crate::area::Area;
 
-/// Returns the objects that rays through a part of the picture may hit, the nearest first by their
-/// nearest points. Returns `None` if there are so many that searching the quadtree for each ray is
-/// faster.
+/// Returns the objects that rays through a part of the picture may hit, sorted by their nearest
+/// points, the nearest first. Returns `None` if there are so many objects that searching the
+/// quadtree for each ray is faster.
 pub fn nearby(world: &World, part: Area) -> Option<Vec<BoundedObject>> {
     let patch = Patch::new(&world.geometry.fast.camera, part);
     world.quadtree.nearby(&patch)
 }
 
 /// Replaces `out` by the objects of `nearby` that rays through `part` may hit, in unchanged order.
-/// `nearby` must contain all objects near an area around the part. Returns the palette slot of a
-/// colour if the whole part certainly shows it.
+/// `nearby` must contain all objects near an area around the part. If the whole part certainly
+/// shows one colour, returns the colour's index in the palette.
 pub fn in_part(
     world: &World,
     part: Area,
@@ -33,8 +33,8 @@ pub fn in_part(
     let patch = Patch::new(&world.geometry.fast.camera, part);
     let rectangle = world.quadtree.rectangle(&patch)?;
     let [near, far] = candidates::clips_over(world, &patch);
-    // `front` is an object that every ray through the part hits, and of all these the one with the
-    // greatest minimum of the inverse depth, which is `hidden`.
+    // `front` is an object that every ray through the part hits. If there are several, it is the
+    // one whose minimum inverse depth is the greatest. `hidden` is this minimum.
     let (mut front, mut hidden) = (None, Nearness::NONE);
     for item in nearby {
         if item.nearest <= hidden {

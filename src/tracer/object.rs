@@ -38,8 +38,8 @@ pub enum SurfaceKind<'a, T: Real> {
 pub enum Object<T: Real> {
     /// A sphere.
     Sphere(Sphere<T>),
-    /// A triangle, a box, or one face of a box. A triangle or a single face has no faces here if
-    /// the eye lies in its plane, where it cannot be seen.
+    /// A triangle, a box, or one face of a box. If the eye lies in the plane of a triangle or of a
+    /// single face, it cannot be seen, and its list of faces is empty.
     Convex(Convex<T>),
     /// A checkerboard.
     Checkerboard(Box<Checkerboard<T>>),
@@ -151,8 +151,8 @@ impl Object<f64> {
         }
     }
 
-    /// Returns the range of the inverse depths of second crossings over a rectangle. Returns `None`
-    /// if the object has no second crossings.
+    /// Returns the range of the inverse depths over a rectangle at which rays hit the object for
+    /// the second time. Returns `None` if no ray hits the object twice.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         match self.surface_kind() {
             SurfaceKind::Flat(convex) => convex.behind(patch),

@@ -1,9 +1,9 @@
 //! Boxes whose faces have colours of their own, taken apart into their faces.
 //!
-//! In: a scene. Out: the scene in which every such box is replaced by one object for each face that
-//! may be seen, and the object from which each new object comes. The tracer treats a face as a flat
-//! object. Two faces that share an edge have the same line for it, so that no ray passes between
-//! them.
+//! In: a scene. Out: the scene in which every box with coloured faces is replaced by one object for
+//! each face that may be seen, and the index of the object in the file from which each new object
+//! comes. The tracer treats a face as a flat object. Two faces that share an edge have the same
+//! line for it, so that no ray passes between them.
 
 use std::{array, borrow::Cow, sync::Arc};
 
@@ -53,7 +53,7 @@ impl Pieces {
             cuboid.faces = None;
             let fronts = fronts(&cuboid, scene.camera.eye);
             // If the eye is inside the box, no face is a front face, and rays first hit the back
-            // faces. None are left out then.
+            // faces. All faces are then kept.
             let only_fronts = only_fronts && fronts.contains(&true);
             for (face, is_front) in (0..).zip(fronts) {
                 if only_fronts && !is_front {
@@ -74,12 +74,13 @@ impl Pieces {
         (Cow::Owned(Scene { objects, ..scene }), Self(pieces))
     }
 
-    /// Returns the index in the file of the object from which a piece comes.
+    /// Returns the index in the file of the object from which an object of the divided scene comes.
     pub fn owner(&self, piece: usize) -> usize {
         self.0.get(piece).map_or(piece, |(owner, _)| *owner)
     }
 
-    /// Returns the face number of a piece. Returns `None` if the piece is a whole object.
+    /// Returns the number of the box's face that an object of the divided scene is. Returns `None`
+    /// for any other object.
     pub fn face(&self, piece: usize) -> Option<u8> {
         self.0.get(piece)?.1
     }

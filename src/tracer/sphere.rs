@@ -30,26 +30,30 @@ pub struct Sphere<T: Real> {
     center: [T; 3],
     /// Error bound of each coordinate of the centre.
     rad_c: T::Radius,
-    /// The square R².
+    /// Square of the radius R.
     square: T,
-    /// Error bound of R².
+    /// Error bound of R², the square of the radius.
     rad_square: T::Radius,
-    /// C = c·c − R², with a small relative error however close the eye is to the surface.
+    /// C = c·c − R², with the centre c relative to the eye and the radius R. Its relative error is
+    /// small however close the eye is to the surface.
     power: Ball<T>,
-    /// The exact sign of C: `Greater` if the eye is outside the sphere, `Equal` if it is on the
-    /// surface, `Less` if it is inside.
+    /// Exact sign of C = c·c − R²: `Greater` if the eye is outside the sphere, `Equal` if it is on
+    /// the surface, `Less` if it is inside.
     side: Ordering,
     /// Power of two by which an inverse depth in the sphere's own unit is multiplied to give the
     /// inverse depth in the world's unit.
     scale: f64,
-    /// Error bound of Q in the window.
+    /// Error bound, in the camera's window, of Q, a quarter of the discriminant of the equation for
+    /// a ray's crossings ([`Sphere`]).
     rad_q: T::Radius,
-    /// Error bound of c·r in the window.
+    /// Error bound, in the camera's window, of c·r, the scalar product of the sphere's centre c and
+    /// a ray's direction r.
     rad_b: T::Radius,
 }
 
-/// Number of roundings of a value of Q ([`Sphere`]), in units of [`Real::UNIT`]: twelve in the
-/// value of a linear form, twice as many in its square, and eight in the sum of squares.
+/// Number of roundings in a value of Q, a quarter of the discriminant of the equation for a ray's
+/// crossings ([`Sphere`]). A linear form has 12 roundings, its square therefore 24, and the sum of
+/// squares adds 8.
 const SPHERE_ROUNDINGS: f64 = 32.0;
 
 impl<T: Real> Sphere<T> {
@@ -61,8 +65,8 @@ impl<T: Real> Sphere<T> {
             .iter()
             .map(Ball::size)
             .fold(radius_ball.size(), Radius::max);
-        // The exponent is limited so that the power of two is within the range of `f64`. A factor
-        // of 2^74 too much or too little does no harm.
+        // The exponent is limited so that the power of two is within the range of `f64`. The limit
+        // may leave the lengths 2^74 times too large or too small, which does no harm.
         let exponent = (-greatest.exponent()).clamp(-1000, 1000);
         let from_eye = from_eye.map(|x| x.scaled(exponent));
         let radius_ball = radius_ball.scaled(exponent);
@@ -98,7 +102,9 @@ impl<T: Real> Sphere<T> {
         }
     }
 
-    /// Returns Q and c·r, as in [`Sphere`], for the ray of direction `r`.
+    /// Returns two numbers for the ray of direction `r`: Q, a quarter of the discriminant of the
+    /// equation for the crossings, and the scalar product of the sphere's centre and `r`. Both are
+    /// defined in [`Sphere`].
     #[inline]
     fn discriminant(&self, r: &Direction<T>) -> (Ball<T>, Ball<T>) {
         let [cx, cy, cz] = &self.center;
@@ -107,9 +113,9 @@ impl<T: Real> Sphere<T> {
         let m = cx.times(&r.y).minus(&cy.times(&r.x));
         let cross = k.times(&k).plus(&l.times(&l)).plus(&m.times(&m));
         let (rad_q, rad_b) = if T::LAST {
-            // This is the highest precision, after which no other is tried. The errors are
-            // therefore bounded for this ray alone: in the middle of the widest views, they are far
-            // smaller than elsewhere.
+            // The highest precision has to decide, so that its errors are bounded for this ray
+            // alone: in the middle of the widest views, they are far smaller than the bounds for
+            // the whole window.
             radii::<T>(
                 self.center.each_ref().map(Real::magnitude),
                 self.rad_c,
@@ -162,9 +168,10 @@ impl<T: Real> Sphere<T> {
         Some(self.exit(&q, &b, r))
     }
 
-    /// Returns the crossing where the ray leaves the sphere, given Q (`q`) and c·r (`b`) as in
-    /// [`Sphere`]. Of the two formulas for its inverse depth, this uses the one without
-    /// cancellation.
+    /// Returns the crossing where the ray leaves the sphere. `q` is a quarter of the discriminant
+    /// of the equation for the crossings, and `b` the scalar product of the centre and the ray's
+    /// direction ([`Sphere`]). Of two equal formulas for the inverse depth, the one that does not
+    /// cancel is used.
     fn exit(&self, q: &Ball<T>, b: &Ball<T>, r: &Direction<T>) -> Crossing<T> {
         let square = Ball {
             rad: r.square.magnitude() * (SPHERE_ROUNDINGS * T::UNIT) + T::TINY * 8.0,
@@ -195,7 +202,8 @@ impl Sphere<f64> {
     /// Returns the centre and the radius of a ball that certainly contains the sphere, in the
     /// sphere's own unit of length. Returns `None` if the eye is not outside the sphere.
     pub fn ball(&self) -> Option<([f64; 3], f64)> {
-        // Factor that covers the rounding errors of the radius, three roundings of 2^−53 each.
+        // Factor that covers the rounding errors of the radius. These are only three roundings of
+        // 2^−53 each, far less than 2^−40.
         const ROOT_SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
         let radius = (self.square + self.rad_square).sqrt() + 2.0 * self.rad_c;
         (self.side == Ordering::Greater).then_some((self.center, radius * ROOT_SLACK))
@@ -206,7 +214,7 @@ impl Sphere<f64> {
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let (q, b) = self.local(patch);
         let (q, b) = (q.range(), b.range());
-        // This condition fails only after an overflow.
+        // The condition fails only after an overflow.
         if !(q.low <= q.high && b.low <= b.high) {
             return Some(Cover {
                 is_whole: false,
@@ -246,14 +254,17 @@ impl Sphere<f64> {
         self.is_outside().then(|| self.widened(exits()))
     }
 
-    /// Returns the range of the inverse depths at which rays leave the sphere, from the ranges of Q
-    /// and of b = c·r ([`Sphere`]) over a rectangle.
-    ///
-    /// 1/λ = r·r/(b + √Q) = (√Q − b)/(−C)
-    ///
-    /// falls as b grows, where λr is the crossing. If b may be ≤ 0 and the eye is inside, the
-    /// second formula gives the upper bound.
+    /// Returns the range of the inverse depths at which rays leave the sphere, for rays through the
+    /// rectangle `patch`. `q` and `b` are the ranges of two numbers over the rectangle: a quarter
+    /// of the discriminant of the equation for the crossings, and the scalar product of the centre
+    /// and the ray's direction ([`Sphere`]).
     fn exits(&self, q: Interval, b: Interval, patch: &Patch) -> Interval {
+        // The inverse depth at the crossing λr, where r is the ray's direction,
+        //
+        // 1/λ = r·r/(b + √Q) = (√Q − b)/(−C),
+        //
+        // falls as b grows. If b may be ≤ 0 and the eye is inside, the second formula gives the
+        // upper bound.
         let reach = |i: usize, at: f64| {
             let half = 0.5 * patch.sides[i];
             (at.abs() + half, (at.abs() - half).max(0.0))
@@ -280,12 +291,14 @@ impl Sphere<f64> {
         }
     }
 
-    /// Expands Q and c·r, as in [`Sphere`], about the centre of a rectangle.
-    ///
-    /// The factors of Q consist of the same products as Q, and the rectangle lies within the
-    /// window. Q's error bound therefore counts eight times: once for the value at the centre,
-    /// twice for each of the two gradients, and once for each of the three second derivatives.
+    /// Returns two forms over a rectangle, as functions of the offset from its centre: a quarter of
+    /// the discriminant of the equation for a ray's crossings, and the scalar product of the
+    /// sphere's centre and the ray's direction ([`Sphere`]).
     pub fn local(&self, patch: &Patch) -> (LocalQuadratic, LocalForm) {
+        // The factors of Q, a quarter of the discriminant, consist of the same products as Q, and
+        // the rectangle lies within the window. Q's error bound therefore counts eight times: once
+        // for the value at the centre, twice for each of the two gradients, and once for each of
+        // the three second derivatives.
         const TIMES: f64 = 8.0;
         let [cx, cy, cz] = self.center;
         let (r, [width, height]) = (&patch.center, patch.sides);
@@ -309,10 +322,10 @@ impl Sphere<f64> {
         (q, LocalForm::new(b, 2.0 * self.rad_b))
     }
 
-    /// With c, r, Q and C as in [`Sphere`], the near side has the inverse depth (c·r + √Q)/C.
-    /// Returns 1/C in the world's unit, and a bound on its relative error. Returns `None` if the
-    /// eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4, the relative
-    /// error of 1/C is at most twice that of C.
+    /// Returns the factor 1/C in the inverse depth (c·r + √Q)/C of the sphere's near side
+    /// ([`Sphere`]), in the world's unit, and a bound on the factor's relative error. Returns
+    /// `None` if the eye is not outside, or if the relative error of C is 1/4 or more. Below 1/4,
+    /// the relative error of 1/C is at most twice that of C.
     pub fn depth_factor(&self) -> Option<(f64, f64)> {
         let error = self.power.rad / self.power.size() + SPHERE_ROUNDINGS * f64::UNIT;
         (self.is_outside() && error < 0.25).then(|| (self.scale / self.power.mid, 2.0 * error))
@@ -322,10 +335,10 @@ impl Sphere<f64> {
     /// rounding errors so far.
     fn widened(&self, range: Interval) -> Interval {
         // Factor by which the ends of a range are widened. It covers a few roundings of 2^−53, and
-        // a relative error of C of at most 2^−30.
+        // a relative error of C ([`Sphere`]) of at most 2^−30.
         const WIDER: f64 = 1.0 + 1.0 / (1u64 << 30) as f64;
         let power = self.power.rad / self.power.size();
-        // For an eye on the surface, C is 0 and its relative error does not matter.
+        // If the eye is on the surface, C is 0 and its relative error does not matter.
         if power < WIDER - 1.0 || self.side == Ordering::Equal {
             Interval {
                 low: range.low / WIDER / WIDER * self.scale,
@@ -357,8 +370,8 @@ impl<T: Real> Sphere<T> {
         self.scale
     }
 
-    /// Returns whether the eye lies on the surface. It then sees the sphere only where c·r > 0,
-    /// with c and r as in [`Sphere`].
+    /// Returns whether the eye lies on the sphere's surface. It then sees the sphere only in
+    /// directions r with c·r > 0, where c is the centre relative to the eye.
     pub fn is_at_eye(&self) -> bool {
         self.side == Ordering::Equal
     }
@@ -420,9 +433,11 @@ fn power<T: Real>(
     (Ball::from_big(&power.to_big().scaled(2 * exponent)), side)
 }
 
-/// Returns upper bounds of the errors of Q and c·r ([`Sphere`]) for rays whose |X|, |Y| and |Z| are
-/// at most `[x, y, z]`. `[cx, cy, cz]` are the absolute values of the centre's coordinates, and
-/// `rad_c` is their error; `square` is R², and `rad_square` its error.
+/// Returns upper bounds of the errors of two numbers ([`Sphere`]): Q, a quarter of the discriminant
+/// of the equation for a ray's crossings, and the scalar product of the sphere's centre and the
+/// ray's direction. The bounds hold for rays whose |X|, |Y| and |Z| are at most `[x, y, z]`. `[cx,
+/// cy, cz]` are the absolute values of the centre's coordinates, and `rad_c` is their error;
+/// `square` is the square of the radius, and `rad_square` its error.
 fn radii<T: Real>(
     [cx, cy, cz]: [T::Radius; 3],
     rad_c: T::Radius,
@@ -447,8 +462,8 @@ fn radii<T: Real>(
     let r_square = x * x + y * y + z * z;
     rad_q = rad_q + rad_square * r_square + (square * r_square + cross) * unit;
     let rad_b = rad_c * (x + y + z) + (cx * x + cy * y + cz * z) * unit;
-    // Numbers that are too small for normal numbers have errors of up to `TINY`, also Z. No
-    // coordinate of the centre is greater than 2.
+    // Numbers below the normal numbers, possibly also Z, have errors of up to `TINY`. No coordinate
+    // of the centre is greater than 2, so that a multiple of `TINY` covers all these errors.
     let tiny = T::TINY * 64.0;
     ((rad_q + tiny) * UP, (rad_b + tiny) * UP)
 }

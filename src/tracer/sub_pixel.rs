@@ -1,7 +1,7 @@
 //! A pixel, or a square part of one, for exact integration.
 //!
-//! In: a pixel, and quarterings of it. Out: points of the part as offsets from the pixel's centre.
-//! Offsets have no rounding error, because sides are powers of two.
+//! In: a pixel that is quartered repeatedly. Out: points of a part as offsets from the pixel's
+//! centre. Offsets have no rounding error, because sides are powers of two.
 
 use glam::DVec2;
 
@@ -42,7 +42,7 @@ impl SubPixel {
         })
     }
 
-    /// Returns the direction of the ray through the centre.
+    /// Returns the direction of the ray through the part's centre.
     pub(crate) fn middle<T: Real>(&self, camera: &Camera<T>) -> Direction<T> {
         camera.direction(&camera.sample_point(self.x, self.y, self.center))
     }

@@ -113,13 +113,14 @@ impl SceneGenerator {
 /// The column and row of a pixel, and an offset from its centre.
 type Sample = (u32, u32, DVec2);
 
-/// Returns the palette slot that is seen at a sample point, by the plain loop over all objects.
+/// Returns the palette index of the colour that is seen at a sample point, by the plain loop over
+/// all objects.
 fn plain(world: &World, (x, y, offset): Sample) -> usize {
     world.slot_among(x, y, offset, 0..world.object_count())
 }
 
-/// Returns the palette slot that is seen at a sample point, decided in the precision `T` alone.
-/// Returns `None` if that precision leaves doubt.
+/// Returns the palette index of the colour that is seen at a sample point, decided in the precision
+/// `T` alone. Returns `None` if the decision is uncertain in this precision.
 fn slot_by<T: Precision>(world: &World, (x, y, offset): Sample) -> Option<usize> {
     let point = world.geometry.fast.camera.sample_point(x, y, offset);
     let r = T::frame(&world.geometry).camera.direction(&point);
@@ -170,9 +171,9 @@ fn the_quadtree_changes_nothing() {
     }
 }
 
-/// In the rows at the horizon, `f64` leaves about 1e-10 of the samples in doubt. Objects in one
-/// plane must leave no doubt, because resolving it would take a hundred times as long as a decision
-/// in `f64`.
+/// In the rows at the horizon, `f64` leaves about 1e-10 of the samples undecided. With objects in
+/// one plane, it must decide every sample, because a higher precision takes a hundred times as
+/// long.
 #[test]
 fn f64_alone_decides_nearly_everything() {
     let figure = [
@@ -303,8 +304,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
 }
 
 /// If objects lie in one plane, the tracer tests at nearly every sample point whether two of them
-/// do. This test must not prepare objects in a higher precision: a point would then cost as much as
-/// in a scene with too many objects for the cache.
+/// do. The test must not prepare objects in a higher precision: a point would then cost as much as
+/// in a scene with too many objects for the cache of prepared objects.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![

@@ -45,12 +45,14 @@ fn by_vertices<T: Real>(
     Some((triangle, corners))
 }
 
-/// Returns the normal a × b of the plane through the eye and the edge from a to b; `corner` is the
-/// position of a relative to the eye. The normal may have any scale, because only the sign of its
-/// form matters.
+/// Returns a normal of the plane through the eye and the edge from `a` to `b`, in the camera's
+/// axes: the cross product of the two ends relative to the eye. `corner` is the first end relative
+/// to the eye. The normal may have any length, because only the sign of its scalar product with
+/// rays matters.
 fn edge<T: Real>(camera: &Camera<T>, corner: &Ball3<T>, a: DVec3, b: DVec3) -> Ball3<T> {
     if !T::LAST {
-        // a × b = a × (b − a), and the difference b − a is computed without cancellation.
+        // With a and b relative to the eye, a × b = a × (b − a). The difference b − a is computed
+        // without cancellation.
         let along: Ball3<T> = array::from_fn(|i| Ball::difference(b[i], a[i]));
         let along = camera.turned(&scaled_to_one(&along));
         let normal = cross(&scaled_to_one(corner), &along);
@@ -128,8 +130,8 @@ pub fn vertices(shape: &scene::Triangle) -> [DVec3; 3] {
 
 /// A plane n·q = h, with points q relative to the eye. n and h are divided by the greatest
 /// component of n, and each number is then correctly rounded. All triangles in one plane therefore
-/// get equal n and h, whatever the lengths of their normals. In a plane along the axes, these equal
-/// those of a box's face.
+/// get equal n and h, whatever the lengths of their normals. If a box's face lies in the plane, it
+/// has the same n and h.
 struct SeenPlane<T: Real> {
     normal: Ball3<T>,
     height: Ball<T>,
@@ -165,8 +167,9 @@ impl<T: Real> SeenPlane<T> {
         })
     }
 
-    /// Returns the triangle in this plane that `edges` bound. Reverses every edge if the eye sees
-    /// the triangle from behind.
+    /// Returns the triangle that lies in this plane. `edges` are normals of the planes through the
+    /// eye and each edge. They point inwards if the eye sees the triangle from the front, and are
+    /// reversed if it sees the triangle from behind.
     fn with_edges(&self, camera: &Camera<T>, edges: [Ball3<T>; 3]) -> Convex<T> {
         let facing = |n: Ball3<T>| if self.side.is_lt() { n.map(|x| -x) } else { n };
         let edges = edges.into_iter().map(|n| Form::new(camera, &facing(n)));
@@ -177,13 +180,13 @@ impl<T: Real> SeenPlane<T> {
 
 /// Returns the vertices relative to the centroid, along the axes of the world: the left end of the
 /// base, the right end, and the apex.
-///
-/// In the triangle's plane, with the base along x from 0 to c, the apex lies at
-///
-/// x = (a² − b² + c²)/(2c) and y = 2A/c,
-///
-/// where the area A follows from Heron's formula, 16A² = (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
 fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
+    // In the triangle's plane, with the base along x from 0 to c, the apex lies at
+    //
+    // x = (a² − b² + c²)/(2c) and y = 2A/c,
+    //
+    // where a, b and c are the sides. The area A follows from Heron's formula, 16A² =
+    // (a+b+c)(−a+b+c)(a−b+c)(a+b−c).
     let exponent = libm::frexp(shape.sides.max_element()).1;
     let [a, b, c] = shape
         .sides
@@ -211,8 +214,9 @@ fn offsets<T: Real>(shape: &CenteredTriangle) -> [Ball3<T>; 3] {
     })
 }
 
-/// Returns unit vectors in the plane with the normal n: right = (Y × n)/|Y × n| and top = n/|n| ×
-/// right, where Y is the y axis. If n is parallel to the y axis, (0, 0, −1) replaces Y.
+/// Returns two perpendicular unit vectors in the plane with the normal n: to the right, (Y × n)/|Y
+/// × n|, and to the top, n/|n| times the first vector. Y is the y axis; (0, 0, −1) replaces it if n
+/// is parallel to it.
 fn plane_axes<T: Real>(normal: DVec3) -> (Ball3<T>, Ball3<T>) {
     let [x, y, z] = normal.to_array();
     let (zero, one) = (Ball::exact(0.0), Ball::exact(1.0));

@@ -12,11 +12,11 @@ const SCENE: &str =
 sphere Ball { center (-1.6, 1, 0) color olive } checkerboard {}
 ";
 
-/// Script that is appended to the page, measures the page and prints its findings as JSON.
+/// Script that is appended to the page. It measures the page and prints its findings as JSON.
 const SCRIPT: &str = include_str!("../browser.html");
 
-/// Returns the findings of [`SCRIPT`] for `page` in a window `width` pixels wide, in the dark or
-/// the light theme.
+/// Returns what [`SCRIPT`] finds in the page `page`, in a window `width` pixels wide. The theme is
+/// dark if `is_dark`, otherwise light.
 fn measured(page: &Path, width: u32, is_dark: bool) -> Value {
     let profile = page.with_extension("profile");
     let mut browser = Command::new("chromium");

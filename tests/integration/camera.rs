@@ -1,4 +1,4 @@
-//! The camera: its axes, views along the up vector, rolls and lenses.
+//! Tests of the camera: its axes, views along the up vector, rolls and lenses.
 
 use glam::{DVec3, dvec3};
 use pinhole::{
@@ -17,7 +17,7 @@ fn axes(camera: &Camera) -> [DVec3; 3] {
     [&basis.u, &basis.v, &basis.w].map(|v| DVec3::from(v.each_ref().map(Big::to_f64)))
 }
 
-/// Returns a camera at the origin that looks along −z and is rolled by `roll`.
+/// Returns a camera at the origin that looks along −z, rolled by the angle `roll`.
 fn rolled(roll: Angle) -> Camera {
     Camera {
         roll,
@@ -25,10 +25,10 @@ fn rolled(roll: Angle) -> Camera {
     }
 }
 
-/// In the view direction (1, 1, 1), the camera's right and up axes, u and v, have x components in
-/// the ratio sin 60° : cos 60°. If u is rolled by 60°, the two products in its x component
-/// therefore cancel exactly. If they were rounded before they are subtracted, an error would
-/// remain.
+/// With the view direction (1, 1, 1), the x components of the camera's unrolled right and up axes
+/// have the ratio sin 60° : cos 60°. If the right axis is rolled by 60°, its x component is a
+/// difference of two equal products, i.e. exactly 0. If the products were rounded before they are
+/// subtracted, an error would remain.
 #[test]
 fn a_roll_into_a_coordinate_plane_is_exact() {
     for (x, degrees) in [(1.0, 60.0), (1.0, -120.0), (-1.0, -60.0)] {
@@ -42,14 +42,15 @@ fn a_roll_into_a_coordinate_plane_is_exact() {
 #[test]
 fn views_along_the_up_vector_are_oriented_like_a_map() {
     let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
-    // Each case maps the view direction and the up vector (direction, up) to the expected axes of
-    // the picture in the world (right, top). Here, up is along the y axis.
+    // Each case gives the view direction and the up vector, and then the world directions that
+    // appear to the right and upwards in the picture. In the first cases, the up vector is along
+    // the y axis.
     let cases = [
         ((-y, y), (x, -z)),
         ((y, y), (x, z)),
         ((-y, -y), (-x, z)),
         ((y, -y), (-x, -z)),
-        // Here, up is along the z or the x axis.
+        // In the following cases, the up vector is along the z or the x axis.
         ((-z, z), (x, y)),
         ((z, z), (x, -y)),
         ((-x, x), (-y, -z)),
@@ -64,7 +65,8 @@ fn views_along_the_up_vector_are_oriented_like_a_map() {
     }
 }
 
-/// A positive roll turns the right side of the picture's frame downwards.
+/// A positive roll turns the right side of the picture's frame downwards. After quarter turns, the
+/// camera's axes must be exactly the turned ones.
 #[test]
 fn any_number_of_quarter_rolls_is_exact() {
     let (x, y) = (DVec3::X, DVec3::Y);

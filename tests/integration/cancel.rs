@@ -1,5 +1,5 @@
-//! Cancellation: reading a long text, by every function that reads scenes, and building a world of
-//! many objects both end soon after they are cancelled.
+//! Tests of cancellation. Reading a long text, by every function that reads scenes, ends soon after
+//! it is cancelled, and so does building the data of the tracer for many objects.
 
 use std::{
     fmt::Write,
@@ -24,7 +24,7 @@ use crate::scenes::{read, sources};
 
 const CAMERA: &str = "camera { eye (0, 0, 5)  lookat (0, 0, 0) }\n";
 
-/// Returns the text of a scene with `count` spheres, each of about 55 bytes.
+/// Returns the text of a scene with `count` spheres. Each sphere takes about 55 bytes.
 pub fn spheres(count: usize) -> String {
     let mut text = CAMERA.to_owned();
     for index in 0..count {
@@ -37,10 +37,10 @@ pub fn spheres(count: usize) -> String {
     text
 }
 
-/// Runs `work` to its end and measures its time. Then runs it again and cancels it from another
-/// thread, once after 1/16 and once after 1/4 of that time. Asserts that each run then ends within
-/// half of that time, although at least three quarters of the work are left. Other load on the
-/// machine may delay a run, so one success in five tries is enough.
+/// Measures the time that `work` takes. Then runs it again and cancels it from another thread, once
+/// after 1/16 and once after 1/4 of that time. Asserts that each of these runs then ends within
+/// half of the measured time. Other work on the machine may delay a run, so one success in five
+/// tries is enough.
 #[track_caller]
 fn assert_stops_early<T>(what: &str, work: impl Fn(&AtomicBool) -> Result<T, Cancelled> + Sync) {
     for share in [16, 4] {

@@ -1,5 +1,7 @@
-//! A picture traced with culling and in batches has the same bits as one traced sample by sample.
-//! Pictures traced sample by sample are compared with the oracle in the tests of `tracer`.
+//! Tests that pictures traced with culling have the same bits as pictures traced sample by sample.
+//! Culling traces the samples of a pixel together, against the objects that may be seen in it. The
+//! tests of `tracer` compare pictures traced sample by sample with an independent, slow
+//! computation.
 
 use std::{
     collections::BTreeSet,
@@ -32,8 +34,8 @@ use crate::{
     table::rows,
 };
 
-/// Asserts that the picture of `scene` has the same bits as the picture traced sample by sample.
-/// Returns the number of different colours in the picture.
+/// Asserts that the picture of `scene` by culling has the same bits as the picture traced sample by
+/// sample. Returns the number of different colours in the picture.
 #[track_caller]
 fn compare(scene: &Scene, method: Method, count: Count) -> usize {
     let scene = with_samples(scene, method, count);
@@ -118,8 +120,8 @@ fn culling_is_exact_for_generated_scenes() {
         let colors =
             scenes.map(|((_, scene), method)| compare(&scene, method, Count::PerPixel(24)));
         let colors: usize = colors.sum();
-        // Scenes of ordinary numbers have at least ten colours per picture on average, because
-        // pixels at edges mix colours.
+        // Unless many numbers have extreme magnitudes, the hundred pictures have on average more
+        // than ten colours each, because pixels at edges mix colours.
         assert!(colors > 100 * 10 || wild > 5, "{wild}: {colors}");
     }
 }
@@ -129,16 +131,16 @@ sampled_and_exhaustive!(culling_is_exact_for_scenes_full_of_ties);
 fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 77);
     for (_, scene) in effort.first(60, scenes.take(300)) {
-        // The samples lie at odd eighths of a pixel, or at its centre if there is only one. Many
-        // hit edges exactly, and many rays lie in planes of surfaces.
+        // A single sample lies at the pixel's centre; several samples lie at odd eighths of a
+        // pixel. Many of them hit edges exactly, and many rays lie in planes of surfaces.
         for n in [1, 4, 16] {
             compare(&scene, Method::Regular, Count::PerPixel(n));
         }
     }
 }
 
-/// Renders overlapping triangles in a tilted plane and in the board's plane. The second scene has
-/// more triangles than the cache of objects in higher precision (`CACHE_SLOTS`) has room for.
+/// Renders overlapping triangles, half of them in a tilted plane and half in the board's plane. The
+/// second scene has more triangles than the tracer can cache in higher precision.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);
@@ -148,8 +150,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut many = String::new();
     for index in 0..4000 {
         let (a, b) = (place(), place());
-        // Triangles of even index lie in the plane y = −z/3, the others in the board's plane. The
-        // normals of one plane differ in their lengths.
+        // Triangles of even index lie in the plane y = −z/3, and the others in the board's plane.
+        // The normals of the triangles in one plane differ in length.
         let (centroid, normal) = match index % 2 {
             0 => ((a, b / 2.0, -1.5 * b), (0, 3, 1)),
             _ => ((a, 0.0, b), (0, 1, 0)),
@@ -165,8 +167,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
         }
     }
     few += "checkerboard {}\n";
-    // Each triangle occurs twice, with different normals and colours. The first one in the file is
-    // visible.
+    // Each triangle occurs twice, with different normals and colours. The first of the two in the
+    // file is visible.
     many.insert_str(0, &few);
     let [few, many] = [&few, &many].map(|text| read(text));
     assert!(compare(&few, Method::Jittered, Count::PerPixel(4)) > 100);
@@ -175,8 +177,8 @@ fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     assert_eq!(few.pixels(), many.pixels());
 }
 
-/// Returns the text of `count` spheres of different colours. Each coordinate of a centre is from
-/// −`reach` to `reach`, and the radii are from `low` to `high`.
+/// Returns the text of `count` spheres of different colours. Each coordinate of a centre is between
+/// −`reach` and `reach`, and each radius between `low` and `high`.
 pub fn spheres(random: &mut Random, count: u32, reach: f64, [low, high]: [f64; 2]) -> String {
     let sphere = |index| {
         let DVec3 { x, y, z } = random.vector(reach);
@@ -193,8 +195,8 @@ fn culling_is_exact_for_parallel_layers() {
     for (count, apart) in [(9, 0.1), (33, 0.1), (33, 1e-13), (33, 1e-30), (120, 0.05)] {
         let mut text = "image { width 24 height 18 } camera { eye (0.3, 0.2, 4) lookat (0, 0, 0) roll 10deg }\n".to_owned();
         for index in 0..count {
-            // The layers are not in the order of their heights, and every third layer is hidden by
-            // an equal one.
+            // The layers are not listed in the order of their heights. Every third layer has the
+            // same height as another one, so only one of the two is visible.
             let place = f64::from(index * 37 % count);
             let height = 1.0 + apart * (place - place % 3.0 % 2.0);
             let sign = if index % 2 == 0 { "-" } else { "" };
@@ -219,8 +221,9 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
     let mut random = Random::new(12);
     let mut scenes = generated(Numbers::Wild(0), [1, 1], 31);
     let mut methods = Method::SAMPLED.into_iter().cycle();
-    // In the larger picture, only few objects may be seen in a pixel, so several samples are
-    // compared in one batch.
+    // Where few objects may be seen in a pixel, the tracer evaluates several samples of the pixel
+    // at once; elsewhere, it traces samples one by one. The pixels of the larger pictures are so
+    // small that few objects may be seen in each, so these pictures test the first way.
     for (roll, clips, size, counts) in [
         (0, "", "width 31 height 23", &[2, 4, 8, 9, 100][..]),
         (0, "near 5.5 far 8", "width 31 height 23", &[1, 3, 16]),
@@ -244,8 +247,8 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
                  triangle {{ centroid -{at} normal {normal} sides (0.1, 0.1, 0.05) color {color} }}"
             );
         }
-        // This adds two equal spheres, of which the first is visible, a sphere that touches them,
-        // and very large spheres.
+        // The additional objects are: two equal spheres, of which the first is visible; a sphere
+        // that touches them; and two very large spheres.
         text += "sphere { center (0, 0, 0) radius 0.7 color red }
             sphere { center (0, 0, 0) radius 0.7 color lime }
             sphere { center (1.4, 0, 0) radius 0.7 color blue }
@@ -255,10 +258,12 @@ fn culling_is_exact_for_crowds_of_pixel_sized_objects() {
         let objects = Arc::make_mut(&mut all.objects);
         let (_, others) = scenes.next().unwrap();
         objects.extend_from_slice(&others.objects);
-        // These duplicates are hidden by the equal objects before them.
+        // A thousand objects are listed a second time. The copies are invisible, because only the
+        // first of equal objects is seen.
         objects.extend_from_within(3500..4500);
-        // Where objects are dense, a single sample per pixel is traced by itself, but many samples
-        // are traced together.
+        // With one sample per pixel, some areas of the picture must be crowded, i.e. show so many
+        // objects that the tracer takes their samples one by one. Otherwise, the pictures below
+        // would not test this way of tracing.
         let world = World::new(&all);
         let parts = Quartering::for_samples(&world, 1.0);
         let flow = parts.parts(

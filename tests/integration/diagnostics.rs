@@ -16,20 +16,20 @@ use pinhole::{
 
 use crate::{scenes::scenes, snapshot::assert_file};
 
-/// Returns the diagnostics of `text`, read with the `--set` arguments `sets`.
+/// Returns the diagnostics of the text `text`, read with the `--set` arguments `sets`.
 pub fn diagnose(text: &str, sets: &[&str]) -> Vec<Diagnostic> {
     let sources = Sources::new(Source::from_text("a.scn", text));
     scene::read(&sources.with_sets(sets)).diagnostics
 }
 
 /// Returns the codes of the diagnostics of `text`, read with the `--set` arguments `sets`. The
-/// prefix `pinhole::` is removed.
+/// codes lack their common prefix `pinhole::`.
 pub fn codes(text: &str, sets: &[&str]) -> Vec<String> {
     let found = diagnose(text, sets).into_iter();
     found.map(|d| d.code.replace("pinhole::", "")).collect()
 }
 
-/// Returns whether a line of a fixture is an expectation, as opposed to a part of the scene.
+/// Returns whether a line of a fixture is an expectation rather than a part of the scene.
 fn is_expectation(line: &[u8]) -> bool {
     let Some(rest) = line.strip_prefix(b"//") else {
         return false;
@@ -65,8 +65,8 @@ fn sets(file: &Source) -> impl Iterator<Item = (usize, &str)> {
     lines.filter_map(|(index, line)| Some((index + 1, line.strip_prefix(SET)?)))
 }
 
-/// Returns the correct expectations for a fixture, each with the number of the line below which it
-/// belongs, from 1. The number is 0 for the start of the text.
+/// Returns the correct expectations for a fixture. Each has the number of the line below which it
+/// belongs, counted from 1, or 0 for the start of the text.
 fn expectations(sources: &Sources) -> Vec<(usize, String)> {
     let mut expected = Vec::new();
     for diagnostic in scene::read(sources).diagnostics {
@@ -109,7 +109,8 @@ fn underlined(sources: &Sources, label: &Label, sign: &str) -> (usize, String) {
 /// Returns the bytes of a fixture with its expectations replaced by the correct ones.
 fn annotated(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
-    // A message may name a line, and new expectations move lines, so this is repeated.
+    // New expectations move lines, and a message may contain a line number. So the expectations are
+    // computed several times, until all line numbers are right.
     for _ in 0..4 {
         let expected = expectations(&read("fixture.scn", &bytes));
         let below = |line: usize| {
@@ -141,8 +142,8 @@ fn diagnostic_fixtures_match_their_annotations() {
     }
 }
 
-/// Returns the code of every diagnostic that occurs in the sources of the parser and of the
-/// lowering (`src/syntax/messages.rs` and `src/scene`). The prefix `pinhole::` is removed.
+/// Returns the codes of all diagnostics in the source files of the parser and of the translation to
+/// a scene (`src/syntax/messages.rs` and `src/scene`). The codes lack their prefix `pinhole::`.
 pub fn all_codes() -> BTreeSet<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut codes = BTreeSet::new();
@@ -240,8 +241,8 @@ fn long_source_lines_are_cut_in_reports() {
 #[test]
 fn a_text_in_utf_16_is_one_mistake() {
     let marked = "\u{feff}sphere { center (0, 1, 0) }\n";
-    // Some programs write UTF-16 without a byte order mark. This text also has a comment that is
-    // not ASCII.
+    // Some programs write UTF-16 without a byte order mark. The text also has a comment with
+    // letters that are not ASCII.
     let bare = "// Кубы\nsphere { center (0, 1, 0)  radius 2 }\n";
     let texts = [marked, bare, &marked[3..]].into_iter();
     let encoded = texts.flat_map(|text| {
@@ -258,8 +259,8 @@ fn a_text_in_utf_16_is_one_mistake() {
     }
 }
 
-/// In a narrow terminal, excerpts are cut around the label, and all other lines wrap at words. Only
-/// an excerpt with several labels in a line may be wider than the terminal.
+/// In a narrow terminal, excerpts of the scene are cut around the label, and all other lines wrap
+/// at words. Only an excerpt with several labels in one line may be wider than the terminal.
 #[test]
 fn reports_fit_into_the_terminal() {
     let mut cut = 0;

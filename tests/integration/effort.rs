@@ -1,24 +1,27 @@
-//! Tests with long tables of cases: a normal run tries a sample, an exhaustive run all cases.
+//! Tests with long tables of cases. A normal run tries only some cases of each table; an exhaustive
+//! run tries all.
 //!
 //! `cargo test -- --ignored` runs all cases, as the continuous integration does. It also needs
 //! Neovim, QEMU and Chromium.
 
-/// How many cases of its table a test tries.
+/// Choice of the cases that a test tries from its table.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Effort {
-    /// The first case of each table, or a given number of first cases.
+    /// Only the first case of the table, or a given number of first cases.
     Sample,
-    /// All cases of each table.
+    /// All cases of the table.
     Exhaustive,
 }
 
 impl Effort {
-    /// Returns the cases to try: only the first one for [`Self::Sample`], else the whole table.
+    /// Returns the cases to try: only the first one for [`Self::Sample`], otherwise the whole
+    /// table.
     pub fn of<T>(self, table: impl IntoIterator<Item = T>) -> impl Iterator<Item = T> {
         self.first(1, table)
     }
 
-    /// Returns the cases to try: the first `sample` for [`Self::Sample`], else the whole table.
+    /// Returns the cases to try: the first `sample` cases for [`Self::Sample`], otherwise the whole
+    /// table.
     pub fn first<T>(
         self,
         sample: usize,
@@ -31,8 +34,8 @@ impl Effort {
         table.into_iter().take(count)
     }
 
-    /// Returns the length of a text or the number of repetitions that a test tries: `whole / 64`
-    /// for [`Self::Sample`], else `whole`.
+    /// Returns the length of a text, or the number of repetitions, that a test tries: `whole / 64`
+    /// for [`Self::Sample`], otherwise `whole`.
     pub fn part_of(self, whole: usize) -> usize {
         match self {
             Self::Sample => whole / 64,
@@ -42,7 +45,7 @@ impl Effort {
 }
 
 /// Defines two tests of a function that takes an [`Effort`]: `NAME::sample`, and
-/// `NAME::exhaustive`, which is ignored by default.
+/// `NAME::exhaustive`, which runs only on request (`--ignored`).
 macro_rules! sampled_and_exhaustive {
     ($name:ident) => {
         mod $name {

@@ -1,5 +1,6 @@
-//! Tests of the explain pages of the diagnostic codes. Each page has the common structure. Its
-//! wrong scene has only the mistake that the page is about; its right scene has none.
+//! Tests of the pages that explain the diagnostic codes. All pages have the same structure. The
+//! wrong scene of a page has only the mistake that the page explains; its right scene has no
+//! mistake.
 //!
 //! A scene is in a fence `scn`, or in a fence `scn escaped`, where `\xE9` is a byte and `\u{A0}` an
 //! invisible character. If a command in a fence `console` has `--set` arguments, they apply to the
@@ -22,19 +23,19 @@ use crate::{
     table::rows,
 };
 
-/// Returns the folder that contains the explain page of each code.
+/// Returns the folder that contains the pages that explain the diagnostic codes.
 fn folder() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/codes"))
 }
 
-/// Returns the text of `page` below a second-level heading.
+/// Returns the part of `page` below the second-level heading `heading`.
 fn section<'p>(page: &'p Page, heading: &str) -> &'p str {
     let start = format!("\n## {heading}\n");
     let (_, rest) = page.text.split_once(&start).expect("the heading");
     rest.split_once("\n## ").map_or(rest, |(own, _)| own)
 }
 
-/// Returns the scene of a section, with the `--set` arguments of its command.
+/// Returns the scene in a section of a page, with the `--set` arguments of the section's command.
 fn sources(section: &str) -> Sources {
     let plain = fenced(section, "scn").into_iter().map(Vec::from);
     let escaped = fenced(section, "scn escaped").into_iter().map(unescaped);
@@ -132,7 +133,7 @@ fn the_index_lists_every_explain_page() {
     assert_file(&folder().join("README.md"), &index);
 }
 
-/// Returns the output of `pinhole explain WORD`.
+/// Returns the output of the command `pinhole explain WORD`.
 fn explained(word: &str) -> String {
     let said = Folder::with([]).done(&format!("explain {word}"));
     said.text().to_owned()

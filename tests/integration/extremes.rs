@@ -1,8 +1,8 @@
-//! Scenes with numbers of any magnitude: every valid scene is rendered, and every channel of its
-//! picture is finite and from 0 to 1.
+//! Tests of scenes with numbers of any magnitude. Every valid scene is rendered, and every channel
+//! of its picture is finite and from 0 to 1.
 //!
-//! A normal run renders 150 scenes, or 1200 with the ignored tests. `PINHOLE_SCENES=10000000 cargo
-//! test extremes` renders ten million scenes, which takes hours.
+//! A normal run renders 150 scenes, or 1200 with the ignored tests.
+//! `PINHOLE_SCENES=10000000 cargo test extremes` renders ten million scenes, which takes hours.
 
 use std::num::NonZero;
 
@@ -24,20 +24,23 @@ use crate::{
     table::list,
 };
 
-/// Number of generated scenes in an exhaustive run, unless `PINHOLE_SCENES` overrides it. A normal
-/// run has an eighth of them.
+/// Number of generated scenes in an exhaustive run, unless the environment variable
+/// `PINHOLE_SCENES` gives another. A normal run renders an eighth of them. More scenes would find
+/// rarer errors, but the tests would take longer.
 const SCENES: usize = 1200;
 
-/// Number of random samples per pixel, whose mean is compared with the exact mean. See [`FAR`].
+/// Number of random samples per pixel whose mean is compared with the exact mean. With 64 samples,
+/// chance alone practically never causes a difference of more than [`FAR`]; more samples would take
+/// longer.
 const SAMPLES: u64 = 64;
 
-/// Maximum difference between the mean of a pixel's [`SAMPLES`] samples and the exact mean. By
-/// Hoeffding's inequality for numbers from 0 to 1, only one mean in 10^13 differs by more, so a
-/// greater difference is an error of the program.
+/// Maximum difference between the mean of the [`SAMPLES`] samples of a pixel and the exact mean.
+/// Light is from 0 to 1. By Hoeffding's inequality, chance causes a greater difference only once in
+/// 10^13 means, so such a difference is an error of the program.
 const FAR: f64 = 0.49;
 
-/// Percentages of a scene's numbers that may have any magnitude ([`Numbers::Wild`]). A quarter of
-/// the generated scenes has each percentage.
+/// Percentages of the numbers in a scene that may have any magnitude ([`Numbers::Wild`]). A quarter
+/// of the generated scenes has each of the four percentages, from ordinary to extreme scenes.
 const WILD: [u64; 4] = [0, 5, 30, 100];
 
 fn assert_light(film: &Film, text: &str) {
@@ -47,10 +50,10 @@ fn assert_light(film: &Film, text: &str) {
     }
 }
 
-/// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures.
-/// `is_decided` is false if squares and positions may have any magnitude. Which square a sample
-/// hits is then decided only with hundreds of bits, so the samples are not compared with the exact
-/// picture.
+/// Renders a scene with culling, sample by sample, and exactly, and compares the three pictures. If
+/// `is_decided` is false, the samples are not compared with the exact picture. This is for scenes
+/// with squares and positions of any magnitude, where only arithmetic of hundreds of bits could
+/// decide which square a sample hits.
 fn render_in_each_way(scene: &Scene, text: &str, is_decided: bool) {
     let control = one_thread();
     let (world, sampling, whole) = (World::new(scene), sampling(scene), whole(scene));
@@ -94,7 +97,7 @@ fn channels_stay_between_0_and_1_for_scenes_of_any_numbers(effort: Effort) {
 
 sampled_and_exhaustive!(a_pixel_does_not_depend_on_the_crop);
 
-/// The objects that may be seen in a pixel are the same for any crop and any number of threads.
+/// A pixel has the same value for any crop and any number of threads.
 fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
     let control = one_thread();
     let others = Control {
@@ -110,12 +113,12 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
         let scenes = generated(Numbers::Wild(wild), [1, 1], seed);
         for (index, (_, mut scene)) in scenes.take(count).enumerate() {
             if index % 5 == 0 {
-                // The eye is so far away that the differences from it round away coordinates near
-                // the origin.
+                // The eye is so far away that rounding removes coordinates near the origin from
+                // their difference to the eye.
                 scene.camera.eye = dvec3(3e267, -3e267, 1e267) * random.within(0.0, 1.0);
             }
-            // The pictures are small, but extend over several cells of the grid of candidate
-            // objects.
+            // The pictures are small, but extend over several cells of the grid that lists the
+            // objects that may be seen in each part of a picture.
             let (width, height) = [(37, 3), (3, 35), (7, 9)][index % 3];
             let scene = resized(scene, width, height);
             let mut below = |n: u32| random.bits() as u32 % n;
@@ -153,8 +156,11 @@ fn scenes_at_the_limits_of_f64_render_alike_in_every_way(effort: Effort) {
     }
 }
 
-/// The sphere's silhouette is a hyperbola whose two branches coincide even in the highest
-/// precision.
+/// The camera looks horizontally, with the eye 1/4 below a sphere. This distance is tiny compared
+/// with the radius, so the sphere nearly touches the eye and looks like a horizontal plane above
+/// it: it covers about half of the pixel. Its silhouette is the upper branch of a hyperbola whose
+/// two branches run close above and below the pixel's middle. For the largest radius, they are only
+/// 1e-154 pixels apart.
 #[test]
 fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     for radius in ["1e3", "1e10", "1e100", "1e200", "1.7976931348623157e308"] {
@@ -165,9 +171,9 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
         );
         let exact = exact(&read(&text));
         let bound = f64::from(exact.bounds[0]);
-        // The eye is h = 1/4 below the lowest point of the sphere, whose radius is R. In a view
-        // plane whose distance equals its height, the edge of the sphere is seen √(2h/R) heights
-        // above the middle.
+        // The eye is h = 1/4 below the lowest point of the sphere, whose radius is R. By default,
+        // the window is 2 m high at a distance of 2 m. In the middle column, the silhouette then
+        // appears √(2h/R) window heights above the middle; the assertion allows twice this height.
         let above = libm::sqrt(0.5 / radius.parse::<f64>().unwrap());
         for channel in exact.film.pixels()[0] {
             assert!(
@@ -179,8 +185,8 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     }
 }
 
-/// Near the picture's centre, the directions of rays in the board's plane are tiny compared with
-/// those of all other rays. So are the numbers by which the tracer compares the depths of surfaces.
+/// Near the centre of such a picture, rays in the board's plane have tiny directions compared with
+/// all other rays. So are the numbers by which the tracer compares the depths of surfaces.
 #[test]
 fn the_nearest_surface_is_seen_at_the_centre_of_the_widest_views() {
     for view in [

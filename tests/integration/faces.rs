@@ -1,4 +1,4 @@
-//! Compares boxes whose faces have different colours with triangles in the place of the faces.
+//! Compares boxes whose faces have different colours with triangles in place of the faces.
 
 use glam::DVec3;
 use pinhole::{
@@ -14,7 +14,7 @@ use crate::{
 
 const COLORS: [&str; 3] = ["red", "#00ff00", "blue"];
 
-/// Returns the twelve triangles of a box's faces, with one colour per axis.
+/// Returns the twelve triangles that form a box's faces. Opposite faces have the same colour.
 fn triangles(min: DVec3, max: DVec3) -> String {
     let mut text = String::new();
     for (axis, color) in COLORS.into_iter().enumerate() {
@@ -35,8 +35,8 @@ fn triangles(min: DVec3, max: DVec3) -> String {
     text
 }
 
-/// Rows of a camera and the two corners of a box. The eye sees the box from outside, from inside,
-/// cut by the near or far plane, in the plane of a face, along an edge, and from far away.
+/// Rows of a camera and two opposite corners of a box. The eye sees the box from outside, from
+/// inside, cut by the near or far plane, in the plane of a face, along an edge, and from far away.
 const VIEWS: &[(&str, [f64; 3], [f64; 3])] = &[
     (
         "eye (4, 3, 8) lookat (0, 1, 0)",
@@ -118,7 +118,7 @@ fn a_box_with_face_colours_looks_like_triangles_of_its_faces() {
     }
 }
 
-/// Asserts that each hit of a ray names its object by the index in the file.
+/// Asserts that each hit of a ray names its object by the object's index in the file.
 fn objects_keep_their_places(scene: &Scene) {
     let world = World::new(scene);
     for (x, y) in [(18, 11), (3, 20), (30, 5)] {

@@ -1,6 +1,7 @@
-//! `figure`: the bytes of some figures, rules for all figures, and refused arguments.
+//! Tests of the command `figure`: the bytes of some figures, rules for all figures, and refused
+//! arguments.
 //!
-//! `PINHOLE_BLESS=1 cargo test figure` writes the real figures into `tests/figures` and
+//! `PINHOLE_BLESS=1 cargo test figure` writes the current figures into `tests/figures` and
 //! `docs/handout`. Look at them, light, dark and small, before you commit them.
 
 use std::path::Path;
@@ -15,13 +16,13 @@ use crate::{
     snapshot::assert_file,
 };
 
-/// Draws a figure of an example with the default choices.
+/// Draws a figure of an example with the default options.
 fn drawn(example: &str, kind: Kind, sets: &[&str]) -> Result<String, String> {
     let scene = read_with(&example_text(example), sets.iter().copied());
     figure(&scene, kind, Choice::default())
 }
 
-/// Figures that pages of the handout show are kept beside these pages.
+/// Figures that the handout shows are stored beside the pages of the handout.
 #[test]
 fn figures_keep_their_bytes() {
     const VERTICES: [&str; 3] = [
@@ -82,8 +83,8 @@ fn figures_keep_their_bytes() {
     assert_eq!(crate::program::names(&root.join("tests/figures")), expected);
 }
 
-/// Returns each text of a figure with its bounding box, by the width that the program assumes for a
-/// letter.
+/// Returns each text of a figure with its bounding box, which assumes the same letter width as the
+/// program.
 fn texts(svg: &str) -> Vec<(String, [DVec2; 2])> {
     let mut found = Vec::new();
     for element in svg.split("<text ").skip(1) {
@@ -107,7 +108,7 @@ fn texts(svg: &str) -> Vec<(String, [DVec2; 2])> {
     found
 }
 
-/// In one scene, the names are longer than any figure has room for.
+/// In one of the scenes, the names are longer than any figure has room for.
 #[test]
 fn texts_lie_in_the_figure_and_none_upon_another() {
     let mut count = 0;
@@ -234,7 +235,7 @@ fn what_cannot_be_drawn_is_told_with_a_way_out() {
         assert_eq!(said.status, status, "{line}: {}", said.errors);
         assert!(said.errors.contains(told), "{line}: {}", said.errors);
     }
-    // The figure on standard output has the same bytes as in a file.
+    // The figure on standard output has the same bytes as the figure in a file.
     folder.done("figure camera a.scn -o camera.svg");
     for line in ["figure camera a.scn", "figure camera a.scn -o -"] {
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Generated scenes of random numbers, for properties that hold for every scene.
+//! Generates scenes of random numbers, for tests of properties that hold for every scene.
 
 use std::iter;
 
@@ -12,16 +12,16 @@ use crate::{random::Random, scenes::sources};
 /// Kind of the random numbers in a generated scene.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Numbers {
-    /// Multiples of a unit. With the unit 1/2, ties are frequent: eyes lie on surfaces; rays lie in
-    /// planes and pass through corners and along edges; faces lie in common planes, or at the near
-    /// and far depths.
+    /// Multiples of a unit. With the unit 1/2, exact coincidences are frequent: eyes lie on
+    /// surfaces; rays lie in planes and pass through corners and along edges; faces lie in common
+    /// planes, or at the near and far depths.
     MultiplesOf(f64),
-    /// Whole, round and other numbers. The given percentage of them may have any magnitude.
+    /// Whole, round and other numbers. The contained percentage of them may have any magnitude.
     Wild(u64),
 }
 
-/// Generates endless valid scenes of up to eleven overlapping objects. Each item is the text and
-/// the scene read from it.
+/// Generates an endless sequence of valid scenes with up to eleven overlapping objects. Each
+/// element is a text and the scene read from it.
 pub fn generated(
     numbers: Numbers,
     size: [u32; 2],
@@ -33,22 +33,22 @@ pub fn generated(
         shared: [1.0; 3],
     };
     let texts = iter::repeat_with(move || generator.scene(size));
-    // Texts with mistakes are skipped; for example, triangles with impossible sides or directions
-    // of length 0.
+    // Texts with mistakes are skipped, for example triangles with impossible sides or directions of
+    // length 0.
     texts.filter_map(|text| Some((text.clone(), scene::read(&sources(&text)).scene?)))
 }
 
 struct Generator {
     random: Random,
     numbers: Numbers,
-    /// Numbers that several parts of a scene use, so that for example a vertex lies in the plane of
-    /// a face.
+    /// Numbers that several objects of a scene use, so that, for example, a vertex lies in the
+    /// plane of a face.
     shared: [f64; 3],
 }
 
 impl Generator {
-    /// Returns a random number of the kind `self.numbers`. Its magnitude is at most `size`, except
-    /// for those numbers of [`Numbers::Wild`] that may have any magnitude.
+    /// Returns a random number of the kind `self.numbers`. Its absolute value is at most `size`,
+    /// except for those numbers of [`Numbers::Wild`] that may have any magnitude.
     fn number(&mut self, size: f64) -> f64 {
         let ordinary = self.random.within(-size, size);
         let wild = match self.numbers {
@@ -71,7 +71,7 @@ impl Generator {
         }
     }
 
-    /// Returns a positive number for a length, since a length of 0 is a mistake.
+    /// Returns a positive number for a length, since the language does not allow a length of 0.
     fn length(&mut self, size: f64) -> f64 {
         match self.number(size).abs() {
             0.0 => size,
@@ -132,8 +132,8 @@ impl Generator {
             ),
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
-                // No side is longer than the other two together, but often one is exactly as long.
-                // The sides 2.5, 2.5 and 3 allow rational vertices.
+                // No side is longer than the other two together, but often exactly as long. A
+                // triangle with the sides 2.5, 2.5 and 3 can have rational vertices.
                 let sides = match self.random.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],

@@ -1,4 +1,5 @@
-//! Compares the handout's card with the tables of the language, and its HTML page with its files.
+//! Compares the card of the handout, a short reference, with the tables of the language, and the
+//! HTML page of the handout with its files.
 
 use std::{
     fs,
@@ -10,7 +11,7 @@ use pulldown_cmark::{Event, Options, Parser, Tag, html};
 
 use crate::snapshot::assert_file;
 
-/// Files of the handout, in the order in which they are read.
+/// Files of the handout in the order in which they should be read.
 const PAGES: [&str; 7] = [
     "README",
     "camera",
@@ -26,8 +27,8 @@ fn path(name: &str) -> PathBuf {
     folder.join(name)
 }
 
-/// The page contains all files of the handout, to be printed as a booklet. Links between the files
-/// become links within the page; links to other documents stay as they are.
+/// The page contains all files of the handout, so that it can be printed as a booklet. Links
+/// between the files become links within the page; links to other documents stay as they are.
 #[test]
 fn the_page_is_that_of_the_files() {
     let mut page = String::from(

@@ -27,8 +27,8 @@ fn rendered(text: &str) -> image::RgbImage {
     image::RgbImage::from_fn(160, 90, |x, y| image::Rgb(encoder.pixel(film.pixel(x, y))))
 }
 
-/// Returns a PNG file of any colour type. The crate `image` is not used, since its encoder would be
-/// compiled anew for this module, with all formats.
+/// Returns a PNG file of any colour type. The crate `image` is not used, because its encoder for
+/// all formats would be compiled again for this module.
 pub fn png([width, height]: [u32; 2], color: ColorType, depth: BitDepth, data: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
@@ -86,7 +86,8 @@ fn the_gallery_shows_every_example_with_its_picture_and_no_other() {
     assert_eq!(shown, example_names());
 }
 
-/// The course's scenes are short, valid and formatted, and the course's sheet shows all of them.
+/// The course's scenes are short, valid and formatted, and the sheet of the course shows all of
+/// them.
 #[test]
 fn the_course_is_short_valid_formatted_and_matches_its_sheet() {
     let course = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/course");

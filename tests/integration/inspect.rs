@@ -1,4 +1,5 @@
-//! Compares data of `inspect` and `probe` with values computed by hand and with the oracle.
+//! Compares data that `inspect` and `probe` report with values computed by hand and with exact
+//! arithmetic.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::{
@@ -44,8 +45,8 @@ fn the_default_triangle_has_the_sides_of_the_assignment() {
             ((left + right + apex) / 3.0).distance(dvec3(1.0, 2.0, 3.0)),
             0.0,
         ),
-        // The base is level, and the apex is above it. Seen from the tip of the normal, `right` is
-        // on the right.
+        // The base is level, and the apex is above it. As seen from the tip of the normal, the end
+        // `right` of the base is on the right.
         (left.y, right.y),
         (normal.distance(dvec3(0.3, -0.2, 1.0).normalize()), 0.0),
     ] {
@@ -150,13 +151,14 @@ fn probe_sees_the_colour_that_the_picture_shows() {
 fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
     let text =
         "camera { eye (0, 0, 4) direction (0, 0, -1) } sphere { center (40, 0, 0) radius 1 }";
-    // The sphere is ten times as far to the right as its depth, so it is seen at x = 10 · 2 = 20 in
-    // the view plane, where 1 m is 225 pixels.
+    // The centre of the sphere is ten times as far to the right as its depth. So it is seen at x =
+    // 10 · 2 = 20 in the view plane, where 1 m is 225 pixels.
     let probe = probed(text, 400.0 + 20.0 * 225.0, 225.0);
     assert_eq!(probe.color.to_string(), "#808000");
     assert!(probed(text, -1e300, 1e300).hits.is_empty());
-    // In the worked example, a point of the floor is twice its view plane point (1, −1.5). The view
-    // plane point is 160 pixels to the right of the picture's centre and 240 pixels above it.
+    // In the worked example, the eye looks down, and a point of the floor is at twice the
+    // coordinates of its image (1, −1.5) in the view plane. The image is 160 pixels to the right of
+    // the picture's centre and 240 pixels above it.
     let worked = example("looking_down_the_y_axis");
     let hits = probed(&worked, 560.0, 160.0).hits;
     let floor = hits
@@ -177,19 +179,19 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // In the widest view, the part of a pixel that the box covers is too small for an `f64`, so
-        // the output has `null` in place of four numbers.
+        // In the widest view, the part of a pixel that the box covers is too small for an `f64`.
+        // The output then has `null` in place of four numbers.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }
-    // Values beyond the range of `f64` are shown as its largest value.
+    // Values outside of the range of `f64` are shown as its largest value.
     let text = "camera { eye (0, 1.7e308, 0) direction (0, -1, -1) } checkerboard {}";
     let (hit, ..) = &probed(text, 400.0, 225.0).hits[0];
     assert_eq!((hit.t, hit.depth), (f64::MAX, f64::MAX));
     assert_eq!(hit.point, dvec3(0.0, 0.0, -1.7e308));
 }
 
-/// Tests what the program's output says about the visibility of each object.
+/// The output of the program says how much of each object is visible.
 #[test]
 fn inspect_reports_what_is_visible_of_each_object() {
     let scene =
@@ -213,9 +215,10 @@ fn inspect_reports_what_is_visible_of_each_object() {
         (4, r#""outside":"above the window""#),
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
-        // The sphere's silhouette is an ellipse from 41.5 to 29.2 pixels left of the picture's
-        // centre. In a view plane at 1 m, where 1 m is 50 pixels, the silhouette of a sphere of
-        // radius r, whose centre has the distance c and the depth z, has the area
+        // The silhouette of the sphere is an ellipse that extends from 41.5 to 29.2 pixels left of
+        // the picture's centre. Let r be the radius of a sphere, c the distance of its centre from
+        // the eye, and z the depth of the centre. In a view plane at 1 m, where 1 m is 50 pixels,
+        // the silhouette has the area
         //     π·r²·√(c² − r²) / (z² − r²)^1.5.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
@@ -262,7 +265,7 @@ fn diff_compares_two_scenes_without_sampling_noise() {
     assert!(!folder.read("heat.png").is_empty());
 }
 
-/// If a warning says that an object is outside the picture, no pixel shows the object.
+/// If a warning says that an object is outside of the picture, no pixel may show the object.
 #[test]
 fn objects_reported_outside_the_picture_are_not_visible() {
     let mut outside = 0;
@@ -285,7 +288,7 @@ fn objects_reported_outside_the_picture_are_not_visible() {
     assert!(outside > 50, "{outside}");
 }
 
-/// The text output lists 100 objects; the JSON output lists all of them.
+/// The text output lists only 100 objects; the JSON output lists all of them.
 #[test]
 fn inspect_lists_100_objects_and_summarizes_the_rest() {
     let scene =
@@ -298,7 +301,7 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         said.contains("  1_000 more, which --format json lists"),
         "{said}"
     );
-    // All objects except the first eight lie beside the window, which is 17.8 m wide at their
+    // All objects except the first eight are beside the window, which is 17.8 m wide at their
     // depth.
     let rest = "  1_000 more: 0 seen, 0 %; 1_000 outside of the picture; 0 hidden or too small";
     assert!(said.contains(rest), "{said}");
@@ -310,7 +313,7 @@ fn inspect_lists_100_objects_and_summarizes_the_rest() {
         100
     );
     assert_eq!(json["rest"]["outside"], 1000);
-    // The numbers of the summary equal the sums over the objects.
+    // The numbers of the summary are equal to the sums over all objects.
     let picture = "image { width 96 height 54 } camera { eye (0, 0, 9) lookat (0, 0, 0) } ";
     let ball =
         |z: &str| format!("sphere for i < 15, j < 10 {{ center (i - 5, j - 4, {z}) radius 0.3 }}");

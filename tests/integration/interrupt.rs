@@ -1,4 +1,5 @@
-//! Ctrl-C as a terminal sends it (SIGINT), and the signal that ends a program (SIGTERM).
+//! Tests of interrupting the program: Ctrl-C as a terminal sends it (SIGINT), and the signal that
+//! asks a program to end (SIGTERM).
 
 use std::{
     process::{Child, Command, Stdio},
@@ -9,7 +10,7 @@ use std::{
 use crate::program::{Folder, Outcome};
 
 /// Runs a command and interrupts it after `after` milliseconds, when it has begun but is far from
-/// done. Asserts that it ends within five seconds after that. Returns its output.
+/// done. Asserts that it ends within five seconds of the interruption. Returns its output.
 pub fn interrupted(command: &mut Command, after: u64) -> Outcome {
     let (said, time) = end_with_signal("INT", command, after);
     assert!(time < Duration::from_secs(5));
@@ -24,7 +25,7 @@ pub fn send_signal(signal: &str, child: &Child) {
 }
 
 /// Runs a command and sends it a signal after `after` milliseconds. Returns its output, and the
-/// time from the signal to its end.
+/// time from the signal to the end of the command.
 fn end_with_signal(signal: &str, command: &mut Command, after: u64) -> (Outcome, Duration) {
     let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
@@ -42,8 +43,8 @@ fn end_with_signal(signal: &str, command: &mut Command, after: u64) -> (Outcome,
     (said, time)
 }
 
-/// Returns a scene of one pixel. It has so many nearly equal spheres that the exact mean of the
-/// pixel takes more than a minute.
+/// Returns a scene with a picture of one pixel. It contains so many nearly equal spheres that the
+/// exact mean of the pixel takes more than a minute.
 pub fn long_pixel() -> String {
     let spheres = (0..150).map(|i| format!("sphere {{ center (0, 0, {i}e-9)  radius 20 }}\n"));
     format!(

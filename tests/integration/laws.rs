@@ -1,5 +1,5 @@
-//! Laws of pictures: how a picture changes, to the bit, if a world is moved, turned, scaled or
-//! mirrored together with its camera.
+//! Tests of laws of pictures: how a picture changes, to the bit, if the whole scene is moved,
+//! turned, scaled or mirrored together with its camera.
 //!
 //! Coordinates are multiples of 1/128, so moving and turning them is exact.
 
@@ -22,19 +22,19 @@ use crate::{
     tracer::is_upright,
 };
 
-/// Generates the scenes on which a law is tested, with 9 samples per pixel by `method`.
+/// Generates the scenes on which a law is tested. They have 9 samples per pixel by `method`.
 fn worlds(seed: u64, method: Method) -> impl Iterator<Item = Scene> {
     let scenes = generated(Numbers::MultiplesOf(1.0 / 64.0), [24, 24], seed);
     let scenes = scenes.map(move |(_, scene)| {
         let mut scene = with_samples(&scene, method, Count::PerPixel(9));
-        // The eye is moved off all surfaces, so that no ray lies in a surface.
+        // The eye is moved away from all surfaces, so that no ray lies in a surface.
         scene.camera.eye.y += 1.0 / 128.0;
         for board in shapes(&mut scene).filter_map(board) {
             board.square = 1.0;
         }
         scene
     });
-    // Only scenes are used that have a board and more than two colours in the picture.
+    // Only scenes that have a checkerboard and more than two colours in the picture are used.
     let is_full = |scene: &Scene| {
         let mut objects = scene.objects.iter();
         let has_board = objects.any(|object| matches!(object.shape, Shape::Checkerboard(_)));
@@ -162,7 +162,7 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
         let (light, bound) = pixel(&one, x, y);
         let (other, other_bound) = pixel(&other, other_x, other_y);
         let difference = difference(light, other);
-        // Rounding may add an error to each of the two values.
+        // Each of the two values may have a rounding error, for which `f64::EPSILON` is added.
         let most = bound + other_bound + f64::EPSILON;
         assert!(difference <= most, "{x}, {y}: {difference:e} of {before:?}");
         assert!(bound <= 1e-6, "{x}, {y}: {bound:e} of {before:?}");
@@ -172,12 +172,12 @@ fn assert_pictures_agree(before: &Scene, after: &Scene, goes: impl Fn(u32, [u32;
 #[test]
 fn quarter_turns_about_y_swap_the_boards_colours() {
     for (world, turns) in worlds(1, Method::MultiJittered).zip([1, 2, 3].into_iter().cycle()) {
-        // A quarter turn moves the square (i, j) to (j, −1 − i).
+        // A quarter turn moves the square of the board with the indices (i, j) to (j, −1 − i).
         let turn = |v: DVec3| (0..turns).fold(v, |v, _| dvec3(v.z, v.y, -v.x));
         let mut after = mapped(&world, turn, turn, 1.0);
-        // If a triangle's normal is vertical, its base is parallel to the world's x axis whatever
-        // the normal's direction. Turning the normal does not turn such a triangle, so its spin is
-        // changed.
+        // If the normal of a triangle is vertical, its base is parallel to the x axis, whatever the
+        // direction of the normal is. A turn of the normal does not turn such a triangle, so its
+        // spin is changed instead.
         for triangle in shapes(&mut after).filter_map(centered) {
             if triangle.normal.xz() == DVec2::ZERO {
                 let degrees = 90.0 * f64::from(turns);
@@ -218,7 +218,7 @@ fn scaling_by_a_power_of_two_changes_nothing() {
 
 #[test]
 fn a_mirror_in_x_mirrors_the_picture() {
-    // The pictures have an even or an odd number of columns, in turn.
+    // The numbers of columns alternate between even and odd.
     for (world, width) in worlds(4, Method::Regular).zip([24, 23].into_iter().cycle()) {
         let world = resized(world, width, 24);
         let mirror = |v: DVec3| dvec3(-v.x, v.y, v.z);
@@ -238,7 +238,7 @@ fn a_quarter_roll_turns_the_picture() {
     for world in worlds(5, Method::Regular) {
         let mut after = world.clone();
         after.camera.roll.degrees += 90.0;
-        // A camera rolled to the right sees the world turned counter-clockwise.
+        // A camera that is rolled to the right sees the scene turned counter-clockwise.
         assert_pictures_agree(&world, &after, |width, [x, y]| [y, width - 1 - x]);
     }
 }

@@ -1,5 +1,5 @@
-//! The modules of the library import each other one way, in the order of `src/lib.rs`, and each
-//! file can be read in one sitting.
+//! Tests that the modules of the library import each other only in one direction, the order of
+//! `src/lib.rs`, and that no file is too long to be read in one sitting.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -7,7 +7,7 @@ use std::{
     path::Path,
 };
 
-/// Returns the groups of modules in `src/lib.rs`, which blank lines separate.
+/// Returns the groups of modules in `src/lib.rs`. Blank lines separate the groups.
 fn groups(source: &Path) -> Vec<Vec<String>> {
     let text = fs::read_to_string(source.join("lib.rs")).unwrap();
     let module = |line: &str| {
@@ -19,8 +19,8 @@ fn groups(source: &Path) -> Vec<Vec<String>> {
     groups.filter(|group: &Vec<_>| !group.is_empty()).collect()
 }
 
-/// Returns the program text of a file, or of all files of a folder, without comments and unit
-/// tests. Returns an empty text if the path does not exist: a module may be a file, a folder, or
+/// Returns the code of a file, or of all files of a folder, without comments and unit tests.
+/// Returns an empty text if the path does not exist, because a module may be a file, a folder or
 /// both.
 fn code(path: &Path) -> String {
     if path.is_dir() {
@@ -37,8 +37,8 @@ fn code(path: &Path) -> String {
     lines.map(|line| line.to_owned() + "\n").collect()
 }
 
-/// Returns the first name behind every `crate::`. If a list in braces follows, returns the first
-/// name of each of its elements.
+/// Returns the first name after each `crate::` in `code`. If a list in braces follows, returns the
+/// first name of each of its elements.
 fn imports(code: &str) -> BTreeSet<String> {
     let name = |text: &str| -> String {
         let signs = text.trim_start().chars();
@@ -93,7 +93,8 @@ fn modules_import_one_way_in_the_order_of_the_library() {
                 "{module} imports {wrong:?}, which come after it"
             );
         }
-        // A module that imports none of the remaining modules is in no circle, so it is removed.
+        // A module that imports none of the remaining modules belongs to no circle of imports, so
+        // it is removed.
         while !rest.is_empty() {
             let is_free = |module: &&String| {
                 let mut others = rest.keys().filter(|it| *it != module);

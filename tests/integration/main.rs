@@ -1,4 +1,4 @@
-//! Integration tests: a single test binary with one module per subject.
+//! The integration tests: a single test binary with one module for each subject.
 #![allow(
     clippy::disallowed_methods,
     reason = "tests make the files that the program is tried with"

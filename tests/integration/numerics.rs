@@ -1,5 +1,5 @@
-//! The hard cases of `report --numerics`: Pinhole decides none wrongly, and the textbook's formulas
-//! decide many wrongly.
+//! Tests of the hard cases of `report --numerics`. Pinhole decides none of them wrongly, and the
+//! formulas of a textbook decide many wrongly.
 
 use std::{
     collections::BTreeSet,
@@ -18,7 +18,7 @@ use pinhole::{
 use crate::effort::{Effort, sampled_and_exhaustive};
 
 /// Number of inputs with which each hard case is tested in a normal run. An exhaustive run has ten
-/// times as many.
+/// times as many. With fewer inputs, rare wrong decisions would be missed; more inputs take longer.
 const INPUTS: u64 = 1_000;
 
 fn run(inputs: u64, threads: Option<usize>) -> NumericsTable {
@@ -29,7 +29,7 @@ fn run(inputs: u64, threads: Option<usize>) -> NumericsTable {
     numerics::run(inputs, &control).unwrap()
 }
 
-/// Returns the table of all cases, which is computed once for all tests.
+/// Returns the table of all hard cases, which is computed once for all tests.
 fn table() -> &'static NumericsTable {
     static TABLE: OnceLock<NumericsTable> = OnceLock::new();
     TABLE.get_or_init(|| run(INPUTS, None))
@@ -54,16 +54,17 @@ fn hard_cases_break_the_textbook_formulas_and_stay_within_the_claimed_bound() {
     for row in &table().rows {
         let (id, tally) = (row.case.id, &row.tally);
         match tally.error[1] {
-            // A distance is rounded, so its last bit is sometimes wrong. An error of 0 would mean
+            // The last bit of a computed distance is sometimes wrong. So an error of 0 would mean
             // that nothing was measured.
             Some(error) => assert!(error > 0.0 && error <= row.case.bound, "{id}: {error}"),
-            // In P2, no ray hits the board, so no distance is measured.
+            // In the case P2, no ray hits the board, so no distance is measured.
             None => assert_eq!(id, "P2"),
         }
         if row.case.decides() {
             let share = tally.wrong[0] as f64 / INPUTS as f64;
-            // In S7, which has equal spheres, one of the textbook's formulas decides correctly in
-            // any precision. The share of wrong decisions is therefore smaller than in other cases.
+            // In the case S7, which has equal spheres, one of the textbook's formulas decides
+            // correctly in any precision. So the fraction of wrong decisions is smaller than in
+            // other cases.
             let least = if id == "S7" { 0.002 } else { 0.05 };
             assert!(share >= least, "{id}: {share}");
         } else {

@@ -1,6 +1,7 @@
-//! Reading a text in parts yields the same tree, scene and diagnostics as reading it as a whole.
+//! Tests that reading a text in parts yields the same tree, scene and diagnostics as reading it as
+//! a whole.
 //!
-//! With a part size of one byte, a text is split at every brace, so that small texts have many
+//! If parts may have only one byte, a text is split at every brace. So even small texts have many
 //! parts.
 
 use std::sync::atomic::AtomicBool;
@@ -13,7 +14,7 @@ use crate::{
     table::{lines, list},
 };
 
-/// Reads `text` in parts of `bytes` bytes and as a whole, and asserts equal results. Returns
+/// Reads `text` as a whole and in parts of about `bytes` bytes, and asserts equal results. Returns
 /// whether the text was really parsed in parts.
 #[track_caller]
 pub fn assert_same_in_parts(text: &str, bytes: usize, sets: &[&str]) -> bool {
@@ -43,7 +44,8 @@ fn every_scene_means_the_same_when_read_in_parts() {
     let in_parts = scenes
         .filter(|text| assert_same_in_parts(text, 1, &[]))
         .count();
-    // Most scenes have mistakes and are not parsed in parts, but at least the examples are.
+    // Most scenes have mistakes and are therefore not parsed in parts, but at least the examples
+    // are.
     assert!(in_parts >= 20, "{in_parts}");
 }
 

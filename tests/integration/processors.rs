@@ -1,8 +1,8 @@
-//! Pictures are the same on other processors. The test needs `qemu-x86_64` on the path: `cargo test
-//! -- --ignored processors`.
+//! Tests that pictures are equal on different processors. The test needs `qemu-x86_64` on the path:
+//! `cargo test -- --ignored processors`.
 //!
-//! The program detects vector instructions at run time, so the same binary takes other code paths
-//! on a processor that lacks them.
+//! The program detects vector instructions at run time. So the same binary runs other code on a
+//! processor that lacks them.
 
 use std::{env, fs, io::Cursor, path::Path, process::Command};
 
@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// Names of processors in QEMU. The first has only vectors of two doubles; the second also has
-/// vectors of four doubles.
+/// vectors of four doubles. Pinhole runs different code on each.
 const PROCESSORS: [&str; 2] = ["qemu64", "Haswell"];
 
 const SCENES: [&str; 5] = [
@@ -29,11 +29,12 @@ const SCENES: [&str; 5] = [
     "inside_the_sphere",
 ];
 
-/// Environment variable with a folder. If it is set, the test only writes pictures into the folder.
+/// Environment variable that contains the path of a folder. If it is set, the test only writes
+/// pictures into the folder. The test sets it for its own copy that runs in QEMU.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
-/// Runs this test's own binary in QEMU, only once per processor, since QEMU translates most of the
-/// code anew in each process.
+/// Runs the test's own binary in QEMU, only once for each processor, since QEMU translates most of
+/// the code anew in each process.
 #[test]
 #[ignore = "needs QEMU"]
 fn all_processors_make_the_same_pictures() {
@@ -61,7 +62,7 @@ fn all_processors_make_the_same_pictures() {
     }
 }
 
-/// Writes small pictures of all scenes, by all methods and in both formats, into a folder.
+/// Writes small pictures of all scenes, by all methods and as PNG and EXR files, into a folder.
 fn draw(folder: &Path) {
     for name in SCENES {
         let scene = example(name, 32, 24);

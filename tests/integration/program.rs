@@ -1,4 +1,4 @@
-//! Runs the program under test as a user would.
+//! Runs the tested program as a user would.
 
 use std::{
     ffi::OsStr,
@@ -11,8 +11,8 @@ use std::{
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Returns a command that runs the program in a folder. Language and terminal settings of the
-/// environment do not affect it.
+/// Returns a command that runs the program in a folder. Settings of the environment for the
+/// language and the terminal do not affect it.
 pub fn command(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
     any_command(env!("CARGO_BIN_EXE_pinhole"), folder, arguments)
 }
@@ -38,7 +38,7 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// Splits a line into words as a shell does: at white space, except within single quotes.
+/// Splits a line into words as a shell does: at white space outside of single quotes.
 pub fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut word: Option<String> = None;
@@ -57,7 +57,7 @@ pub fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// Exit status and output of a command that has ended.
+/// Exit status and output of a command.
 pub struct Outcome {
     pub status: i32,
     pub output: Vec<u8>,
@@ -87,7 +87,8 @@ impl From<Output> for Outcome {
     }
 }
 
-/// A temporary folder in which the program is run. Commands are given as lines of arguments.
+/// A temporary folder in which the program is run. The arguments of a command are given as one
+/// line.
 pub struct Folder(TempDir);
 
 impl Folder {
@@ -133,7 +134,7 @@ impl Folder {
         command(self.0.path(), &words(line))
     }
 
-    /// Runs a line in a shell, where the program under test is on the path as `pinhole`.
+    /// Runs a line in a shell, in which the tested program can be called as `pinhole`.
     pub fn shell(&self, line: &str) -> Outcome {
         let program = Path::new(env!("CARGO_BIN_EXE_pinhole")).parent().unwrap();
         let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());
@@ -150,12 +151,14 @@ impl Folder {
         let mut command = self.command(line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        // Writing fails if the command has ended without reading its input, so errors are ignored.
+        // Writing fails if the command has ended without reading its input. This is no error of the
+        // command, so it is ignored.
         let _ = child.stdin.take().unwrap().write_all(input.as_ref());
         child.wait_with_output().unwrap().into()
     }
 
-    /// Runs a command that must succeed and print nothing to standard error. Returns its outcome.
+    /// Runs a command that must succeed and print nothing to standard error. Returns its status and
+    /// output.
     #[track_caller]
     pub fn done(&self, line: &str) -> Outcome {
         let said = self.run(line);

@@ -1,10 +1,10 @@
-//! Reproducible random numbers.
+//! Random numbers for tests. They are equal in every run.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use pinhole::sampling::CounterRng;
 use rand::{Rng, RngExt, SeedableRng};
 
-/// Generator of reproducible random numbers.
+/// Generator of random numbers that are equal in every run.
 pub struct Random(CounterRng);
 
 impl Random {

@@ -1,5 +1,5 @@
-//! Tiny pictures of random scenes with extreme cameras and overlapping objects. Every way to render
-//! a picture yields the same bits, and the exact picture agrees with samples.
+//! Tests of tiny pictures of random scenes with extreme cameras and overlapping objects. Every way
+//! to render a picture yields the same bits, and the exact picture agrees with samples.
 
 use std::{
     num::NonZero,
@@ -21,12 +21,12 @@ use crate::{
     scenes::{one_thread, rendered, sources, whole, with_samples},
 };
 
-/// Generator of the texts of random objects. Objects often share points.
+/// Generator of the texts of random objects. The objects often have points in common.
 struct Text<'r> {
     random: &'r mut Random,
-    /// Points of the objects so far: vertices, centres, and points of surfaces.
+    /// Points of the objects so far: vertices, centres, and points on surfaces.
     points: Vec<DVec3>,
-    /// How often a number may have any magnitude: one in `wild` numbers, or none if `wild` is 0.
+    /// On average, one in `wild` numbers may have any magnitude; none if `wild` is 0.
     wild: u64,
 }
 
@@ -35,7 +35,8 @@ impl Text<'_> {
         n > 0 && self.random.bits().is_multiple_of(n)
     }
 
-    /// Returns a positive number from 10^−`decades` to 10^`decades`, whose logarithm is uniform.
+    /// Returns a positive number from 10^−`decades` to 10^`decades`. Its logarithm is uniformly
+    /// distributed.
     fn any_size(&mut self, decades: f64) -> f64 {
         libm::exp10(self.random.within(-decades, decades))
     }
@@ -60,7 +61,7 @@ impl Text<'_> {
         }
     }
 
-    /// Returns a point that other objects use, a point near one, or a new point.
+    /// Returns a point that other objects use, a point near such a point, or a new point.
     fn point(&mut self) -> DVec3 {
         let new = dvec3(self.number(3.0), self.number(3.0), self.number(3.0));
         if self.points.is_empty() || self.one_in(3) {
@@ -95,7 +96,7 @@ impl Text<'_> {
             2 | 3 => {
                 let (v1, mut v2) = (self.point(), self.point());
                 if self.one_in(3) {
-                    // The triangle becomes a sliver: its vertices lie nearly on a line.
+                    // The triangle becomes a sliver, since its vertices lie nearly on a line.
                     let thickness = *self.random.one_of(&[1e-15, 1e-9, 1e-3]);
                     v2 = p + self.random.within(-1.0, 2.0) * (v1 - p) + thickness * v2;
                 }
@@ -161,8 +162,7 @@ impl Text<'_> {
         };
         for clip in ["near", "far"] {
             if self.one_in(4) {
-                // The depth of the near or far plane is often the depth of a point that objects
-                // share.
+                // The near or far plane often passes through a point that objects have in common.
                 let point = self.point();
                 let depth = (point - eye).dot(toward.normalize_or(DVec3::X)).abs();
                 let depth =
@@ -180,7 +180,7 @@ fn vector(DVec3 { x, y, z }: DVec3) -> String {
     format!("({x:?}, {y:?}, {z:?})")
 }
 
-/// Returns the text of a random scene without mistakes, and the scene.
+/// Returns the text of a random scene without errors, and the scene itself.
 fn random_scene(random: &mut Random) -> (String, Scene) {
     loop {
         let most = [3, 3, 10, 60][random.bits() as usize % 4];
@@ -213,9 +213,9 @@ fn three_threads() -> Control<'static> {
     }
 }
 
-/// Divides the picture at a random column and row into four parts. Asserts that the picture,
+/// Divides the picture at a random column and row into four parts. Asserts that the whole picture,
 /// rendered by one thread, has the same bits as the parts, rendered by three threads. Returns the
-/// picture.
+/// whole picture.
 fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendered {
     let area = whole(scene);
     let picture: Rendered = rendered(scene, area, &one_thread());
@@ -238,8 +238,8 @@ fn assert_parts_agree(scene: &Scene, random: &mut Random, text: &str) -> Rendere
     picture
 }
 
-/// Asserts that the area `part` of the picture `one` has the same bits as the picture `crop`, in
-/// its pixels and in its error bounds.
+/// Asserts that the area `part` of the picture `one` has the same bits as the picture `crop`, both
+/// in its pixels and in their error bounds.
 #[track_caller]
 fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     let numbers = |picture: &Rendered, x, y| {
@@ -256,8 +256,9 @@ fn assert_same_bits(one: &Rendered, part: Area, crop: &Rendered, what: &str) {
     }
 }
 
-/// Returns whether samples can be compared with the exact picture. The language specifies that
-/// samples have a single colour if squares are smaller than 10⁻⁹⁸ of the eye's distance.
+/// Returns whether samples can be compared with the exact picture. They cannot if squares are
+/// smaller than 10⁻⁹⁸ of the eye's distance, because the language then specifies a single colour
+/// for all samples.
 fn is_comparable(scene: &Scene) -> bool {
     scene.objects.iter().all(|object| match &object.shape {
         Shape::Checkerboard(board) => {
@@ -270,14 +271,15 @@ fn is_comparable(scene: &Scene) -> bool {
 
 /// Compares each pixel of an exact picture, and the mean of all pixels, with independent samples.
 ///
-/// Light is from 0 to 1. If the mean μ of the light is within b of m, the variance is at most
+/// Light is from 0 to 1. If the true mean μ differs from the computed mean m by at most b, the
+/// variance of a sample is at most
 ///     m·(1 − m) + b,
 /// because μ·(1 − μ) has a slope of at most 1. Let V be the sum of the variances of N samples. By
-/// Bernstein's inequality, the mean of the samples is farther off than
+/// Bernstein's inequality, the mean of the samples differs from μ by more than
 ///     √(2·L·V)/N + 2·L/(3·N)
-/// with a probability of at most 2·e^−L. A picture has at most 97 · 3 comparisons. For 2·e^−L =
-/// 3e-18, √(2·L) = 9.1 and 2·L/3 = 27.4, and one of 10⁶ pictures fails with a probability of at
-/// most 1e-9.
+/// with a probability of at most 2·e^−L. L is chosen such that 2·e^−L = 3e-18; then √(2·L) = 9.1
+/// and 2·L/3 = 27.4. A picture has at most 97 · 3 comparisons, so one of 10⁶ pictures fails by
+/// chance with a probability of at most 1e-9.
 fn assert_agrees_with_samples(scene: &Scene, exact: &Exact, text: &str) {
     let area = whole(scene);
     let each = (1 << 15) / area.pixels();
@@ -325,7 +327,7 @@ fn random_scenes_render_alike_in_parts_and_agree_with_samples() {
             panic!("not computed");
         };
         // In an optimized build on an idle machine, the picture takes at most a second per pixel,
-        // and so do its parts.
+        // and so do its four parts. The test allows more.
         let (time, pixels) = (start.elapsed(), whole(&scene).pixels() as u32);
         assert!(time < pixels * Duration::from_secs(20), "{time:?}: {text}");
         if is_comparable(&scene) {

@@ -1,5 +1,5 @@
-//! The documents are correct: their commands print the outputs shown, their scenes have no
-//! mistakes, and their links lead to files.
+//! Tests that the documents are correct: their commands print the outputs shown, their scenes have
+//! no mistakes, and their links lead to files.
 //!
 //! `PINHOLE_BLESS=1 cargo test readme` writes the current outputs into the documents.
 
@@ -35,7 +35,8 @@ fn read(document: &str) -> String {
     fs::read_to_string(root().join(document)).unwrap()
 }
 
-/// Returns what a shell that runs `command` in a folder prints to both outputs.
+/// Returns what a shell prints, to standard output and standard error, when it runs `command` in a
+/// folder.
 fn run(command: &str, folder: &Folder) -> String {
     let said = folder.shell(&format!("{{ {command}; }} 2>&1"));
     match said.text() {
@@ -44,7 +45,7 @@ fn run(command: &str, folder: &Folder) -> String {
     }
 }
 
-/// Returns a folder with those example files that a fresh clone has.
+/// Returns a folder with the example files that a fresh clone of the repository contains.
 fn fresh_folder() -> Folder {
     let folder = Folder::with([]);
     for name in names(&root().join("examples")) {
@@ -120,7 +121,8 @@ fn every_command_is_in_the_readme_and_has_examples() {
             readme.contains(&format!("`{call}")),
             "no {call} in README.md"
         );
-        // The command `lsp` has no examples, since editors start it; nobody types its messages.
+        // The command `lsp` has no examples, because editors start it and nobody types its
+        // messages.
         let help = folder.done(&format!("{command} --help"));
         let examples = help.text().split_once("Examples:");
         let is_shown = examples.is_some_and(|(_, examples)| examples.contains(&call));
@@ -144,7 +146,7 @@ fn relative_links_lead_to_files() {
     .to_vec();
     let (mut followed, mut missing) = (0, Vec::new());
     while let Some(path) = paths.pop() {
-        // Folders of installed and built files are skipped.
+        // Folders of installed packages and of built files are skipped.
         let is_made = ["node_modules", "dist"]
             .iter()
             .any(|name| path.ends_with(name));
@@ -152,7 +154,8 @@ fn relative_links_lead_to_files() {
             paths.extend(names(&path).into_iter().map(|name| path.join(name)));
         } else if path.extension().is_some_and(|ending| ending == "md") {
             let text = fs::read_to_string(&path).unwrap();
-            // Fenced blocks contain code and no links, so every second part is skipped.
+            // Fenced blocks contain code and no links. They are every second part of the text, and
+            // are skipped.
             let parts = text.split("```").step_by(2);
             let links = parts.flat_map(|part| part.split("](").skip(1));
             for link in links {

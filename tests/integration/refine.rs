@@ -1,4 +1,5 @@
-//! Coarse pictures show the colours at the centres of their blocks, and become finer.
+//! Tests of coarse pictures, whose blocks show the colours at their centres, and which become finer
+//! in steps.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -30,7 +31,7 @@ fn coarse_steps_become_finer_and_show_the_centres_of_blocks() {
             assert_eq!(coarse.film.width(), 97_u32.div_ceil(coarse.side));
             assert_eq!(coarse.film.height(), 61_u32.div_ceil(coarse.side));
             for (pixel, block) in coarse.film.pixels().iter().zip(part.tiles(coarse.side)) {
-                // The block's centre is computed in another way than by the program: from the
+                // The test computes the block's centre in another way than the program: from the
                 // block's middle pixel and an offset of 0 or 1/2 pixel.
                 let (right, down) = (block.width - 1, block.height - 1);
                 let offset = dvec2(f64::from(right % 2), f64::from(down % 2)) / 2.0;

@@ -1,4 +1,5 @@
-//! A picture does not depend on the number of threads, on crops, or on the type of its pixels.
+//! Tests that a picture does not depend on the number of threads, on crops, or on the type of its
+//! pixels.
 
 use std::num::NonZero;
 
@@ -15,7 +16,7 @@ use crate::scenes::{example, example_names, rendered, whole, with_samples};
 fn threads_and_crops_change_no_pixel() {
     let pictures =
         Method::SAMPLED.map(|method| ([61, 37], method, Count::Total(61 * 37 * 5 + 300)));
-    // This exact picture has tiles of all sizes, and more tiles than threads.
+    // The exact picture has tiles of all sizes, and more tiles than threads.
     let exact = ([201, 140], Method::Exact, Count::PerPixel(1));
     for ([width, height], method, count) in pictures.into_iter().chain([exact]) {
         let scene = with_samples(&example("figure_9_9", width, height), method, count);

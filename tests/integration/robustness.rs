@@ -1,7 +1,7 @@
-//! Reading any text ends soon. If there is no scene, an error is reported. All labels lie within
-//! the text.
+//! Tests that reading any text ends soon. If there is no scene, an error is reported, and all
+//! labels lie within the text.
 //!
-//! Exhaustive runs read texts of a megabyte and more; normal runs read a sample of shorter texts.
+//! Exhaustive runs read texts of a megabyte and more; normal runs read some shorter texts.
 
 use std::time::{Duration, Instant};
 
@@ -25,14 +25,15 @@ const MEGABYTE: usize = 1 << 20;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
-/// Reads a text, and renders its diagnostics in every form. Returns whether there is a scene.
+/// Reads a text, and formats its diagnostics in every form. Returns whether the text is a valid
+/// scene.
 #[track_caller]
 pub fn read(bytes: impl Into<Vec<u8>>) -> bool {
     read_with_sets(bytes, &[])
 }
 
-/// Reads a text with `--set` arguments, and renders its diagnostics in every form. Returns whether
-/// there is a scene.
+/// Reads a text with `--set` arguments, and formats its diagnostics in every form. Returns whether
+/// the result is a valid scene.
 #[track_caller]
 fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let bytes = bytes.into();
@@ -41,13 +42,14 @@ fn read_with_sets(bytes: impl Into<Vec<u8>>, sets: &[String]) -> bool {
     let sources = Sources::new(Source::from_bytes("test.scn", bytes)).with_sets(sets);
     let reading = scene::read(&sources);
     let found = &reading.diagnostics;
-    // `check` writes at most 1000 diagnostics of a file.
+    // The command `check` prints at most 1000 diagnostics of a file.
     let written = &found[..found.len().min(1000)];
     let json = diagnostic::json_lines(written, &sources);
     assert_eq!(json.lines().count(), written.len());
     let time = start.elapsed();
-    // On an idle machine, reading takes a second, and on a busy one two. Without optimization, it
-    // takes up to four seconds.
+    // With optimization, reading takes a second on an idle machine, and at most two seconds, the
+    // limit, on a busy one. Without optimization, it takes up to four seconds; the limit is ten, in
+    // case the machine is busy.
     let bound = Duration::from_secs(if cfg!(debug_assertions) { 10 } else { 2 });
     assert!(time < bound, "{time:?} for {length} bytes");
     for drawing in [Drawing::Unicode, Drawing::Narrated] {
@@ -104,8 +106,8 @@ fn random_bytes_are_read_soon_and_refused(effort: Effort) {
 
 sampled_and_exhaustive!(every_short_sequence_of_words_is_parsed_to_its_end);
 
-/// Parses all short sequences of some words, alone and within a block, and asserts that the parser
-/// reaches the end.
+/// Parses all short sequences of some words, alone and within a block. Asserts that the parser
+/// reaches the end of the text.
 fn every_short_sequence_of_words_is_parsed_to_its_end(effort: Effort) {
     let words = "{ } ( ) , = < - for let sphere e 8 # radius // \n";
     let words: Vec<&str> = words.split(' ').collect();
@@ -122,7 +124,7 @@ fn every_short_sequence_of_words_is_parsed_to_its_end(effort: Effort) {
             let word = |place| words[number / words.len().pow(place) % words.len()];
             let most: Vec<&str> = (0..length - 1).map(word).collect();
             let most = format!("{before} {}", most.join(" "));
-            // Each call of `ends_soon` starts a thread, so several texts are tried in one call.
+            // Each call of `ends_soon` starts a thread, so one call tries several texts.
             ends_soon(
                 || format!("{most} and one of {words:?}"),
                 || (words.iter()).for_each(|last| try_one(&format!("{most} {last}"))),
@@ -152,8 +154,8 @@ fn a_token_repeated_many_times_is_read_soon(effort: Effort) {
     }
 }
 
-/// Of too many mistakes, the first ten thousand are reported. A message says that the others are
-/// left out, wherever they are.
+/// If a text has too many mistakes, the first ten thousand are reported. A message says that the
+/// others are left out, wherever they are.
 #[test]
 fn reports_stop_at_the_maximum_number_of_problems() {
     let many = |piece: &str| piece.repeat(20_000);
@@ -179,7 +181,7 @@ fn reports_stop_at_the_maximum_number_of_problems() {
         let is_told = |it: &Diagnostic| it.message.contains("the others are left out");
         assert!(found.iter().any(is_told), "{text:.40}");
     }
-    // Correct text before the omitted mistakes is not reported as wrong.
+    // Correct text before the omitted mistakes must not be reported as wrong.
     let signs = format!(
         "{CAMERA}sphere {{ center (0, 1, 0) {} radius 1 }}",
         many(", ")
@@ -190,8 +192,8 @@ fn reports_stop_at_the_maximum_number_of_problems() {
         codes,
         ["pinhole::needless_separator", "pinhole::unexpected"]
     );
-    // Needless separators are reported in a single diagnostic, whose fix removes at most
-    // [`MOST_PROBLEMS`] of them.
+    // Needless separators are reported in a single diagnostic. Its fix removes at most
+    // [`MOST_PROBLEMS`] separators.
     let spheres = many("sphere { center (0, 1, 0) };\n");
     let found = scene::read(&sources(&format!("{CAMERA}{spheres}"))).diagnostics;
     let signs = found
@@ -208,7 +210,8 @@ fn deeply_nested_values_are_refused_and_long_sums_accepted() {
         };
         open.repeat(100_000) + inner + &close.repeat(100_000)
     });
-    // A delimiter within quotes does not close anything, so these values are nested, too.
+    // A delimiter in quotes does not close a list. So the lists in these texts are nested as deeply
+    // as if the quotes were not there.
     let quotes = ["( ')' ", "( \"}\" ", "[ ']' + (\n", "(' \" ( ') \" "];
     let quotes = quotes.map(|piece| piece.repeat(100_000)).into_iter();
     let few_quotes = "( \")\" ".repeat(300);
@@ -240,7 +243,7 @@ fn a_line_of_ten_megabytes_is_read_soon(effort: Effort) {
 
 sampled_and_exhaustive!(many_mistakes_and_many_names_are_read_soon);
 
-/// Returns `count` copies of `line`, in which `N` is replaced by the number of the copy, and `M` by
+/// Returns `count` copies of `line`. In each, `N` is replaced by the number of the copy, and `M` by
 /// the next number.
 fn numbered(line: &str, count: usize) -> Vec<String> {
     let of = |n: usize| {
@@ -261,8 +264,9 @@ fn many_mistakes_and_many_names_are_read_soon(effort: Effort) {
     ] {
         assert!(!read(format!("{CAMERA}{}", lines(wrong))));
     }
-    // To report one of these mistakes, the program examines the text around it. All of them are on
-    // one line, so examining the whole line each time would take quadratic time.
+    // A definition that uses a later one is a mistake. To report it, the program examines the text
+    // around it. All these mistakes are on one line, so a program that examined the whole line each
+    // time would take quadratic time.
     let wrong_order = lines("let aN = bN /* N */ ") + &lines("/* N */ let bN = N ");
     assert!(!read(wrong_order));
     let chain = lines("let aM = aN + 1\n");
@@ -334,7 +338,8 @@ fn scenes_with_random_slips_are_read_soon_and_alike_in_parts(effort: Effort) {
             bytes.splice(at..end, slips[up_to(slips.len())].iter().copied());
         }
         if let Ok(text) = str::from_utf8(&bytes) {
-            // If the text cannot be formatted, `formatted` asserts that it has an error.
+            // If the text cannot be formatted, the function `formatted` asserts that it has an
+            // error.
             let _ = formatted(text);
             parts::assert_same_in_parts(text, 1 + up_to(99), &[]);
         }
@@ -363,7 +368,8 @@ fn reading_time_grows_linearly_with_the_text(effort: Effort) {
         "let name = 1 + 2\n".to_owned(),
         "spere {}\n".to_owned(),
     ];
-    // `%` is replaced by a number, so that the names of fields, blocks and colours are distinct.
+    // The sign `%` is replaced by a number, so that the names of fields, blocks and colours are all
+    // different.
     let numbered = [
         "eyf% (0, 0, 1)\n",
         "blok% { x 1 }\n",

@@ -72,7 +72,7 @@ pub fn whole(scene: &Scene) -> Area {
     Area::whole(scene.image.width, scene.image.height)
 }
 
-/// Returns a control that renders on the calling thread only.
+/// Returns settings with which only the calling thread renders.
 pub fn one_thread() -> Control<'static> {
     Control {
         threads: NonZero::new(1),
@@ -118,7 +118,7 @@ pub fn exact(scene: &Scene) -> Exact {
     render_exact(&World::new(scene), whole(scene), &Control::default()).unwrap()
 }
 
-/// Returns the contents of the fenced blocks of a document that begin with three backticks and
+/// Returns the contents of all fenced blocks of a document whose first line is three backticks and
 /// `kind`.
 pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
     let start = format!("```{kind}\n");
@@ -128,7 +128,7 @@ pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
         .collect()
 }
 
-/// Returns an inspection as JSON.
+/// Returns the result of `inspect` as JSON.
 pub fn json_of(inspection: &Inspection) -> serde_json::Value {
     let mut text = Vec::new();
     inspection.write_json(&mut text).unwrap();

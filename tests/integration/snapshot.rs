@@ -1,4 +1,4 @@
-//! Expected outputs in files. `PINHOLE_BLESS=1 cargo test` rewrites the files.
+//! Compares outputs with expected ones in files. `PINHOLE_BLESS=1 cargo test` rewrites the files.
 
 use std::{fs, path::Path};
 
@@ -7,7 +7,8 @@ use crate::{
     table::{escaped, unescaped},
 };
 
-/// Asserts that a file has the content `content`. With `PINHOLE_BLESS`, writes the file instead.
+/// Asserts that a file has the content `content`. If the environment variable `PINHOLE_BLESS` is
+/// set, writes the file instead.
 #[track_caller]
 pub fn assert_file(path: &Path, content: &str) {
     if std::env::var_os("PINHOLE_BLESS").is_some() {
@@ -20,8 +21,8 @@ pub fn assert_file(path: &Path, content: &str) {
     assert_eq!(content, expected, "{}", path.display());
 }
 
-/// Asserts the answers in the text files of a folder. In such a file, each line is a query, and the
-/// lines below it that begin with `<` are the expected answer.
+/// Compares answers with those in the text files of a folder. In such a file, each line is a query,
+/// and the lines below it that begin with `<` are the expected answer.
 ///
 /// The first word of a query is its kind; the rest is the text that the query is about. A second
 /// argument may follow after an arrow. `--` begins a comment.

@@ -13,8 +13,8 @@ use pinhole::{
 
 use crate::{diagnostics::fixtures, scenes::scenes, snapshot::assert_file};
 
-/// Prints a tree with one item or field per line and with operator chains in brackets. Then prints
-/// comments and problems.
+/// Prints a syntax tree with one item or field per line and with chains of operators in brackets.
+/// Then prints the comments and problems.
 fn printed(source: &Source, parsed: &Parsed<'_>) -> String {
     let under = |span: Span| {
         let words = source.slice(span.range()).split_whitespace();
@@ -122,7 +122,7 @@ fn operators_split_by_an_invisible_character_do_not_hang_the_parser() {
         let mut start = 0;
         for line in text.split_inclusive('\n') {
             let is_sign = |at: usize| line.as_bytes()[at].is_ascii_punctuation();
-            // Lines that begin with `//` are expectations, so they are skipped.
+            // Lines of a fixture that begin with `//` are expectations, so they are skipped.
             let places = (1..line.len()).filter(|_| !line.starts_with("//"));
             for at in places.filter(|at| is_sign(at - 1) && is_sign(*at)) {
                 is_read(text, start + at);

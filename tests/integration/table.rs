@@ -1,4 +1,4 @@
-//! Tables of test cases in a text: one row per line, with cells separated by `->`.
+//! Reads tables of test cases in a text: one row per line, with cells separated by `->`.
 
 /// Returns the cells of each line, without the white space around them. In a cell, `\n`, `\r`, `\t`
 /// and `\u{feff}` are escapes as in a Rust string. Empty lines and lines that begin with `--` are
@@ -6,7 +6,7 @@
 pub fn lines(table: &'static str) -> Vec<Vec<&'static str>> {
     let lines = table.lines().map(str::trim);
     let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("--"));
-    // Cells are leaked, so that they live until the test process ends.
+    // The memory of cells is never freed, so that cells live until the test process ends.
     let cell = |cell: &'static str| -> &'static str { unescaped(cell).leak() };
     let cells = |line: &'static str| line.split("->").map(move |text| cell(text.trim()));
     lines.map(|line| cells(line).collect()).collect()

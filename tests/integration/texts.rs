@@ -1,4 +1,4 @@
-//! Positions in texts, texts as a terminal shows them, and names of colours.
+//! Tests of positions in texts, of texts as a terminal shows them, and of names of colours.
 
 use pinhole::{
     diagnostic::visible,

@@ -1,4 +1,4 @@
-//! The number of threads that the program starts.
+//! Tests of the number of threads that the program starts.
 
 use std::{
     fs,
@@ -9,8 +9,8 @@ use std::{
 
 use crate::{cancel::spheres, program::Folder};
 
-/// Runs a command to its end. Returns the largest number of threads observed at intervals, which
-/// may be below the real maximum.
+/// Runs a command to its end. Returns the largest number of threads that was observed. Since it is
+/// observed only at intervals, the real maximum may be larger.
 fn peak_threads(command: &mut Command) -> usize {
     let command = command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut process = command.spawn().expect("the program");
@@ -24,7 +24,7 @@ fn peak_threads(command: &mut Command) -> usize {
 }
 
 /// Asserts that the program renders with the requested number of threads, one or six. It has a few
-/// more: the main thread, and threads that wait for Ctrl-C.
+/// other threads: the main thread, and threads that wait for Ctrl-C.
 fn assert_thread_limit(folder: &Folder, line: &str) {
     let most =
         |threads: u32| peak_threads(&mut folder.command(&format!("{line} --threads {threads}")));

@@ -1,5 +1,5 @@
-//! Tests of `pinhole watch` from outside: the ways in which editors save, texts with errors, bursts
-//! of saves, and Ctrl-C.
+//! Tests of `pinhole watch` as a user runs it: the ways in which editors save, texts with errors,
+//! bursts of saves, and Ctrl-C.
 //!
 //! Each step waits for its effect. The timeout is long enough for a busy machine. A test waits for
 //! a fixed time only if nothing should happen.
@@ -38,7 +38,7 @@ fn red() -> Folder {
     Folder::with([("a.scn", scene("red").as_str())])
 }
 
-/// A running `pinhole watch`, in a folder of its own.
+/// A running `pinhole watch`, in its own folder.
 struct Watch {
     folder: Folder,
     child: RefCell<Child>,
@@ -72,7 +72,7 @@ impl Watch {
         self.folder.write("a.scn", text);
     }
 
-    /// Replaces the scene's file by renaming a new file to its name.
+    /// Saves a new file and renames it to the name of the scene's file, as some editors do.
     fn replace(&self, text: &str) {
         self.folder.write("new", text);
         fs::rename(self.path("new"), self.path("a.scn")).unwrap();
@@ -126,7 +126,7 @@ impl Watch {
         })
     }
 
-    /// Interrupts the program. Asserts that it ends with the status of an interrupted program and
+    /// Interrupts the program. Asserts that it ends with the exit status for an interruption, and
     /// leaves only the picture.
     fn end(&self) {
         send_signal("INT", &self.child.borrow());
@@ -172,7 +172,7 @@ fn saves_by_renaming_and_a_pipe_in_between_are_noticed() {
     // A second save shows that the program does not watch the backup.
     watch.becomes("red");
     assert_eq!(watch.count("error"), 0, "{}", watch.said());
-    // If a pipe takes the file's place, the program reports it and waits for a file.
+    // If a pipe takes the place of the file, the program reports it and waits for a file.
     watch.folder.make_pipe("pipe");
     fs::rename(watch.path("pipe"), watch.path("a.scn")).unwrap();
     watch.wait("it says so", || watch.count("it is a pipe, not a file") > 0);
@@ -210,8 +210,8 @@ fn links_and_the_file_at_their_end_are_watched() {
     watch.shows("red");
     far.write("a.scn", scene("gold"));
     watch.shows("gold");
-    // The folder of the middle link is not watched, so a change of the link causes no event. The
-    // program notices the change when any other event occurs.
+    // The path is a chain of three links. The folder of the middle link is not watched, so a change
+    // of this link causes no event. The program notices the change when any other event occurs.
     symlink(far.path("blue"), middle.path("other")).unwrap();
     fs::rename(middle.path("other"), middle.path("middle")).unwrap();
     watch.wait("the picture is blue", || {
@@ -247,7 +247,7 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
         watch.save(&scene(["navy", "teal", "gold", "plum"][round % 4]));
     }
     watch.becomes("lime");
-    // After the last save's picture, no picture of an older save is written.
+    // After the picture of the last save, no picture of an older save is written.
     let said = watch.count("wrote");
     watch.becomes("blue");
     watch.wait("it is written", || watch.count("wrote") > said);
@@ -257,7 +257,7 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
 
 #[test]
 fn a_new_save_or_ctrl_c_cancels_the_picture_in_progress() {
-    // This text takes seconds to read, and has an error at its end.
+    // The text takes seconds to read, and has an error at its end.
     let long = format!("{}sphere {{ radus 2 }}", spheres(400_000));
     for slow in [long_pixel(), long] {
         let watch = Watch::start(red(), "a.scn --threads 1");
@@ -285,7 +285,8 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");
-    // This is longer than the pause that ends a burst of events.
+    // The wait is longer than the time without events after which a series of events counts as
+    // ended.
     thread::sleep(Duration::from_millis(100));
     watch.becomes("blue");
     watch.wait("it says so", || watch.count("wrote") >= 2);
@@ -299,7 +300,7 @@ fn saving_an_unchanged_text_renders_it_again() {
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.becomes("red");
     watch.says("after the save", 1);
-    // This save replaces the file itself by another file.
+    // This time, the editor saves a new file and renames it to the name of the scene's file.
     fs::remove_file(watch.path("a.png")).unwrap();
     watch.replace(&scene("red"));
     watch.shows("red");

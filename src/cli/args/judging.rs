@@ -1,4 +1,4 @@
-//! What users type after `diff` and `grade`.
+//! Definitions of the arguments of `diff` and `grade`. Their doc comments are the help texts.
 
 use std::path::PathBuf;
 
@@ -105,7 +105,7 @@ pub enum GradeFormat {
     Moodle,
 }
 
-/// How much work a verdict may be.
+/// Arguments that set how much work is spent on judging a picture.
 #[derive(Debug, clap::Args)]
 pub struct EffortArgs {
     /// Spend up to so many times as much work on a picture before the search for what is wrong
@@ -121,7 +121,7 @@ fn effort(text: &str) -> Result<f64, String> {
     }
 }
 
-/// How large pictures may be.
+/// Arguments that set how large pictures may be.
 #[derive(Debug, clap::Args)]
 pub struct LargeArgs {
     /// Read pictures of more than 256 MiB, or of more than 2^28 bytes once they are decoded, as
@@ -131,17 +131,20 @@ pub struct LargeArgs {
 }
 
 impl LargeArgs {
-    /// Returns the maximum length of a picture's file, in bytes.
+    /// Returns the maximum length of a picture's file, in bytes: 4 GiB with `--large`, otherwise
+    /// 256 MiB.
     pub fn file_limit(&self) -> u64 {
         if self.large { 4 << 30 } else { 256 << 20 }
     }
 
-    /// Returns the maximum length of a decoded picture, in bytes.
+    /// Returns the maximum length of a decoded picture, in bytes. With `--large`, only the
+    /// available memory limits it.
     pub fn decoded_limit(&self) -> u64 {
         if self.large { u64::MAX } else { DECODED_LIMIT }
     }
 
-    /// Returns the message that a picture exceeds a limit, and what to do.
+    /// Returns the message that a picture has more than `limit` bytes or pixels (`what`). It ends
+    /// with advice to use `--large`, unless the user has done so.
     pub fn hint(&self, what: &str, limit: u64) -> String {
         let way_out = if self.large {
             ""

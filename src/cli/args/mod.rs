@@ -29,7 +29,7 @@ pub struct Args {
     pub command: Command,
 }
 
-/// The commands.
+/// The commands, such as `render`.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene to a picture file
@@ -95,7 +95,8 @@ pub enum Command {
 }
 
 impl Command {
-    /// Returns the number of threads on the command line.
+    /// Returns the number of threads in `--threads`, if the command has this option and the user
+    /// gave it.
     pub fn threads(&self) -> Option<NonZero<usize>> {
         match self {
             Self::Render(args) => args.threads.count(),
@@ -109,7 +110,7 @@ impl Command {
     }
 }
 
-/// Which scene, and what to change in it.
+/// Arguments that override values in a scene.
 #[derive(Debug, clap::Args)]
 pub struct Overrides {
     /// Override a field or a `let`: TARGET is BLOCK.FIELD (image, camera, sampler or an object's
@@ -119,7 +120,7 @@ pub struct Overrides {
     pub sets: Vec<String>,
 }
 
-/// On how much of the machine.
+/// Arguments that set the number of threads.
 #[derive(Debug, clap::Args)]
 pub struct ThreadArgs {
     /// How many threads to use [default: one for each processor]
@@ -128,7 +129,7 @@ pub struct ThreadArgs {
 }
 
 impl ThreadArgs {
-    /// Returns the number of threads on the command line.
+    /// Returns the number of threads in `--threads`, or `None` if the user did not give it.
     pub fn count(&self) -> Option<NonZero<usize>> {
         NonZero::new(usize::try_from(self.threads?).unwrap_or(usize::MAX))
     }
@@ -355,7 +356,7 @@ pub struct ExplainArgs {
     pub words: Vec<String>,
 }
 
-/// For whom the answer is.
+/// Arguments that select the output format of an answer.
 #[derive(Debug, clap::Args)]
 pub struct FormatArgs {
     /// For people, on standard error, or for programs, on standard output
@@ -383,7 +384,7 @@ fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Parses a column and a row.
+/// Parses a pixel's column and row, such as `200,150`.
 fn pixel(text: &str) -> Result<[u32; 2], String> {
     let parts = text.split_once(',');
     let parts = parts.map(|(x, y)| [x, y].map(|part| part.trim().parse().ok()));
@@ -393,7 +394,7 @@ fn pixel(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// Returns the parser of a kind of figure.
+/// Returns clap's parser for the names of kinds of figures.
 fn kind() -> impl TypedValueParser<Value = Kind> {
     PossibleValuesParser::new(KINDS.map(|(name, _)| name)).map(|name| {
         let kind = KINDS.into_iter().find(|(known, _)| *known == name);
@@ -401,7 +402,7 @@ fn kind() -> impl TypedValueParser<Value = Kind> {
     })
 }
 
-/// Returns the parser of a method's name.
+/// Returns clap's parser for the names of sampling methods, and of `exact`, which takes no samples.
 fn method() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(methods().map(Method::name)).map(|name| {
         methods()
@@ -410,12 +411,12 @@ fn method() -> impl TypedValueParser<Value = Method> {
     })
 }
 
-/// Returns all methods.
+/// Returns all sampling methods, followed by `exact`, which takes no samples.
 pub fn methods() -> impl Iterator<Item = Method> {
     Method::SAMPLED.into_iter().chain([Method::Exact])
 }
 
-/// Parses an error: a number or a fraction.
+/// Parses an error in linear light, written as a number (`0.01`) or a fraction (`1/1000`).
 fn error(text: &str) -> Result<f64, String> {
     let error = match text.split_once('/') {
         None => finite(text)?,

@@ -1,5 +1,5 @@
-//! Reads zip files of submissions. Nothing is unpacked to disk: the names in a zip file are shown,
-//! but never used as paths.
+//! Reads zip files of submissions. Nothing is unpacked to disk, and names in a zip file are never
+//! used as paths, so a malicious zip file cannot overwrite files.
 
 use std::{
     fs::File,
@@ -15,24 +15,27 @@ use zip::{DateTime, ZipArchive, result::ZipError};
 
 use crate::{files, lock::lock};
 
-/// Maximum length of a submitted file, inside or outside of a zip file, in bytes. A longer file is
-/// not read.
+/// Maximum length, in bytes, of a file that is unpacked from a zip file or compared with the files
+/// of other students. A longer file is an error. 256 MiB is also the maximum for pictures without
+/// `--large`, so no usual picture exceeds it.
 pub const FILE_LIMIT: u64 = 256 << 20;
 
-/// Maximum number of entries of a zip file. A file with more is rejected.
+/// Maximum number of entries of a zip file. A zip file with more is rejected. Chosen without
+/// measurement: a class of some hundred students hands in far fewer files.
 const MOST_ENTRIES: usize = 10_000;
 
-/// Maximum number of bytes that are read of a zip file to list its entries; a longer list is an
-/// error. An entry takes 46 bytes plus its name, so the limit suffices for [`MOST_ENTRIES`] entries
-/// with names of a thousand letters.
+/// Maximum number of bytes that are read from a zip file to list its entries. An entry takes 46
+/// bytes plus its name, so 16 MiB suffice for [`MOST_ENTRIES`] entries with names of a thousand
+/// letters. Without a limit, a damaged file could fill the memory.
 const LIST_LIMIT: u64 = 16 << 20;
 
-/// Maximum number of bytes that all zip files of a class together may unpack to. The files beyond
-/// it are not compared.
+/// Maximum number of bytes, in total, that are unpacked from all zip files of a class. It stops zip
+/// bombs, i.e. small files that unpack to very large ones. A larger limit would give a zip bomb
+/// more time. A class that exceeds it can be unpacked beforehand.
 const WHOLE_LIMIT: u64 = 4 << 30;
 
-/// Number of bytes that may still be unpacked from the zip files of a class. Unpacking counts down
-/// the bytes themselves, since the lengths in the headers may be wrong.
+/// Number of bytes that may still be unpacked from the zip files of a class. The unpacked bytes are
+/// counted, since the lengths in zip headers may be wrong.
 #[derive(Debug)]
 pub struct UnpackBudget(AtomicU64);
 
@@ -58,8 +61,8 @@ impl UnpackBudget {
     }
 }
 
-/// A file of which at most `left` bytes are read. This limits the list of a zip file's entries,
-/// which the library reads into memory as a whole.
+/// A file from which at most `left` more bytes can be read. The zip library reads the whole list of
+/// entries into memory, so the limit bounds this memory.
 #[derive(Debug)]
 struct Bounded {
     file: BufReader<File>,
@@ -95,14 +98,15 @@ pub struct Archive(Mutex<ZipArchive<Bounded>>);
 #[derive(Debug)]
 pub struct ArchiveEntry {
     pub index: usize,
-    /// Name of the entry, with `/` between folders.
+    /// Name of the entry: a path with `/` between folders.
     pub name: String,
     pub is_folder: bool,
-    /// Modification time, in seconds since 1970; an even number, as zip files store it.
+    /// Modification time, in seconds since 1970. It is even, since zip files store times in units
+    /// of two seconds.
     pub time: Option<i64>,
     /// Unpacked length, in bytes, according to the header, which may be wrong.
     pub length: u64,
-    /// The CRC-32 of the unpacked bytes. It is verified when they are unpacked.
+    /// CRC-32 checksum of the unpacked bytes. It is verified when they are unpacked.
     pub sum: u32,
     /// Reason why the entry cannot be read, for example because it is encrypted or a link. `None`
     /// if it can be read.
@@ -126,7 +130,8 @@ impl Archive {
             0 => format!("it is no zip file, or lists more than {MOST_ENTRIES} entries, and at most that many are read"),
             _ => in_words(&error),
         })?;
-        // The entries are listed. From here on, [`UnpackBudget`] limits the bytes instead.
+        // The list of entries has been read, so its limit is lifted. From now on, [`UnpackBudget`]
+        // limits how much is unpacked.
         left.store(u64::MAX, Ordering::Relaxed);
         if zip.len() > MOST_ENTRIES {
             let count = zip.len();
@@ -162,8 +167,8 @@ impl Archive {
     ///
     /// The entry is damaged or too large.
     pub fn read(&self, index: usize, budget: &UnpackBudget) -> Result<Vec<u8>, String> {
-        /// Maximum number of bytes of the entry that are unpacked before the budget is checked
-        /// again.
+        /// Number of bytes that are unpacked before the limits are checked again. At most this many
+        /// bytes are unpacked beyond a limit. It is an ordinary buffer size.
         const PIECE: u64 = 1 << 16;
         let mut zip = lock(&self.0);
         let mut entry = zip.by_index(index).map_err(|error| in_words(&error))?;
@@ -181,8 +186,8 @@ impl Archive {
     }
 }
 
-/// Returns an entry's name: decoded as UTF-8 if it is valid, even if the UTF-8 flag is not set, and
-/// otherwise as code page 437.
+/// Returns an entry's name. Bytes that are valid UTF-8 are decoded as such, even if the entry's
+/// UTF-8 flag is not set; others are decoded as code page 437, the original encoding of zip files.
 fn name(raw: &[u8], decoded: Option<&str>) -> String {
     let name = match (str::from_utf8(raw), decoded) {
         (Ok(name), _) | (_, Some(name)) => name.to_owned(),
@@ -192,10 +197,11 @@ fn name(raw: &[u8], decoded: Option<&str>) -> String {
     name.replace('\\', "/")
 }
 
-/// Converts a time in a zip file, which has no time zone, to seconds since 1970.
+/// Converts a time from a zip file to seconds since 1970. Zip files store no time zone, so the time
+/// is taken as UTC.
 fn seconds(time: DateTime) -> i64 {
-    // In this calculation, years begin in March, so that a leap day is the last day of its year.
-    // Source: Hinnant, "chrono-compatible low-level date algorithms", days_from_civil.
+    // The formula lets years begin in March, so that a leap day is the last day of its year. It is
+    // `days_from_civil` in Howard Hinnant, "chrono-Compatible Low-Level Date Algorithms".
     let month = (i64::from(time.month()) + 9) % 12;
     let year = i64::from(time.year()) - i64::from(month >= 10);
     let leaps = year / 4 - year / 100 + year / 400;

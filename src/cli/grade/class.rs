@@ -1,8 +1,8 @@
-//! Converts submissions (single pictures, folders and zip files) to students with files.
+//! Sorts the submitted files of a class by student.
 //!
-//! In a folder or zip file on the command line, each folder is the submission of one student, and
-//! so is each file beside the folders. Moodle writes the students' names into file names, and
-//! Gradescope into a file beside the folders. No student is left out.
+//! In a folder or zip file on the command line, each subfolder is the submission of one student,
+//! and so is each file beside the subfolders. Moodle writes students' names into file names;
+//! Gradescope lists them in a file beside the subfolders. A student without files is listed, too.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -29,27 +29,28 @@ use crate::{
     files,
 };
 
-/// Reason that is shown for a picture that is not compared because every submission contains it.
+/// Reason, shown to the teacher, why a picture is not compared: every submission contains it, so it
+/// comes from the assignment's template.
 const TEMPLATE: &str = "equal in every folder: --picture chooses it";
 
 /// The students of a class, with their files.
 #[derive(Debug, Default)]
 pub struct Class {
     pub students: Vec<Student>,
-    /// Whether a picture on the command line is missing or not a file.
+    /// Whether one of the pictures on the command line does not exist or cannot be opened.
     pub is_one_missing: bool,
     /// Number of bytes that may still be unpacked from the class's zip files.
     pub budget: UnpackBudget,
 }
 
 impl Class {
-    /// Reads the submissions on the command line, except the teacher's own files, `own`. `chosen`
-    /// is the pattern of pictures in `--picture`.
+    /// Reads the submissions on the command line. The teacher's own files, `own`, are left out.
+    /// `chosen` is the file-name pattern in `--picture`.
     ///
     /// # Errors
     ///
-    /// A folder or zip file on the command line cannot be read. A missing picture is not an error
-    /// here; it is reported when it is read.
+    /// A folder or zip file on the command line cannot be read. A missing picture is no error at
+    /// this point; it is reported when the picture is judged.
     pub fn read(paths: &[PathBuf], own: &[&Path], chosen: Option<&Glob>) -> Result<Self, Trouble> {
         let mut class = Self::default();
         let mut rest: Vec<&PathBuf> = paths.iter().collect();
@@ -76,7 +77,8 @@ impl Class {
         Ok(class)
     }
 
-    /// Adds the students of a folder or zip file, and those of each class that it contains.
+    /// Adds the students of a folder or zip file. It may also contain folders of whole classes,
+    /// whose students are then added as well.
     fn add(&mut self, folder: Option<String>, mut tree: FileTree, chosen: Option<&Glob>) {
         for (name, inner) in tree.take_classes() {
             self.add(Some(name), inner, chosen);
@@ -91,7 +93,8 @@ impl Class {
         let slug = folder.and_then(|name| name.strip_suffix(names::CLONES).map(str::to_owned));
         tree.found.sort_by(|(a, _), (b, _)| a.cmp(b));
         let mut works: BTreeMap<(String, String), Student> = BTreeMap::new();
-        // A folder without files must also become a student, so the folders are added to the files.
+        // A student with an empty folder must be listed, too, so the folders are added to the
+        // files.
         let folders = tree.folders.iter().filter(|names| names.len() == 1);
         let folders = folders.map(|names| (vec![names[0].clone(), String::new()], None));
         let found = tree
@@ -139,7 +142,7 @@ impl Class {
                 .extend(file.map(|file| SubmittedFile { path, ..file }));
         }
         for (folder, name) in submitters.all() {
-            // Gradescope's metadata may name a student whose folder is missing. Such a student is
+            // Gradescope's metadata may name a student whose folder is missing. The student is then
             // listed without files.
             works
                 .entry((folder.to_owned(), String::new()))
@@ -156,9 +159,9 @@ impl Class {
         self.students.extend(students);
     }
 
-    /// Removes the files that are equal in every submission, since they come from the assignment's
-    /// template. Their pictures are listed as not compared. If this leaves no student a picture,
-    /// all files are kept, because then all students made the same picture.
+    /// Finds the files that are equal in every submission, since they come from the assignment's
+    /// template. Pictures among them are marked as not compared; other files are removed. If no
+    /// student has any other picture, all students made the same one, so it is kept and compared.
     fn leave_template(&self, students: &mut [Student], chosen: Option<&Glob>) {
         let is_folder = |student: &&mut Student| {
             let mut files = student.files.iter();
@@ -200,7 +203,8 @@ impl Class {
         let Some(same) = same.collect::<Option<Vec<_>>>() else {
             return false;
         };
-        // Zip files contain CRC-32 sums, so their files can be compared without unpacking.
+        // Zip files contain checksums (CRC-32) of their files, so these can be compared without
+        // unpacking.
         if file.sum.is_some() && same.iter().all(|other| other.sum.is_some()) {
             return same.iter().all(|other| other.sum == file.sum);
         }
@@ -227,7 +231,7 @@ fn bytes(file: &SubmittedFile, budget: &UnpackBudget) -> Result<Vec<u8>, String>
     }
 }
 
-/// Makes the student of a picture on the command line.
+/// Makes a student from a picture that is named on the command line.
 fn student_of_picture(path: &Path) -> Student {
     let place = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -252,8 +256,9 @@ fn student_of_picture(path: &Path) -> Student {
     }
 }
 
-/// Moves each file that is not a picture to the student whose picture has the same name except for
-/// the extension. A file without such a picture remains a student of its own.
+/// Merges files with the same name but different extensions into one student. For example,
+/// `anna.cpp` becomes a file of the student with the picture `anna.png`. A file for which there is
+/// no such picture remains a student of its own.
 fn with_companions(students: Vec<Student>) -> Vec<Student> {
     let stem = |student: &Student| {
         let [file] = &student.files[..] else {
@@ -286,17 +291,18 @@ fn with_companions(students: Vec<Student>) -> Vec<Student> {
     kept
 }
 
-/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Returns each class's
-/// folder with the names in it that are on the command line; each name is a student. A folder is
-/// recognised as a class by a repository in one of its subfolders, by Moodle's names, by
-/// Gradescope's metadata, or by two subfolders with a picture of the same name.
+/// Finds the arguments that a shell expanded from a pattern such as `class/*`. Each of these
+/// arguments is a student, and the folder that contains them is a class. Returns each such folder
+/// with the names of its arguments. A folder counts as a class if one of its arguments is a Git
+/// clone, has a name in Moodle's form, or is Gradescope's metadata file, or if two of its arguments
+/// contain a picture of the same name.
 fn expanded_classes(paths: &[PathBuf]) -> BTreeMap<&Path, BTreeSet<&OsStr>> {
     let mut named = BTreeMap::<&Path, BTreeSet<&OsStr>>::new();
     for path in paths {
         let is_list = name(path) == METADATA && path.is_file();
         let is_class = path.is_dir() || tree::is_zip(path) || is_list;
-        // A link is not an entry of its parent here, since arguments that are links are followed. A
-        // path such as `..` has no name.
+        // Links are excluded: a link on the command line is followed, but a link inside a class's
+        // folder would not be. Paths such as `..` are excluded, too, because they have no name.
         if is_class && !path.is_symlink() && !name(path).is_empty() {
             named.entry(parent_of(path)).or_default().insert(name(path));
         }
@@ -333,8 +339,8 @@ fn folder_name(path: &Path) -> Option<String> {
     Some(path.file_name()?.to_string_lossy().into_owned())
 }
 
-/// Appends the number of the submission, or else its place, to the names of students with equal
-/// names.
+/// Makes equal names of students differ: appends the number that Moodle gives the submission or, if
+/// there is none, the submission's path.
 fn tell_apart(students: &mut [Student]) {
     let mut counts = BTreeMap::<String, usize>::new();
     for student in &*students {

@@ -1,5 +1,5 @@
-//! Criteria of grading: the camera, an object, the board, colours, sampling, and hits. Each mistake
-//! belongs to one of them.
+//! Criteria by which points are given: camera, each object, checkerboards, colours, sampling, and
+//! ray hits. Each kind of mistake belongs to one criterion.
 
 use std::collections::BTreeSet;
 
@@ -9,12 +9,12 @@ use crate::{
     schema,
 };
 
-/// Criterion that a mistake belongs to.
+/// Criterion to which a mistake in a picture belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
-    /// Mistakes in the camera or the window.
+    /// Mistakes in the camera, or in the window through which it sees the scene.
     Camera,
-    /// Mistakes in an object, given by its index.
+    /// Mistakes in an object other than a checkerboard, given by the object's index in the scene.
     Object(usize),
     /// Mistakes in the checkerboards.
     Board,
@@ -22,12 +22,13 @@ pub enum Criterion {
     Colours,
     /// Mistakes in the positions of samples or in their average.
     Sampling,
-    /// Mistakes in which hit of a ray is visible, and mistakes of no other criterion.
+    /// Mistakes in the choice of the visible hit among a ray's hits, and all mistakes that belong
+    /// to no other criterion.
     Hits,
 }
 
-/// Criteria of mistakes, by prefixes of the mistakes' ids. If an id has none of these prefixes, the
-/// mistake is about a field of the camera or about hits.
+/// Criteria with the prefixes of the ids of their mistakes, separated by spaces. An id with none of
+/// these prefixes is the name of a field of the camera or of an object.
 const BEGINNINGS: &[(Criterion, &str)] = &[
     (Criterion::Board, "board_"),
     (
@@ -62,8 +63,7 @@ pub fn criterion(mistake: &NamedMistake, scene: &Scene) -> Criterion {
     of_id(mistake.id).unwrap_or(Criterion::Hits)
 }
 
-/// Returns the criterion of a mistake's id, without regard to the object that the mistake is about.
-/// Returns `None` for the field of an object.
+/// Returns the criterion of a mistake's id, or `None` if the id is the name of an object's field.
 fn of_id(id: &str) -> Option<Criterion> {
     let is_among = |beginnings: &str| beginnings.split(' ').any(|it| id.starts_with(it));
     let found = BEGINNINGS
@@ -80,8 +80,8 @@ fn of_id(id: &str) -> Option<Criterion> {
     }
 }
 
-/// Returns the index of the object that a mistake is about: the object with whose title the message
-/// begins. Returns `None` if there is no such object.
+/// Returns the index of the object that a mistake is about, or `None` if it is about no object. The
+/// mistake's message then begins with the object's title.
 pub fn object(mistake: &NamedMistake, scene: &Scene) -> Option<usize> {
     let title = |index: usize| {
         let object = &scene.objects[index];
@@ -93,8 +93,8 @@ pub fn object(mistake: &NamedMistake, scene: &Scene) -> Option<usize> {
     (0..scene.objects.len()).find(|&index| mistake.message.starts_with(&title(index)))
 }
 
-/// Returns the ids of all mistakes in alphabetical order: the ids in the table of mistakes, and the
-/// names of fields whose values may be wrong.
+/// Returns the ids of all mistakes in alphabetical order. They are the ids in the table of mistakes
+/// and the names of all fields whose values may be wrong.
 pub fn ids() -> impl Iterator<Item = &'static str> {
     let blocks = schema::block_names().filter(|name| *name != "sampler");
     let fields = blocks

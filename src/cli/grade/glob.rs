@@ -1,5 +1,5 @@
-//! Patterns of file names: `*` stands for any number of characters except `/`, `?` for one
-//! character except `/`, and `**` for any number of characters.
+//! Patterns of file names. In a pattern, `*` stands for any number of characters except `/`, `?`
+//! for one character except `/`, and `**` for any number of any characters.
 
 /// A pattern of file names, stored in lower case.
 #[derive(Clone, Debug)]
@@ -11,15 +11,15 @@ impl Glob {
         Self(text.to_lowercase().chars().collect())
     }
 
-    /// Returns whether the pattern matches a path. If the pattern has no `/`, only the last name of
-    /// the path is compared.
+    /// Returns whether the pattern matches a path. If the pattern has no `/`, only the file name at
+    /// the end of the path is compared.
     pub fn matches(&self, path: &str) -> bool {
         let path = path.to_lowercase();
         let name = path.rsplit('/').next().unwrap_or_default();
         let text = if self.0.contains(&'/') { &path } else { name };
         let text: Vec<char> = text.chars().collect();
-        // `ends[n]` says whether the pattern up to the index `at` matches the first n characters of
-        // `text`.
+        // The element `ends[n]` says whether the pattern's first `at` characters match the first n
+        // characters of `text`.
         let mut ends = vec![false; text.len() + 1];
         ends[0] = true;
         let mut at = 0;

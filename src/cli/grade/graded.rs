@@ -1,6 +1,5 @@
-//! The result of grading a student's submission.
-//!
-//! All formats take their values from here, so that they agree.
+//! The result of grading a student's submission. All output formats take their values from it, so
+//! that they agree.
 
 use serde_json::{Map, Value, json};
 
@@ -15,18 +14,19 @@ pub struct GradedStudent {
     pub name: String,
     /// Number that Moodle gives the submission; `None` if Moodle did not collect it.
     pub number: Option<String>,
-    /// Path of the student's folder or file, for output.
+    /// Path of the student's folder or file, as it is printed.
     pub place: String,
     /// The pictures that were compared, the best one first.
     pub compared: Vec<ComparedPicture>,
-    /// The pattern of file names in `--picture`.
+    /// The file-name pattern in `--picture`, if it was given.
     pub chosen: Option<String>,
-    /// Files of the student that were not compared, some with the reason.
+    /// Files of the student that were not compared. Some have the reason in parentheses.
     pub not_compared: Vec<String>,
-    /// Names of other students whose best picture equals this student's in every pixel.
+    /// Names of the other students whose best picture equals this student's best picture in every
+    /// pixel.
     pub equal_to: Vec<String>,
-    /// The student's points; `None` if there is no scheme of points, or the picture is wrong for
-    /// unknown reasons.
+    /// The student's points. `None` without `--points`, and if the picture is wrong for unknown
+    /// reasons.
     pub score: Option<f64>,
 }
 
@@ -34,7 +34,7 @@ pub struct GradedStudent {
 pub struct ComparedPicture {
     /// Path of the picture within the student's submission.
     pub path: String,
-    /// Path of the picture, starting with the argument on the command line, for output.
+    /// Path of the picture as it is printed. It starts with the argument on the command line.
     pub shown: String,
     pub result: Result<JudgedPicture, String>,
 }
@@ -42,9 +42,9 @@ pub struct ComparedPicture {
 /// The result of judging a picture.
 pub struct JudgedPicture {
     pub verdict: Verdict,
-    /// Root mean square of the differences, in linear light.
+    /// Root mean square of the differences from the exact picture, in linear light.
     pub rmse: f64,
-    /// Whether the picture carries the text that Pinhole writes into its own.
+    /// Whether the file contains the text that Pinhole writes into its own pictures.
     pub is_ours: bool,
     /// Fields of the verdict in the JSON output.
     pub fields: Map<String, Value>,
@@ -62,21 +62,22 @@ impl JudgedPicture {
         self.verdict.kind.word()
     }
 
-    /// Whether the picture is right, except for sampling noise.
+    /// Returns whether the picture is right, except for sampling noise.
     pub fn is_right(&self) -> bool {
         matches!(self.verdict.kind, Kind::Right | Kind::Noise)
     }
 
-    /// Returns the number of independent samples per pixel with which a picture is as noisy as this
-    /// one. Returns `None` if this picture is wrong, because its mistakes would count as noise.
+    /// Returns the number of independent samples per pixel that would cause as much noise as the
+    /// picture has. Returns `None` if the picture is wrong, since its mistakes would count as
+    /// noise.
     pub fn samples(&self) -> Option<f64> {
         self.verdict.samples.filter(|_| self.is_right())
     }
 }
 
 impl ComparedPicture {
-    /// Returns the key by which a student's pictures are sorted; a better picture has a smaller
-    /// key. The first one after sorting is graded.
+    /// Returns the sort key of a picture. The student's picture with the smallest key is graded: a
+    /// right one if there is one, otherwise the one with the smallest error.
     pub fn rank(&self) -> (u8, f64) {
         let Ok(judged) = &self.result else {
             return (4, 0.0);
@@ -103,14 +104,15 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the path of the best picture, or that of the submission if no picture was compared.
+    /// Returns the path of the best picture, or of the submission if no picture was compared.
     pub fn file(&self) -> &str {
         self.compared
             .first()
             .map_or(&self.place, |best| &best.shown)
     }
 
-    /// Returns the verdict as a word; `error` if no picture was judged.
+    /// Returns the verdict as a word: `right`, `noise`, `wrong`, `unknown`, or `error` if no
+    /// picture was judged.
     pub fn word(&self) -> &str {
         match self.compared.first().map(|best| &best.result) {
             Some(Ok(judged)) => judged.word(),
@@ -118,7 +120,7 @@ impl GradedStudent {
         }
     }
 
-    /// Returns the verdict as a sentence.
+    /// Returns the verdict as a sentence, or the reason why no picture was compared.
     pub fn line(&self) -> String {
         let line = match self.best() {
             Ok(judged) => judged.verdict.line(),
@@ -127,8 +129,8 @@ impl GradedStudent {
         line + &self.note()
     }
 
-    /// Returns a note in parentheses that says which of several pictures the verdict is about;
-    /// empty if there is only one.
+    /// Returns a note that says which picture was graded, if several were compared; otherwise an
+    /// empty text.
     pub fn note(&self) -> String {
         match &self.compared[..] {
             [] | [_] => String::new(),
@@ -188,7 +190,7 @@ impl GradedStudent {
         Value::Object(fields)
     }
 
-    /// Returns the comment on the picture that the student gets to read.
+    /// Returns a comment on the picture, for the student to read.
     pub fn comment(&self) -> String {
         let judged = match self.best() {
             Ok(judged) => judged,
@@ -230,7 +232,7 @@ impl GradedStudent {
     }
 }
 
-/// Formats a share in whole per cent. A share below 1 % becomes `less than 1 %`.
+/// Formats a share as a whole percentage. A share below 1 % becomes `less than 1 %`.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
         few if few < 1.0 => "less than 1 %".to_owned(),

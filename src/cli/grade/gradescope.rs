@@ -1,4 +1,4 @@
-//! Writes a student's `results.json`, as Gradescope's harness reads it:
+//! Writes a student's `results.json` in the format of Gradescope's autograder,
 //! <https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format>.
 
 use serde_json::{Value, json};
@@ -14,8 +14,9 @@ use crate::{
     scene::{Scene, Shape},
 };
 
-/// Returns the content of `results.json` for a student. Without a scheme of points, each test
-/// counts 1. If the verdict is unknown, no scores are written, since Gradescope would count them.
+/// Returns the content of `results.json` for a student, with a test for each criterion. Without
+/// `--points`, each test counts one point. If the picture is wrong for unknown reasons, no scores
+/// are written, so that the teacher decides.
 pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>) -> Value {
     let Ok(judged) = one.best() else {
         return whole(one, None, Vec::new());
@@ -29,7 +30,7 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
     for (at, mistake) in mistakes.iter().enumerate() {
         let of = criterion(mistake, scene);
         if let Some(test) = criteria.iter().position(|(one, _)| *one == of) {
-            // Without a scheme of points, any mistake takes the whole score of its test.
+            // Without `--points`, any mistake takes all points of its test.
             let off = off.as_ref().map_or(scores[test], |off| off[at]);
             scores[test] = (scores[test] - off).max(0.0);
         }
@@ -74,7 +75,7 @@ fn whole(one: &GradedStudent, score: Option<f64>, tests: Vec<Value>) -> Value {
     results
 }
 
-/// Returns the criteria that become tests in Gradescope, with the names of the tests.
+/// Returns the criteria of grading with their names. Each criterion is a test in Gradescope.
 fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     let objects = scene.objects.iter().enumerate();
     let is_board = |shape: &Shape| shape.checkerboard().is_some();
@@ -100,8 +101,8 @@ fn criteria(scene: &Scene) -> Vec<(Criterion, String)> {
     all
 }
 
-/// Returns the maximum score of each test. The test of an object gets the `object` points of the
-/// scheme. The remaining points are shared equally by the other tests.
+/// Returns the maximum score of each test. An object's test gets the points that the file of
+/// `--points` gives under `object`. The other tests share the remaining points equally.
 fn shares(criteria: &[(Criterion, String)], points: Option<&PointScheme>) -> Vec<f64> {
     let Some(points) = points else {
         return vec![1.0; criteria.len()];
@@ -118,8 +119,8 @@ fn shares(criteria: &[(Criterion, String)], points: Option<&PointScheme>) -> Vec
     criteria.iter().map(share).collect()
 }
 
-/// Returns a folder name for each student, made from the student's name. The names differ even if
-/// case is ignored, and are valid on all systems.
+/// Returns a folder name for each student, made from the student's name. No two names differ only
+/// in case, and all names are valid on all systems.
 pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
     let mut taken = std::collections::BTreeSet::new();
     let name = |one: &GradedStudent| {
@@ -132,7 +133,7 @@ pub fn folders(graded: &[GradedStudent]) -> Vec<String> {
         };
         let name: String = one.name.chars().map(plain).take(60).collect();
         let name = name.trim_matches('.');
-        // Windows reserves names such as `con`, even if a dot and more text follow.
+        // Windows reserves names such as `con`, even with an extension.
         let base = match name {
             "" => "student".to_owned(),
             name if is_reserved(name) => format!("_{name}"),
@@ -154,7 +155,8 @@ fn is_reserved(name: &str) -> bool {
         let rest = stem.strip_prefix(word);
         rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
     };
-    // The names `pictures`, `index` and `grade` belong to files that `grade` writes for the page.
+    // The last three names are those of the files and the folder that `grade` writes for its HTML
+    // page.
     matches!(
         &*stem,
         "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"

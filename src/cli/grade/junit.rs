@@ -1,11 +1,11 @@
-//! Writes the results of a class as JUnit XML for continuous integration, in the form that Ant's
-//! junitreport and Jenkins read. Each student is a test case.
+//! Writes the results of a class as JUnit XML, which tools for continuous integration read. The
+//! format is that of Ant's junitreport and of Jenkins. Each student is a test case.
 
 use super::graded::GradedStudent;
 use crate::diagnostic::escaped;
 
-/// Returns the content of the JUnit file. A wrong picture is a `failure`, a picture that is wrong
-/// for unknown reasons is `skipped`, and a picture that is missing or cannot be read is an `error`.
+/// Returns the content of the JUnit file. A wrong picture is a `failure`; one that is wrong for
+/// unknown reasons is `skipped`; a missing or unreadable picture is an `error`.
 pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
     let count = |word: &str| graded.iter().filter(|one| one.word() == word).count();
     let counts = format!(
@@ -46,8 +46,8 @@ pub fn junit(scene: &str, graded: &[GradedStudent]) -> String {
     xml + "  </testsuite>\n</testsuites>\n"
 }
 
-/// Escapes a line for XML, and replaces U+FFFE and U+FFFF, which XML does not allow even as
-/// character references.
+/// Escapes a text for an XML attribute. The characters U+FFFE and U+FFFF are replaced, since XML
+/// allows them in no form.
 fn attribute(text: &str) -> String {
     escaped(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

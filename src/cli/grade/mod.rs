@@ -1,12 +1,13 @@
 //! `grade`: grades the submissions of a class for one scene.
 //!
-//! 1. The arguments become a `class` of students with files (`submission`), from the `tree` of a
-//!    folder or of a zip file (`archive`). `names` reads the naming schemes of submission systems,
-//!    and `glob` selects pictures.
-//! 2. Each student's pictures are compared and judged (`graded`), and `points` computes a score
-//!    from the verdict by `criteria`.
-//! 3. The result is written by `table` as readable text and as CSV, by `page` with `thumbnails` as
-//!    HTML, and by `junit`, `gradescope` and `moodle`.
+//! 1. The module `class` finds the students and their files. It uses `tree`, which lists folders
+//!    and zip files, `archive`, which reads zip files, `names`, which knows the naming schemes of
+//!    Moodle, Gradescope and GitHub Classroom, and `glob`, which matches file names.
+//! 2. The module `submission` chooses each student's newest pictures. They are compared and judged,
+//!    and `graded` contains the results. The module `points` computes a score from the verdict;
+//!    `criteria` assigns each mistake to an object or a topic.
+//! 3. The modules `table`, `page`, `junit`, `gradescope` and `moodle` write the results, each in
+//!    its format. The HTML page contains `thumbnails`.
 
 mod archive;
 mod class;
@@ -103,7 +104,7 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     Ok(status.unwrap_or(Status::Done))
 }
 
-/// Reads the students, leaving out the teacher's own files.
+/// Reads the students and their files. The teacher's own files are left out.
 fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     let own = [
         Some(&args.scene),
@@ -135,8 +136,8 @@ fn class(args: &GradeArgs) -> Result<Class, Trouble> {
     Ok(class)
 }
 
-/// Returns the names of all files that may be written into the output folder. Before any picture is
-/// judged, the folder is checked for other files of these names.
+/// Returns the names of all files that may be written into the output folder. They are checked
+/// before any picture is judged, so that no file of the user is replaced.
 fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
     let pictures = (0..class.students.len()).flat_map(page::names);
     let own = FILES.map(str::to_owned).into_iter().chain(pictures);
@@ -147,7 +148,7 @@ fn output_names(args: &GradeArgs, class: &Class) -> Vec<String> {
 
 fn worksheet_name(args: &GradeArgs) -> Option<String> {
     let name = args.worksheet.as_ref()?.file_name()?.to_string_lossy();
-    // `grade` writes files of its own under these names, so such a worksheet gets another name.
+    // The worksheet gets another name if one of the command's own output files has its name.
     Some(if FILES.contains(&&*name) {
         format!("moodle-{name}")
     } else {
@@ -155,8 +156,8 @@ fn worksheet_name(args: &GradeArgs) -> Option<String> {
     })
 }
 
-/// Prints the result in the format of `--format`. Returns the files of that format for the output
-/// folder.
+/// Prints the result in the format of `--format`. For the formats of Gradescope and Moodle, returns
+/// the files to write into the output folder instead, if there is one.
 fn print_results(
     args: &GradeArgs,
     scene: &Scene,
@@ -206,7 +207,8 @@ fn lines(graded: &[GradedStudent]) -> String {
         .collect()
 }
 
-/// Returns the HTML page, the pictures beside it, and the CSV and JSON files, each with its name.
+/// Returns the HTML page, the pictures that it shows, and the CSV and JSON files, each with its
+/// file name.
 fn page_files(
     args: &GradeArgs,
     graded: &[GradedStudent],
@@ -233,8 +235,8 @@ fn page_files(
     files
 }
 
-/// Records which students have equal pictures. Pictures that are right and have no noise are
-/// skipped, since they are all equal.
+/// Records which students have pictures that are equal in every pixel. Exactly right pictures are
+/// skipped, since they are naturally equal.
 fn mark_equal(graded: &mut [GradedStudent]) {
     let mut same = BTreeMap::<[u8; 32], Vec<usize>>::new();
     for (index, one) in graded.iter().enumerate() {
@@ -252,11 +254,12 @@ fn mark_equal(graded: &mut [GradedStudent]) {
     }
 }
 
-/// The results of all students, and the exact picture as a PNG file. The file is empty if no page
-/// is written.
+/// The results of all students, and the scene's exact picture as a PNG file. Its bytes are empty if
+/// no HTML page is written.
 type Answers = (Vec<GradedStudent>, Vec<u8>);
 
-/// Grades the students in parallel, by default on as many threads as there are processors.
+/// Grades the students in parallel. Unless `--threads` is given, there is a thread for each
+/// processor.
 fn graded(
     args: &GradeArgs,
     scene: &Scene,
@@ -320,8 +323,8 @@ fn graded(
     Ok((graded?, exact))
 }
 
-/// Judges a picture. The inner error says why the picture cannot be judged; the outer one is an
-/// error of rendering.
+/// Judges a picture. Returns an inner error if the picture cannot be judged, and an outer error if
+/// rendering fails.
 fn grade(
     file: &SubmittedFile,
     class: &Class,
@@ -351,7 +354,7 @@ fn grade(
         whole
     } else {
         let control = Control {
-            // Pictures are judged in parallel, each on one thread.
+            // Several pictures are judged in parallel, so each of them gets one thread.
             threads: NonZero::new(1),
             progress: &|_| {},
             cancel,
@@ -395,7 +398,7 @@ fn grade(
     }))
 }
 
-/// Returns the SHA-256 of a picture's width and pixels.
+/// Returns the SHA-256 of a picture's width and pixels. Equal pictures have equal hashes.
 fn hash(film: &Film) -> [u8; 32] {
     let mut hash = Hash::new();
     hash.update(film.width().to_le_bytes());

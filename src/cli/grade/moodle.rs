@@ -1,9 +1,9 @@
-//! Fills in Moodle's worksheet of grades.
+//! Fills in Moodle's worksheet of grades, a CSV file.
 //!
-//! Rows are found by the number at the end of the identifier, as Moodle's importer does it
-//! (`mod/assign/feedback/offline/importgradeslib.php`), and columns by their headings. The importer
-//! needs the identifier, the grade and the time of the grade. Only cells of grades and comments
-//! change; all other rows are copied byte for byte.
+//! A student's row is found by the number at the end of its identifier, as in Moodle's importer
+//! (`mod/assign/feedback/offline/importgradeslib.php`). A column is found by its heading. Only
+//! cells of grades and comments change. Rows that belong to no graded student are copied byte for
+//! byte.
 
 use std::path::Path;
 
@@ -22,11 +22,13 @@ use crate::{
     suggest::choice,
 };
 
-/// Maximum length of a worksheet, in bytes. A longer file is an error.
+/// Maximum length of a worksheet, in bytes. A longer file is an error. A worksheet has a row for
+/// each student, so real ones are far shorter; the limit only keeps a wrong file from filling the
+/// memory.
 const LIMIT: u64 = 64 << 20;
 
-/// English headings of the worksheet's columns, which `--columns` may replace. The last two columns
-/// may be missing.
+/// English headings of the worksheet's columns. The option `--columns` gives their names in other
+/// languages. The last two columns may be missing.
 const HEADINGS: [&str; 5] = [
     "Identifier",
     "Grade",
@@ -35,12 +37,12 @@ const HEADINGS: [&str; 5] = [
     "Grade can be changed",
 ];
 
-/// Returns the worksheet at `path` with the grades and comments filled in. `total` is the maximum
-/// number of points.
+/// Returns the worksheet at `path` with grades and comments filled in. `total` is the number of
+/// points for a right picture; without it, no grades are filled in.
 ///
 /// # Errors
 ///
-/// The worksheet cannot be read, lacks a column, or has a maximum grade below the total of points.
+/// The worksheet cannot be read, lacks a column, or has a maximum grade below `total`.
 pub fn filled(
     path: &Path,
     columns: &[String],
@@ -69,8 +71,8 @@ pub fn filled(
     {
         rows.push(row.clone());
     }
-    // After CRLF, the CSV reader reports the line feed as the start of the next record, so it is
-    // skipped.
+    // After CRLF, the CSV reader reports the position of the line feed as the start of the next
+    // row, so the line feed is skipped.
     let start = |row: &ByteRecord| {
         let at = row.position().map_or(0, |at| at.byte() as usize);
         at + usize::from(at > 0 && text.get(at) == Some(&b'\n'))
@@ -132,7 +134,7 @@ pub fn filled(
             )));
         }
         let cells = row.iter().enumerate().map(|(at, cell)| match at {
-            // Without a scheme of points, the grades are not changed.
+            // Without `--points`, there are no grades to fill in.
             _ if at == grade && total.is_some() => {
                 one.score.map_or_else(String::new, short).into_bytes()
             }
@@ -169,8 +171,8 @@ fn renamed(text: &str) -> Result<(&'static str, &str), Trouble> {
     }
 }
 
-/// Returns the number at the end of an identifier such as `Participant 12345`, in any language;
-/// empty if there is none.
+/// Returns the number at the end of an identifier such as `Participant 12345`, or an empty text if
+/// there is none. The word before it depends on Moodle's language.
 fn number_at_end(cell: &[u8]) -> &str {
     let digits = cell
         .iter()
@@ -189,7 +191,7 @@ fn decimal(cell: &[u8]) -> Option<f64> {
         .ok()
 }
 
-/// Escapes a comment as HTML, which Moodle expects.
+/// Converts a comment to HTML, the format of Moodle's comments.
 fn html(text: &str) -> String {
     visible(text)
         .replace('&', "&amp;")

@@ -1,14 +1,15 @@
-//! Reads the names of students: from Moodle's file names, from Gradescope's metadata file, and from
-//! GitHub Classroom's folder names.
+//! Reads students' names from Moodle's file names, from Gradescope's metadata file, and from GitHub
+//! Classroom's folder names.
 
 use std::collections::BTreeMap;
 
-/// Suffix of the folder in which GitHub Classroom puts all clones; the assignment's name precedes
-/// it.
+/// Suffix of the folder into which GitHub Classroom clones all repositories of an assignment. The
+/// assignment's name precedes it.
 pub const CLONES: &str = "-submissions";
 
-/// Moodle's name of a file or folder: `Name_12345_assignsubmission_file_` and, for a file, the
-/// file's own name.
+/// Parts of a file or folder name in Moodle's form, `Name_12345_assignsubmission_file_essay.pdf`:
+/// the student's name, the submission's number, and the file's own name, which is empty for a
+/// folder.
 #[derive(Debug)]
 pub struct MoodleName<'n> {
     pub name: &'n str,
@@ -26,32 +27,32 @@ impl MoodleName<'_> {
     }
 }
 
-/// Splits a name of Moodle's form into its parts. Returns `None` for any other name.
+/// Splits a file or folder name in Moodle's form into its parts. Returns `None` for any other name.
 pub fn moodle(text: &str) -> Option<MoodleName<'_>> {
     let (who, what) = text.split_once("_assignsubmission_")?;
     let (name, number) = who.rsplit_once('_')?;
-    // The word after `assignsubmission_` is the name of the Moodle plug-in that took the
-    // submission.
+    // Moodle writes the name of the submission plug-in after `assignsubmission_`, for example
+    // `file`.
     let (_, file) = what.split_once('_').unwrap_or((what, ""));
     let is_number = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
     is_number.then_some(MoodleName { name, number, file })
 }
 
-/// Returns the name of the student to whom a folder belongs. Removes the prefix `assignment-` that
-/// GitHub Classroom adds, where `slug` is the assignment's name, and the extension `.zip`.
+/// Returns a student's name from the name of the student's folder. Removes GitHub Classroom's
+/// prefix (the assignment's name `slug` and a hyphen) and the extension `.zip`.
 pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
     let own = slug.and_then(|slug| folder.strip_prefix(slug)?.strip_prefix('-'));
     let own = own.filter(|own| !own.is_empty()).unwrap_or(folder);
     own.strip_suffix(".zip").unwrap_or(own).to_owned()
 }
 
-/// Names of the students in an export of Gradescope, by folder.
+/// Names of the students to whom the folders of a Gradescope export belong, by folder.
 #[derive(Debug, Default)]
 pub struct Submitters(BTreeMap<String, Vec<String>>);
 
 impl Submitters {
-    /// Returns the names of the students to whom a folder belongs, separated by commas; `None` if
-    /// the folder is unknown.
+    /// Returns the names of a folder's students, separated by commas. Returns `None` if the folder
+    /// is not in the export.
     pub fn name(&self, folder: &str) -> Option<String> {
         let names = self.0.get(folder)?;
         Some(match &names[..] {
@@ -60,14 +61,15 @@ impl Submitters {
         })
     }
 
-    /// Returns all folders with their students' names.
+    /// Returns all folders of the export, each with the names of its students.
     pub fn all(&self) -> impl Iterator<Item = (&str, String)> {
         let named = |folder: &'_ String| self.name(folder).unwrap_or_default();
         self.0.keys().map(move |folder| (&**folder, named(folder)))
     }
 }
 
-/// Reads `submission_metadata.yml`. Only the subset of YAML that Ruby writes there is supported.
+/// Reads Gradescope's file `submission_metadata.yml`. Only the part of YAML that Gradescope writes
+/// is supported.
 ///
 /// ```yaml
 /// submission_409194023:
@@ -116,7 +118,8 @@ pub fn submitters(text: &str) -> Submitters {
     Submitters(named.collect())
 }
 
-/// A student's name, e-mail address and student number. A missing one is empty.
+/// A student's name, e-mail address and student number. Values that Gradescope does not give are
+/// empty.
 #[derive(Debug, Default)]
 struct Submitter([String; 3]);
 
@@ -133,7 +136,7 @@ impl Submitter {
     }
 }
 
-/// Returns the value of a YAML scalar, without its quotation marks.
+/// Returns the text of a YAML scalar (a plain or quoted value), without quotation marks.
 fn scalar(text: &str) -> String {
     let inner = |mark: char| text.strip_prefix(mark)?.strip_suffix(mark);
     if let Some(inner) = inner('\'') {
@@ -145,9 +148,9 @@ fn scalar(text: &str) -> String {
     }
 }
 
-/// Decodes a double-quoted text with the escapes of YAML 1.2.2 (5.7); returns `None` if it has an
-/// invalid one. Ruby's library escapes what it considers not printable, such as all characters
-/// above U+FFFF.
+/// Decodes the escapes in a double-quoted YAML text (YAML 1.2.2, section 5.7). Returns `None` if an
+/// escape is invalid. Gradescope's files contain escapes for all characters above U+FFFF, for
+/// example.
 fn unescaped(text: &str) -> Option<String> {
     let mut chars = text.chars();
     let mut plain = String::new();
@@ -160,7 +163,7 @@ fn unescaped(text: &str) -> Option<String> {
             'x' => 2,
             'u' => 4,
             'U' => 8,
-            // Control characters of a name become spaces.
+            // Escapes of control characters become spaces, since a name is shown on one line.
             '0' | 'a' | 'b' | 't' | '\t' | 'n' | 'v' | 'f' | 'r' | 'e' | 'N' | '_' | 'L' | 'P' => {
                 plain.push(' ');
                 continue;

@@ -1,5 +1,5 @@
-//! Writes the results of a class as an HTML page. Thumbnails are embedded in the page, and the full
-//! pictures are files beside it.
+//! Writes the results of a class as an HTML page. Small pictures are embedded in the page, and the
+//! full ones are files beside it.
 
 use std::collections::BTreeMap;
 
@@ -15,15 +15,16 @@ use crate::{
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// Path of the exact picture of the whole scene, relative to the page.
+/// Path of the scene's exact picture, relative to the HTML page.
 pub const EXACT: &str = "pictures/exact.png";
 
-/// Returns the paths of a student's picture, of its heat map, and of the exact picture of its part.
+/// Returns the paths of three pictures of the student with this index: the submitted one, the heat
+/// map of its differences, and the exact picture of the same part of the scene.
 pub fn names(index: usize) -> [String; 3] {
     ["", "-difference", "-exact"].map(|what| format!("pictures/{}{what}.png", index + 1))
 }
 
-/// Returns the page of a class as HTML. `total` is the number of points for a right picture.
+/// Returns the HTML page about a class. `total` is the number of points for a right picture.
 pub fn page(scene: &str, graded: &[GradedStudent], total: Option<f64>) -> String {
     let scene = escaped(scene);
     let mut html = format!(
@@ -46,7 +47,7 @@ pub fn page(scene: &str, graded: &[GradedStudent], total: Option<f64>) -> String
         + "</script>\n</body>\n</html>\n"
 }
 
-/// Returns the number of students with each verdict, as HTML.
+/// Returns a summary, as HTML, that counts the students with each verdict.
 fn summary(graded: &[GradedStudent]) -> String {
     let kinds = [
         ("right", "right"),
@@ -70,7 +71,8 @@ fn students(count: usize) -> String {
     }
 }
 
-/// Lists how many students made each mistake, as HTML, the most frequent mistake first.
+/// Returns a list of the mistakes, as HTML, with the number of students who made each one. The most
+/// frequent mistake comes first.
 fn mistakes(graded: &[GradedStudent]) -> String {
     let mut by_id = BTreeMap::<String, Vec<usize>>::new();
     for (index, one) in graded.iter().enumerate() {
@@ -110,7 +112,7 @@ fn mistakes(graded: &[GradedStudent]) -> String {
     format!("<h2>Mistakes</h2>\n<ul class=\"mistakes\">\n{lines}</ul>\n")
 }
 
-/// Lists the groups of students with equal pictures, as HTML.
+/// Returns sentences, as HTML, that name the students whose pictures are equal.
 fn equal(graded: &[GradedStudent]) -> String {
     let is_first = |(index, one): &(usize, &GradedStudent)| {
         let mut before = graded[..*index].iter();
@@ -134,7 +136,7 @@ fn headings(total: Option<f64>) -> String {
         format!("<th scope=\"col\" aria-sort=\"none\"><button type=\"button\">{name}</button></th>")
     };
     let all: Vec<String> = sorted.map(heading).collect();
-    // In the page, the column of pictures follows that of the students.
+    // On the page, the column of pictures comes right after the column of students.
     format!(
         "{}<th scope=\"col\">picture</th>{}",
         all[0],
@@ -195,7 +197,7 @@ fn verdict(one: &GradedStudent) -> String {
         .best()
         .is_ok_and(|judged| !judged.verdict.mistakes.is_empty());
     let line = if is_explained {
-        // The page lists the mistakes with their help below, so the line does not name them.
+        // The mistakes are listed below this line on the page, so the line leaves them out.
         format!("{}{}", one.word(), one.note())
     } else {
         one.line()
@@ -270,7 +272,7 @@ fn findings(before: &str, all: &[NamedMistake]) -> String {
     format!("<ul>{}</ul>", all.iter().map(item).collect::<String>())
 }
 
-/// Returns the objects that are not right, and the number of right ones, as HTML.
+/// Returns a sentence, as HTML, that names the wrong objects and counts the right ones.
 fn objects(judged: &JudgedPicture) -> String {
     let all = judged.verdict.objects.iter();
     let right = all.clone().filter(|one| one.is_right).count();

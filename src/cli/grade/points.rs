@@ -1,4 +1,4 @@
-//! Points for pictures: the total for a right picture, and the deduction for each mistake.
+//! Points for pictures: a right picture gets the total, and each mistake subtracts points.
 
 use std::{collections::BTreeMap, path::Path};
 
@@ -12,33 +12,33 @@ use crate::{
     scene::Scene,
 };
 
-/// Maximum length of the file of a point scheme, in bytes. A longer file is an error.
+/// Maximum length of the file in `--points`, in bytes. A longer file is an error. A scheme of
+/// points is a short text, so the limit only keeps a wrong file from filling the memory.
 const LIMIT: u64 = 1 << 20;
 
-/// Key in a scheme's `mistakes` whose deduction holds for every mistake that `mistakes` does not
-/// name.
+/// Key in the JSON object `mistakes` that stands for all mistakes that are not named there.
 const OTHERS: &str = "*";
 
-/// A scheme of points: the total for a right picture, and deductions for mistakes.
+/// A scheme of points, read from the file in `--points`.
 #[derive(Debug)]
 pub struct PointScheme {
     /// Points for a right picture.
     pub total: f64,
-    /// Deduction for an object with mistakes, once per object, however many mistakes it has.
-    /// Mistakes whose ids are in `mistakes` are deducted separately instead.
+    /// Points that a wrong object costs. They are subtracted once per object, however many mistakes
+    /// it has. Mistakes that are named in `mistakes` are subtracted separately instead.
     pub object: Option<f64>,
-    /// Deduction for each mistake, by the mistake's id. The key [`OTHERS`] stands for all other
+    /// Points that each mistake costs, by the mistake's id. The key [`OTHERS`] stands for all other
     /// ids.
     mistakes: BTreeMap<String, f64>,
 }
 
 impl PointScheme {
-    /// Reads a scheme from a JSON file such as `{"total": 20, "object": 2, "mistakes":
+    /// Reads a scheme of points from a JSON file such as `{"total": 20, "object": 2, "mistakes":
     /// {"roll_sign": 3, "*": 2}}`.
     ///
     /// # Errors
     ///
-    /// The file is in another format, or names an unknown mistake.
+    /// The file has another form, or names an unknown mistake.
     pub fn read(path: &Path) -> Result<Self, Trouble> {
         let bytes = files::read(path, LIMIT).map_err(|error| unreadable(path, &error))?;
         let value: Value =
@@ -105,7 +105,7 @@ impl PointScheme {
         }
     }
 
-    /// Returns the deduction for each mistake, in the order of the mistakes.
+    /// Returns the points that each mistake of a picture costs, in the order of the mistakes.
     pub fn taken_off(&self, judged: &JudgedPicture, scene: &Scene) -> Vec<f64> {
         let mut objects = Vec::new();
         let mistakes = &judged.verdict.mistakes;

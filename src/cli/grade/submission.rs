@@ -1,4 +1,4 @@
-//! Submissions: students and their files.
+//! Submissions of students: their files, and the choice of the picture to grade.
 
 use std::{path::PathBuf, sync::Arc};
 
@@ -13,60 +13,63 @@ use crate::cli::{
 };
 
 /// Maximum difference, in seconds, between modification times that count as equal. Zip files store
-/// only even seconds, and checking out a repository takes a while.
+/// times in units of two seconds, so equal times may differ by that much.
 const SAME_TIME: i64 = 2;
 
-/// Maximum number of a student's pictures that are compared if several have the newest time. The
-/// others are listed as not compared.
+/// Maximum number of a student's pictures that are compared if several are equally new. The others
+/// are listed as not compared. Chosen so that one student with very many pictures does not delay
+/// the grading of a class.
 const MOST_PICTURES: usize = 12;
 
 /// A student's submission.
 #[derive(Debug)]
 pub struct Student {
-    /// Name of the student in the submission system, or else the name of the folder or file.
+    /// The student's name in the submission system. If it is unknown, the name of the folder or
+    /// file.
     pub name: String,
     /// Number that Moodle gives the submission; `None` if Moodle did not collect it.
     pub number: Option<String>,
-    /// Path of the student's folder or file, for output.
+    /// Path of the student's folder or file, as it is printed.
     pub place: String,
     pub files: Vec<SubmittedFile>,
-    /// Whether the submission is a clone of a repository, in which the files' times have no
-    /// meaning.
+    /// Whether the submission is a clone of a Git repository. The times of its files are those of
+    /// cloning, so they do not show which file is newest.
     pub is_clone: bool,
 }
 
 /// A submitted file.
 #[derive(Debug)]
 pub struct SubmittedFile {
-    /// Path of the file within the student's submission, with `/` between folders.
+    /// Path of the file inside the student's submission, with `/` between folders.
     pub path: String,
-    /// Path of the file, starting with the argument on the command line, for output.
+    /// Path of the file as it is printed. It starts with the argument on the command line.
     pub shown: String,
     /// Modification time in seconds since 1970, if known.
     pub time: Option<i64>,
-    /// Length according to the folder or the zip file, in bytes.
+    /// Length of the file in bytes, as the file system or the zip file gives it.
     pub length: u64,
-    /// The CRC-32 of the file, if it is in a zip file.
+    /// CRC-32 checksum of the file, if it is in a zip file.
     pub sum: Option<u32>,
     pub content: ContentSource,
-    /// Whether the file itself is on the command line. It is then a picture, whatever its name is.
+    /// Whether the user named the file on the command line. Such a file is a picture, whatever its
+    /// name is.
     pub is_named: bool,
 }
 
 /// Source of a file's bytes.
 #[derive(Debug)]
 pub enum ContentSource {
-    /// A file on disk, or standard input, `-` or `/dev/stdin`, which can be read only once.
+    /// A file on disk, or standard input (`-` or `/dev/stdin`), which can be read only once.
     File(PathBuf),
-    /// An entry of a zip file, by its index.
+    /// An entry of a zip file, by its index there.
     Entry(Arc<Archive>, usize),
-    /// A file that is not read, with the reason.
+    /// A file that is not read, for example a link, with the reason.
     Refused(String),
 }
 
 impl SubmittedFile {
-    /// Reads the file, which should be a picture. If the file is on disk and its first bytes show
-    /// that it is no picture, only these are read.
+    /// Reads a file that should be a picture. A file on disk that does not begin as a picture does
+    /// is not read completely.
     ///
     /// # Errors
     ///
@@ -84,9 +87,9 @@ impl SubmittedFile {
         }
     }
 
-    /// Returns whether the file may be a picture. A file on the command line always may. Otherwise,
-    /// its name must match `chosen`, the pattern of `--picture`, or have the extension of a picture
-    /// if there is no pattern.
+    /// Returns whether the file may be a picture. This is always so for a file on the command line.
+    /// The name of any other file must match `chosen`, the pattern in `--picture`; without a
+    /// pattern, it must have the extension of a picture.
     pub fn is_picture(&self, chosen: Option<&Glob>) -> bool {
         let is_read = !matches!(self.content, ContentSource::Refused(_));
         self.is_named
@@ -98,17 +101,17 @@ impl SubmittedFile {
     }
 }
 
-/// The files of a student: those that are compared as pictures, and the others.
+/// A student's files, divided into pictures to compare and other files.
 #[derive(Debug, Default)]
 pub struct PictureChoice<'s> {
     pub pictures: Vec<&'s SubmittedFile>,
-    /// Names of the other files, some with the reason why the file is not compared.
+    /// Names of the other files. Some have the reason in parentheses why they are not compared.
     pub others: Vec<String>,
 }
 
 impl Student {
-    /// Returns the newest picture, or several pictures if their times do not show which is the
-    /// newest.
+    /// Returns the student's newest picture. Returns several pictures if they are equally new, or
+    /// if their times have no meaning.
     pub fn choice(&self, chosen: Option<&Glob>) -> PictureChoice<'_> {
         let is_picture = |file: &&SubmittedFile| file.is_picture(chosen);
         let (mut pictures, others): (Vec<_>, Vec<_>) = self.files.iter().partition(is_picture);

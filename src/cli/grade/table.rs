@@ -1,12 +1,12 @@
-//! Writes the results of a class as a table, in readable form and as CSV.
+//! Writes the results of a class as a table: as readable text and as CSV.
 
 use std::iter;
 
 use super::graded::{GradedStudent, percent};
 use crate::{cli::judge::quoted, diagnostic::visible_line, grading::NamedMistake, numbers::short};
 
-/// Returns the RMSE and the samples per pixel as cells of a table. Both are empty if no picture was
-/// judged.
+/// Returns two cells of a student's row: the root mean square error (RMSE) and the number of
+/// samples per pixel. Both are empty if no picture was judged.
 pub fn figures(one: &GradedStudent) -> [String; 2] {
     match one.best() {
         Err(_) => [String::new(), String::new()],
@@ -72,7 +72,8 @@ pub fn table(graded: &[GradedStudent]) -> String {
 
 /// Joins at most six items of a list, and adds how many more there are.
 pub fn some(list: &[String]) -> String {
-    /// Maximum number of items of the list that are named; the others are counted.
+    /// Maximum number of items that are named; the others are counted. Chosen so that the list
+    /// takes one or two lines.
     const MOST: usize = 6;
     let first: Vec<&str> = list.iter().take(MOST).map(String::as_str).collect();
     match list.len().saturating_sub(MOST) {
@@ -145,8 +146,8 @@ pub fn csv(graded: &[GradedStudent]) -> String {
 
 const HEAD: &str = "file,verdict,rmse,samples_per_pixel,line,set,student,number,mistakes,explains,help,guesses,rest,limited,not_compared,equal_to,score\n";
 
-/// Quotes a text as a cell of a CSV file. A text that a spreadsheet would take for a formula gets a
-/// `'` in front, so that it remains a text there.
+/// Quotes a text as a cell of a CSV file. If a spreadsheet would take the text for a formula, a `'`
+/// is put in front.
 fn text_cell(text: &str) -> String {
     let guard = if text.starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠', '\t', '\r', '\n'])
     {

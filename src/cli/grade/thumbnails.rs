@@ -1,26 +1,29 @@
-//! The pictures of a student for the HTML page: embedded thumbnails, and full pictures beside the
-//! page.
+//! The pictures of a student on the HTML page: thumbnails, which are embedded in it, and full
+//! pictures, which are files beside it.
 
 use std::io;
 
 use crate::film::{self, Film, Tolerance};
 
-/// Maximum side of a thumbnail, in pixels. A larger picture is reduced.
+/// Maximum width and height of a thumbnail, in pixels. A larger picture is reduced. The page shows
+/// thumbnails 160 CSS pixels wide; twice as many are sharp on screens with two pixels per CSS
+/// pixel.
 const LONGEST: u32 = 320;
 
 /// The pictures of a student that the HTML page shows.
 pub struct Pictures {
-    /// Thumbnails of the picture and its heat map, as `data:` URIs.
+    /// Thumbnails of the student's picture and of the heat map of its differences, as `data:` URIs.
     pub thumbnails: [String; 2],
-    /// The picture and its heat map, as PNG files.
+    /// The student's picture and the heat map of its differences, as PNG files.
     pub whole: [Vec<u8>; 2],
     /// The exact picture of the part of the scene that the student's picture shows, as a PNG file.
-    /// `None` if that part is the whole scene.
+    /// `None` if the picture shows the whole scene.
     pub exact: Option<Vec<u8>>,
 }
 
 impl Pictures {
-    /// Makes the pictures from a student's film and the exact film of the same part of the scene.
+    /// Makes the pictures. `film` is the student's picture, and `exact` the exact picture of the
+    /// same part of the scene.
     pub fn new(
         film: &Film,
         exact: &Film,
@@ -36,7 +39,7 @@ impl Pictures {
     }
 }
 
-/// Encodes a picture as a `data:` URI. A large picture is first reduced to the means of blocks of
+/// Encodes a picture as a `data:` URI. A large picture is reduced first, by averaging blocks of
 /// pixels.
 fn data(film: &Film) -> io::Result<String> {
     let small = film::reduced(film, [LONGEST; 2]).map_err(io::Error::other)?;

@@ -1,5 +1,6 @@
-//! Lists the files in a folder or zip file, with the names of the folders around them. Links are
-//! not followed, and files that operating systems create are skipped.
+//! Lists the files in a folder or zip file, with the names of the folders that contain them. Links
+//! are not followed. Hidden files and files such as `Thumbs.db`, which operating systems create,
+//! are skipped.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -18,39 +19,41 @@ use super::{
 };
 use crate::cli::input::is_same_file;
 
-/// Name of the file that Gradescope writes beside the folders of an export.
+/// Name of the file in which a Gradescope export lists the students of each folder.
 pub const METADATA: &str = "submission_metadata.yml";
 
-/// Maximum number of files in a folder or zip file on the command line. A folder or zip file with
-/// more is an error.
+/// Maximum number of files in a folder or zip file on the command line. With more, listing fails.
+/// The limit bounds time and memory if the user names a wrong folder. A class has far fewer files.
 const MOST_FILES: usize = 200_000;
 
-/// Maximum depth of nested folders that are listed. A deeper folder is listed with an error instead
-/// of its content.
+/// Maximum depth of nested folders that are listed. A deeper folder is listed as an error. The
+/// limit bounds the recursion, which could otherwise exhaust the stack. Submissions are nested far
+/// less deeply.
 const DEEPEST: usize = 40;
 
-/// Maximum depth at which folders are recorded, empty ones included. Depth 1 may be classes and
-/// depth 2 their students.
+/// Maximum depth of folders that are recorded by name. At most two levels are needed: folders of
+/// classes, and the students' folders in them.
 const NAMED: usize = 2;
 
-/// A file, with the names of its folders and its own name in order.
+/// A file, with its path as a list: the names of the folders that contain it, then its own name.
 pub type FoundFile = (Vec<String>, SubmittedFile);
 
 /// The files in a folder and its subfolders, or in a zip file.
 #[derive(Debug, Default)]
 pub struct FileTree {
-    /// The argument on the command line, with a `/` at its end.
+    /// The folder or zip file on the command line, with a `/` at its end.
     pub place: String,
     pub found: Vec<FoundFile>,
-    /// The folders, including empty ones, down to depth [`NAMED`]. Each is a list of names, from
-    /// the argument's subfolder on.
+    /// The folders, including empty ones, down to depth [`NAMED`]. Each is a path as a list of
+    /// names, relative to `place`.
     pub folders: BTreeSet<Vec<String>>,
-    /// The folders that are repositories, as lists of names like those in `folders`.
+    /// The folders that are Git repositories. Each is a path as a list of names, relative to
+    /// `place`.
     pub clones: BTreeSet<Vec<String>>,
 }
 
 impl FileTree {
-    /// Lists a folder, except the teacher's own files and folders, `own`.
+    /// Lists a folder. The teacher's own files and folders, `own`, are left out.
     ///
     /// # Errors
     ///
@@ -61,12 +64,12 @@ impl FileTree {
         Ok(tree)
     }
 
-    /// Lists the entries of a folder whose names are in `names`, except the teacher's own files,
-    /// `own`.
+    /// Lists those entries of a folder that are in `names`. The teacher's own files, `own`, are
+    /// left out.
     ///
     /// # Errors
     ///
-    /// As [`Self::of_folder`].
+    /// The folder cannot be read, or has too many files.
     pub fn of_some(path: &Path, names: &BTreeSet<&OsStr>, own: &[&Path]) -> io::Result<Self> {
         let mut tree = Self::at(path);
         let entries = fs::read_dir(or_here(path))?.collect::<io::Result<Vec<_>>>()?;
@@ -75,8 +78,8 @@ impl FileTree {
         Ok(tree)
     }
 
-    /// Lists a zip file. If all entries are in a single folder that looks like a class, lists that
-    /// folder's content.
+    /// Lists a zip file. If everything in it is in one folder that seems to be a class's, lists the
+    /// content of this folder.
     ///
     /// # Errors
     ///
@@ -101,7 +104,8 @@ impl FileTree {
         }
     }
 
-    /// Lists a subfolder. `before` contains the names of the folders from the argument down to it.
+    /// Lists a subfolder. `before` is its path as a list of names, relative to the folder on the
+    /// command line.
     fn walk(&mut self, folder: &Path, before: &[String], own: &[&Path]) -> io::Result<()> {
         let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
         self.walk_entries(entries, before, own)
@@ -134,8 +138,8 @@ impl FileTree {
                 } else {
                     Err(io::Error::other("folders are nested too deeply"))
                 };
-                // The argument itself must be readable. A subfolder that cannot be read is listed
-                // as a file with the error.
+                // A subfolder that cannot be read is listed as a file with the error, so that its
+                // student is not left out.
                 if let Err(error) = inner {
                     self.push(names, ContentSource::Refused(error.to_string()), None, 0)?;
                 }
@@ -184,29 +188,30 @@ impl FileTree {
         Ok(())
     }
 
-    /// Records a folder and the folders around it, up to depth [`NAMED`].
+    /// Records a folder and the folders that contain it, down to depth [`NAMED`].
     fn add_folder(&mut self, names: &[String]) {
         for depth in 1..=names.len().min(NAMED) {
             self.folders.insert(names[..depth].to_vec());
         }
     }
 
-    /// Records that a folder is a repository. A folder deeper than [`NAMED`] is recorded as the
-    /// folder around it at that depth.
+    /// Records that a folder is a Git repository. If it is deeper than [`NAMED`], its ancestor at
+    /// this depth is recorded instead.
     fn add_clone(&mut self, names: &[String]) {
         if !names.is_empty() {
             self.clones.insert(names[..names.len().min(NAMED)].to_vec());
         }
     }
 
-    /// Adds the entries of a zip file that lies in the folders `before`.
+    /// Adds the entries of a zip file. `before` is the path of the zip file as a list of names.
     fn unpack(&mut self, path: &Path, before: &[String]) -> Result<(), String> {
         let (archive, entries) = Archive::open(path)?;
         let archive = Arc::new(archive);
-        // The zip file is recorded as a folder, so that its student is listed even if it is empty.
+        // The zip file counts as a folder, so that its student is listed even if it contains no
+        // files.
         self.add_folder(before);
         for entry in entries {
-            // Names of entries are never used as paths, so `..` can be dropped.
+            // The names are never used as paths, so `..` can simply be dropped.
             let parts = entry.name.split('/').map(str::to_owned);
             let parts: Vec<_> = parts
                 .filter(|part| !matches!(&**part, "" | "." | ".."))
@@ -216,7 +221,7 @@ impl FileTree {
             if let Some(at) = junk.filter(|&at| parts[at] == ".git") {
                 self.add_clone(&names[..before.len() + at]);
             }
-            // A folder is recorded even if it contains only skipped files.
+            // A student's folder is recorded even if all files in it are skipped.
             let folders = match (junk, entry.is_folder) {
                 (Some(at), _) => before.len() + at,
                 (None, true) => names.len(),
@@ -241,8 +246,8 @@ impl FileTree {
         Ok(())
     }
 
-    /// Returns the name of the single folder around all entries of a zip file. Returns `None` if
-    /// there is no such folder or its content does not look like a class.
+    /// Returns the name of the only folder at the top of a zip file. Returns `None` if there are
+    /// several, or if the folder does not seem to contain a class.
     fn only_folder(&self) -> Option<String> {
         let files = self.found.iter().map(|(names, _)| &names[..]);
         let all: Vec<_> = files
@@ -258,16 +263,17 @@ impl FileTree {
         (is_alone && inner.len() > 1 && is_in_folders && !is_somebodys).then(|| root.clone())
     }
 
-    /// Removes each folder that contains a whole class, and returns the folders with their names.
-    /// Such a folder contains Gradescope's metadata or Moodle's names, or has the suffix of GitHub
-    /// Classroom.
+    /// Removes the folders that contain whole classes from the tree, and returns them with their
+    /// names. A folder contains a class if Gradescope's metadata file is in it, if all names in it
+    /// are in Moodle's form, or if it contains Git repositories and its name ends in
+    /// `-submissions`, as GitHub Classroom makes it.
     pub fn take_classes(&mut self) -> Vec<(String, Self)> {
         let files = self.found.iter().map(|(names, _)| names);
         let mut inner = BTreeMap::<&str, Vec<&str>>::new();
         for names in files.chain(&self.folders) {
             match &names[..] {
-                // The metadata lies beside the folders of the argument itself, which is therefore
-                // the class.
+                // If the metadata file is at the top, the tree itself is the class, so no subfolder
+                // is one.
                 [name] if name == METADATA => return Vec::new(),
                 [root, name, ..] => inner.entry(root).or_default().push(name),
                 _ => {}
@@ -289,7 +295,8 @@ impl FileTree {
         roots.into_iter().map(take).collect()
     }
 
-    /// Removes what is below the folder `root` from this tree, and returns it as a tree.
+    /// Removes the files and folders below the folder `root` from the tree, and returns them as a
+    /// tree of their own.
     fn taken(&mut self, root: &str) -> Self {
         let found = self.found.extract_if(.., |(names, _)| names[0] == root);
         let found = found.map(|(names, file)| (names[1..].to_vec(), file));
@@ -311,7 +318,7 @@ impl FileTree {
     }
 }
 
-/// Returns the path, or `.` if the path is empty.
+/// Returns the path, or `.` (the current folder) if the path is empty.
 pub fn or_here(path: &Path) -> &Path {
     if path.as_os_str().is_empty() {
         Path::new(".")
@@ -326,7 +333,8 @@ pub fn is_zip(path: &Path) -> bool {
     ending.is_some_and(|ending| ending.eq_ignore_ascii_case("zip")) && path.is_file()
 }
 
-/// Returns whether a name is hidden, or is that of a file that operating systems create.
+/// Returns whether a name is hidden, i.e. begins with a dot, or is that of a file that operating
+/// systems create.
 fn is_passed_over(name: &str) -> bool {
     const NAMES: [&str; 3] = ["__MACOSX", "Thumbs.db", "desktop.ini"];
     name.starts_with('.') || NAMES.iter().any(|own| name.eq_ignore_ascii_case(own))

@@ -6,19 +6,21 @@ use crate::{numbers::significant, syntax::tree::Unit};
 /// Range of a slider that a comment gives for a value, in the unit of that value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CommentRange {
-    /// The lower and the upper end.
+    /// The lower and the upper end, in the unit of the value.
     pub ends: [f64; 2],
-    /// The step, > 0.
+    /// Distance between neighbouring values of the slider, > 0; `None` if the comment gives no
+    /// step.
     pub step: Option<f64>,
-    /// Whether the step or an end was converted from another unit. It then has more digits than a
-    /// slider should show.
+    /// Whether a number of the range was converted between degrees and radians. A converted number
+    /// has more digits than a slider should show.
     is_converted: bool,
 }
 
 impl CommentRange {
-    /// Returns the step and the ends of the slider. If the range has no step, uses `default_step`.
-    /// If a number of the range was converted from another unit, rounds the step to two digits, and
-    /// the ends inwards to as many decimals as the step has.
+    /// Returns the step and the ends of the slider. If the comment gives no step, uses
+    /// `default_step`. If a number of the range was converted between degrees and radians, rounds
+    /// the step to two significant digits, and moves the ends inwards to numbers with as many
+    /// decimals as the step.
     pub fn rounded(self, default_step: f64) -> (f64, [f64; 2]) {
         let step = self.step.unwrap_or(default_step);
         if !self.is_converted {
@@ -29,9 +31,9 @@ impl CommentRange {
     }
 }
 
-/// Returns the text in the brackets of a comment that directly follows a value. `behind` is the
-/// text after the value. Returns `None` if no part between colons starts like a number, since the
-/// comment is then an ordinary one.
+/// Returns the range in the comment of a slider, such as `1:5` in `// [1:5]`. `behind` is the text
+/// after the value. Returns `None` if no comment with brackets follows the value directly, or if
+/// the brackets contain no colon or no number.
 pub fn range_behind(behind: &str) -> Option<&str> {
     let comment = behind.trim_start().strip_prefix("//")?.trim_start();
     let (range, _) = comment.strip_prefix('[')?.split_once(']')?;
@@ -42,8 +44,9 @@ pub fn range_behind(behind: &str) -> Option<&str> {
     (range.contains(':') && range.split(':').any(is_number)).then_some(range)
 }
 
-/// Parses a range. Its numbers are converted to `unit`, the unit of the value, and its ends may
-/// come in either order.
+/// Parses the range of a slider, such as `1:5` or `1:0.1:5`: an end, a step if there are three
+/// numbers, and the other end. Either end may come first. The numbers are converted to `unit`, the
+/// unit of the slider's value.
 ///
 /// # Errors
 ///
@@ -75,8 +78,8 @@ pub fn parse(range: &str, unit: Option<Unit>) -> Result<CommentRange, String> {
     Err(mistake.to_owned())
 }
 
-/// Parses a number of a range, and converts it to `unit`, the unit of the value. A number without a
-/// unit is already in that unit. Returns the number, and whether it was converted.
+/// Parses a number of a range, and converts it to `unit`, the unit of the slider's value. A number
+/// without a unit of its own is taken as it is. Returns the number, and whether it was converted.
 fn in_unit(written: &str, unit: Option<Unit>) -> Result<(f64, bool), String> {
     let mut units = [Unit::Degrees, Unit::Radians].into_iter();
     let own = units.find(|unit| written.ends_with(unit.name()));

@@ -5,30 +5,32 @@ use crate::{
     syntax::tree::{Unit, Value, ValueKind},
 };
 
-/// Minimum exponent of the power of ten that is a slider's step. Smaller powers could underflow to
-/// 0.
+/// Minimum decimal exponent of a slider's step, and of a literal that a slider changes. The maximum
+/// is its negative, 300. Powers of ten within these limits are well within the range of `f64`, so
+/// that none becomes 0 or infinite.
 const LEAST_EXPONENT: i32 = -300;
 
-/// Maximum number of significant digits of a number that a slider changes. The step of the slider
-/// is one unit in the last of them, or more. An `f64` distinguishes all numbers with 15 digits.
+/// Maximum number of significant digits of a number that a slider changes. The slider's step is at
+/// least one unit in the last of these digits. An `f64` distinguishes all decimal numbers with 15
+/// digits; with more digits, a step could leave the number unchanged.
 const DIGITS: i32 = 15;
 
 /// A number literal with the sign directly before it.
 #[derive(Clone, Copy, Debug)]
 pub struct Literal {
-    /// The span of sign and digits, without a unit.
+    /// Span of the sign and the digits, without a unit.
     pub span: Span,
-    /// The value in its own unit.
+    /// The number as it is written: in degrees for `90deg`, in radians for `1rad`.
     pub value: f64,
-    /// Decimal exponent of the last digit: −2 for `1.25`, 0 for `12`.
+    /// Decimal exponent of the last written digit: −2 for `1.25`, 0 for `12`.
     pub last_digit: i32,
-    /// The unit, if it has one.
+    /// The written unit of an angle; `None` for a plain number.
     pub unit: Option<Unit>,
 }
 
 impl Literal {
-    /// Returns the literal that a value consists of, perhaps in parentheses; `None` for any other
-    /// value.
+    /// Returns the number literal that a value consists of, with or without parentheses around it.
+    /// Returns `None` for any other value.
     pub fn of(value: &Value<'_>) -> Option<Self> {
         let (written, unit) = match &value.kind {
             ValueKind::Number(written) => (written, None),
@@ -51,8 +53,8 @@ impl Literal {
         })
     }
 
-    /// Returns the literal with the minus at `sign`. Returns `None` unless the minus directly
-    /// precedes the digits.
+    /// Returns the literal together with the minus sign at `sign`. Returns `None` if text stands
+    /// between the minus sign and the digits, or if the literal is negative already.
     fn negative(self, sign: Span) -> Option<Self> {
         (sign.end == self.span.start && self.value.is_sign_positive()).then_some(Self {
             span: sign.to(self.span),
@@ -61,14 +63,14 @@ impl Literal {
         })
     }
 
-    /// Returns whether the literal is written as a whole number without a unit.
+    /// Returns whether the literal is a whole number, is written without decimals, and has no unit.
     pub fn is_whole(&self) -> bool {
         self.unit.is_none() && self.value.fract() == 0.0 && self.last_digit >= 0
     }
 
-    /// Returns the step of the literal's slider, a power of ten: a hundredth to a tenth of the
-    /// number, but at least 0.01, so that zero can be reached. If the number has decimals, the step
-    /// is at most one unit in its last decimal.
+    /// Returns the step of the literal's slider, which is a power of ten: a hundredth to a tenth of
+    /// the number, but at least 0.01, so that the slider can reach zero. If the number has
+    /// decimals, the step is at most one unit in its last decimal.
     pub fn step(&self) -> f64 {
         let size = match self.value.abs() {
             0.0 => 0,
@@ -96,15 +98,15 @@ fn power_of_ten(exponent: i32) -> f64 {
     written.parse().unwrap_or(1.0)
 }
 
-/// Returns the number of decimals of a number's shortest decimal form, at most 100.
+/// Returns the number of decimals in the shortest decimal form of `x`, limited to 100.
 pub fn decimals(x: f64) -> usize {
     let written = x.to_string();
     let decimals = written.split_once('.').map_or(0, |(_, it)| it.len());
     decimals.min(100)
 }
 
-/// Returns the largest range within `[least, most]` whose ends have at most as many decimals as
-/// `step`.
+/// Shrinks the range `[least, most]` until its ends have no more decimals than `step`. An end with
+/// few enough decimals is not changed.
 pub fn inward([least, most]: [f64; 2], step: f64) -> [f64; 2] {
     let decimals_of_step = decimals(step);
     let scale = power_of_ten(decimals_of_step as i32);

@@ -1,8 +1,9 @@
 //! Computes the limits of a slider for a number in the text.
 //!
-//! If the definition has a comment with a range, that range is used. Otherwise, the slider extends
-//! some steps to both sides of the number, within the conditions of the fields that use it. Trial
-//! analyses of the changed text find out how far the number can go without new errors.
+//! If a comment after the definition gives a range, that range is used. Otherwise, the slider
+//! extends some steps to both sides of the number, within the conditions of the fields that use it.
+//! The text is also analyzed with other numbers in it, which shows how far the number can go
+//! without new errors.
 
 mod comment;
 mod literal;
@@ -20,46 +21,50 @@ use crate::{
     syntax::tree::{Definition, Unit, Value, ValueKind},
 };
 
-/// Minimum number of steps from a number to each end of its slider. An end is nearer only if the
-/// numbers beyond it are not valid.
+/// Minimum distance from a number to each end of its slider, in steps of the slider. An end is
+/// nearer only if the numbers beyond it are not valid. With far fewer steps, the slider's range
+/// would be narrow. With far more, a slider on a small screen could not reach every step.
 const STEPS: f64 = 50.0;
 
-/// As [`STEPS`], for numbers that must be whole, such as counts. Their step is 1, so that fewer
-/// steps already span a wide range.
+/// Minimum distance from a whole number, such as a count, to each end of its slider, in steps of 1.
+/// An end is nearer only if the numbers beyond it are not valid. Sliders of other numbers extend
+/// over more steps ([`STEPS`]), but 10 more or fewer objects already change a picture much.
 const STEPS_OF_COUNT: f64 = 10.0;
 
-/// Limits of a number in the text, and its slider, in the unit in which the number is written.
+/// Limits of a number in the text, and the range and step of its slider. All are given in the unit
+/// in which the number is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Limits {
-    /// Minimum of the number for which the text has no more errors than now; `None` if it is
-    /// unknown.
+    /// Least value of the number with which the text has no more errors than now; `None` if that
+    /// value is not known.
     pub least: Option<f64>,
-    /// Maximum of the number for which the text has no more errors than now; `None` if it is
-    /// unknown.
+    /// Greatest value of the number with which the text has no more errors than now; `None` if that
+    /// value is not known.
     pub most: Option<f64>,
-    /// Step of the slider.
+    /// Distance between neighbouring values of the slider.
     pub step: f64,
-    /// Number of decimals with which the slider shows the number: enough for the number now, the
-    /// step and the ends.
+    /// Number of decimals that the slider shows. They suffice for the current number, the step and
+    /// both ends of the slider.
     pub decimals: usize,
     /// Lower and upper end of the slider.
     pub ends: [f64; 2],
 }
 
-/// The slider of a definition, or a note why the definition has none or why its comment is not used
-/// as written.
+/// The slider for the value of a definition. If the definition has no slider, or not the slider
+/// that its comment describes, a note says why.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Slider<'a> {
-    /// The definition's name.
+    /// Name of the definition.
     pub name: &'a str,
-    /// Span of the number without its unit. If the value is not a number, the span of the value.
+    /// Span of the number without its unit. If the value is not a number, the span of the whole
+    /// value.
     pub span: Span,
-    /// Limits of the slider; `None` if the value is not a number.
+    /// Limits of the slider; `None` if the value is not a number, so that there is no slider.
     pub limits: Option<Limits>,
-    /// Message for the author if the comment after the definition looks like a range but is none,
-    /// or if the slider has another range than the comment says.
+    /// Message for the author, if the comment after the definition looks like a range but is not
+    /// one, or if the slider's range differs from the range in the comment.
     pub note: Option<String>,
 }
 
@@ -80,8 +85,8 @@ pub fn limits(analysis: &Analysis<'_>, at: usize) -> Option<Limits> {
     Some(tried(&literal, bounds.unwrap_or(UNBOUNDED), &mut trials))
 }
 
-/// Returns the sliders of all definitions whose values are number or angle literals. Any other
-/// value with a range in a comment gets a note instead of a slider.
+/// Returns the sliders of all definitions whose values are number or angle literals. If another
+/// value has a comment with a range, returns a note for it instead of a slider.
 pub fn sliders<'a>(analysis: &'a Analysis<'_>) -> Vec<Slider<'a>> {
     let mut trials = Trials::new(analysis);
     let definitions = analysis.model.definitions();
@@ -122,8 +127,8 @@ fn slider<'a>(
 }
 
 /// Returns the limits of a number whose comment gives the range `range`. If the number must be
-/// whole, the step and the ends are rounded to whole numbers. If that changes the range, also
-/// returns a note for the author.
+/// whole, the step and the ends are rounded to whole numbers. If this rounding changes the range,
+/// also returns a note for the author.
 fn within(
     range: CommentRange,
     literal: &Literal,
@@ -142,15 +147,15 @@ fn within(
 }
 
 /// Returns the limits of a number whose comment gives no range. The slider extends to both sides by
-/// the number's absolute value, or by [`STEPS`] or [`STEPS_OF_COUNT`] steps if that is farther, but
-/// not beyond `bounds`. If the text would have more errors than now with the number at an end, that
-/// end is moved towards the number.
+/// the number's absolute value, or by [`STEPS`] or [`STEPS_OF_COUNT`] steps if those reach farther,
+/// but not beyond `bounds`. If the text would have more errors than now with the number at an end,
+/// that end is moved towards the current number.
 fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
     let is_count = trials.is_count(literal);
     if is_count {
         bounds.is_whole = true;
-        // A negative count may be valid in a formula such as a square, so trials would not exclude
-        // it.
+        // A negative count causes no error if a formula, for example, squares it. So analyses with
+        // other numbers in the text would not exclude negative counts.
         if literal.value >= 0.0 && bounds.least == f64::NEG_INFINITY {
             bounds.least = 0.0;
         }
@@ -167,7 +172,8 @@ fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> 
     let reach = middle.abs().max(steps * step);
     let ends = [middle - reach, middle + reach].map(|end| bounded(rounded(end, step)));
     let valid = ends.map(|end| trials.last_right(literal, end, step, is_count));
-    // If even the next numbers on both sides are not valid, the ends stay where they are.
+    // If already the first step in each direction causes an error, the errors say nothing about the
+    // ends, so the ends are not moved.
     let valid = if valid == [None, None] {
         ends
     } else {
@@ -196,19 +202,19 @@ impl Limits {
     }
 }
 
-/// Range of a number that the schema's conditions ([`Condition`]) on its fields allow, in the unit
-/// in which the number is written: degrees or radians for an angle.
+/// Range of a number that the conditions ([`Condition`]) on its fields in the schema allow. Like
+/// the number itself, the range of an angle is in degrees or in radians.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: f64,
     most: f64,
-    /// Whether the two ends of the range are excluded from it.
+    /// Whether both ends are excluded from the range.
     is_open: bool,
     /// Whether only whole numbers are allowed.
     is_whole: bool,
 }
 
-/// Bounds of a number on which no condition is known.
+/// Bounds of a number that is subject to no known condition.
 const UNBOUNDED: Bounds = Bounds {
     least: f64::NEG_INFINITY,
     most: f64::INFINITY,
@@ -217,8 +223,8 @@ const UNBOUNDED: Bounds = Bounds {
 };
 
 impl Bounds {
-    /// Returns the bounds that the conditions on a field impose on a number in its value, which is
-    /// written in the unit `unit`.
+    /// Returns the bounds of a number in a field's value that follow from the conditions on the
+    /// field. `unit` is the unit in which the number is written.
     fn of_field(field: &FieldRow, unit: Option<Unit>) -> Self {
         let two_to = |power: u32| (1_u64 << power) as f64;
         let mut bounds = UNBOUNDED;
@@ -228,8 +234,8 @@ impl Bounds {
                 Condition::AtLeast(bound) => bounds.least = bound,
                 Condition::MoreThan(bound) => (bounds.least, bounds.is_open) = (bound, true),
                 Condition::AtMostTwoTo(power) => bounds.most = two_to(power),
-                // Only fields for whole numbers have this condition, so the greatest number is
-                // 2^power − 1.
+                // Only fields for whole numbers have this condition, so the greatest valid number
+                // is 2^power − 1.
                 Condition::LessThanTwoTo(power) => bounds.most = two_to(power) - 1.0,
                 Condition::EachMoreThanZero => (bounds.least, bounds.is_open) = (0.0, true),
                 Condition::LessThanHalfTurn => {
@@ -247,8 +253,8 @@ impl Bounds {
         bounds
     }
 
-    /// Returns the bounds of the number that is defined as `name`: the intersection of those that
-    /// are imposed by the fields whose value is this name alone.
+    /// Returns the bounds of the number that is defined as `name`. They are the intersection of the
+    /// bounds of all fields whose value is exactly this name.
     fn of_name(analysis: &Analysis<'_>, name: &str, unit: Option<Unit>) -> Self {
         let is_name = |value: &Value<'_>| matches!(value.kind, ValueKind::Name(it) if it == name);
         let fields = analysis.blocks().flat_map(|block| {
@@ -268,8 +274,8 @@ impl Bounds {
     }
 }
 
-/// Returns the unit in which the numbers of a field's value are written; the inner `None` stands
-/// for numbers without a unit. Returns the outer `None` for an expression, whose numbers need not
+/// Returns the unit in which the numbers of a field's value are written: `Some(None)` for numbers
+/// without a unit. Returns `None` for an expression, since the numbers in an expression need not
 /// meet the field's conditions.
 fn unit(value: &Value<'_>) -> Option<Option<Unit>> {
     match &value.kind {

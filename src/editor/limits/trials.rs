@@ -1,4 +1,5 @@
-//! Analyzes the text with other numbers in it, to find out whether they cause errors.
+//! Analyzes the text again with other numbers in it, to find out whether these numbers cause
+//! errors.
 
 use super::literal::{Literal, rounded};
 use crate::{
@@ -6,25 +7,29 @@ use crate::{
     source::{Source, Sources},
 };
 
-/// Maximum cost of all trials for one answer to the editor, in bytes of text that are read. A trial
-/// that would exceed it is not made.
+/// Maximum cost of all trials for one answer to the editor, in bytes of analyzed text. A trial is
+/// an analysis of the text with another number in it, and is not made if it would exceed the
+/// maximum. With a larger maximum, the limits of sliders in long texts would be found more often,
+/// but the answer could take longer. With 64 KiB, a text of 1 KiB can be tried 64 times.
 const BYTES: usize = 1 << 16;
 
-/// Cost of building an object, as the number of bytes of text that take as long to read.
+/// Cost of making one object of a scene, as the number of bytes of text whose analysis takes
+/// equally long. A rough value suffices, since it serves only to limit the time of an answer.
 const OBJECT: usize = 12;
 
-/// Trials of a text with another number in place of a literal, up to the maximum cost [`BYTES`].
+/// Analyses of a text with another number in place of a literal. Their total cost is limited by
+/// [`BYTES`].
 #[derive(Debug)]
 pub struct Trials<'a, 's> {
     analysis: &'a Analysis<'s>,
     /// Number of errors in the unchanged text.
     errors: usize,
-    /// Cost that is left for further trials, in bytes of text.
+    /// Cost of the trials that can still be made, in bytes of analyzed text.
     left: usize,
 }
 
 impl<'a, 's> Trials<'a, 's> {
-    /// Starts trials of a text.
+    /// Counts the errors of the unchanged text. No trial is made yet.
     pub fn new(analysis: &'a Analysis<'s>) -> Self {
         Self {
             analysis,
@@ -35,7 +40,7 @@ impl<'a, 's> Trials<'a, 's> {
 
     /// Returns whether the text with `value` in place of `literal` has at most as many errors as
     /// the unchanged text. Returns `None` if the trial would cost too much, or if `value` is not
-    /// finite. `objects` is an estimate of the number of objects that the changed text makes.
+    /// finite. `objects` is an estimate of how many objects the changed text contains.
     fn is_right(&mut self, literal: &Literal, value: f64, objects: usize) -> Option<bool> {
         let read = self.analysis.text().len();
         let takes = read.saturating_add(OBJECT.saturating_mul(objects));
@@ -50,8 +55,9 @@ impl<'a, 's> Trials<'a, 's> {
         Some(errors(&tried) <= self.errors)
     }
 
-    /// Estimates the number of objects that the text makes if `value` takes the place of `count`.
-    /// Assumes that every index of a block has this count.
+    /// Estimates how many objects the text contains if `value` takes the place of the literal
+    /// `count`. Assumes that the repeated block with the most indices uses this count for each of
+    /// them.
     fn objects_with(&self, count: &Literal, value: f64) -> usize {
         let repetitions = self.analysis.blocks().flat_map(|it| &it.repetition);
         let indices = repetitions.map(|it| it.indices.len()).max().unwrap_or(0);
@@ -60,8 +66,8 @@ impl<'a, 's> Trials<'a, 's> {
         (0..indices).fold(objects, |all, _| all * growth) as usize
     }
 
-    /// Returns whether a number is a count, judged by trials: adding or subtracting a tenth causes
-    /// an error, but adding or subtracting one does not.
+    /// Returns whether a number seems to be a count, as in `for i < n`. A number counts as one if
+    /// both adding and subtracting 0.1 cause an error, but adding or subtracting 1 does not.
     pub fn is_count(&mut self, literal: &Literal) -> bool {
         let mut is_right = |by: f64| {
             let value = rounded(literal.value + by, 0.1);
@@ -73,13 +79,12 @@ impl<'a, 's> Trials<'a, 's> {
             && (is_right(1.0) == Some(true) || is_right(-1.0) == Some(true))
     }
 
-    /// Searches for the last number on the way from the literal to `end` with which the text has no
-    /// more errors than now. The search is a bisection in steps of `step`. Returns `end` if that
-    /// number is valid, or if it cannot be tried. Returns `None` if already the first step adds an
-    /// error.
+    /// Searches the numbers between the literal and `end`, in steps of `step`, for the last one
+    /// with which the text has no more errors than now. Uses bisection. Returns `end` if it is
+    /// valid or cannot be tried. Returns `None` if already the first step causes an error.
     ///
-    /// If valid and invalid numbers alternate on the way, returns one of the valid numbers before
-    /// an invalid one.
+    /// If valid and invalid numbers alternate, returns one of the valid numbers whose next number
+    /// is invalid.
     pub fn last_right(
         &mut self,
         literal: &Literal,
@@ -123,8 +128,9 @@ fn errors(analysis: &Analysis<'_>) -> usize {
 mod tests {
     use super::*;
 
-    /// With n = 14, the text would make half a million objects, because it has five indices with
-    /// this count.
+    /// Searches for the greatest valid n up to 14 in two texts. With n = 14, the second text would
+    /// contain 14^5 objects, half a million, because its five indices all have the count n. Such a
+    /// trial is too expensive, so none is made, and the budget `left` stays at [`BYTES`].
     #[test]
     fn a_count_is_not_tried_where_it_would_make_very_many_objects() {
         let heads = [

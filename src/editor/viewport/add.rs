@@ -21,13 +21,13 @@ use crate::{
     tracer::vertices,
 };
 
-/// Maximum number of rows of positions that are searched for a free one. The rows are one behind
-/// the other, as the camera sees them. If no position is free, a taken one is used, since a scene
-/// with so many objects is not made by hand.
+/// Maximum number of rows of positions that are searched for a free position. The rows are one
+/// behind the other, as the camera sees them, with seven positions each. If all are taken, a taken
+/// one is used. More rows are not needed, since nobody adds so many objects by hand.
 const ROWS: i32 = 100;
 
-/// Colours of new objects. They differ clearly from each other, and from gray and white, the
-/// colours of boards.
+/// Names of the colours of new objects, in the order in which they are tried. They differ clearly
+/// from each other, and from gray and white, the default colours of checkerboards.
 const COLORS: [&str; 10] = [
     "olive",
     "teal",
@@ -41,8 +41,10 @@ const COLORS: [&str; 10] = [
     "sienna",
 ];
 
-/// Maximum distance of two colours that count as similar: the Euclidean distance of their channels,
-/// in steps of 8-bit sRGB. A new object gets a colour that is not similar to any other.
+/// Maximum distance of two colours that count as similar: the Euclidean distance of their sRGB
+/// channels, which range from 0 to 255. A new object gets a colour that is not similar to any
+/// other, if there is one. Chosen by eye: a smaller distance would allow colours that are easily
+/// confused; a larger one would exclude too many.
 const ALIKE: f64 = 48.0;
 
 /// A block that is added to the text.
@@ -87,8 +89,8 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     for (word, value) in words {
         fields = fields.replace(word, &value);
     }
-    // A different colour distinguishes the object from others. Written out, it can be changed by a
-    // click.
+    // The new object gets a colour of its own, to distinguish it from others. The colour is written
+    // into the text, so that the author can change it with a click.
     let color = row.fields.iter().find(|field| field.takes == Type::Color);
     let color = color.and_then(|field| match field.preset {
         Preset::Value(own) => Some(format!("  {} {}", field.name, free_color(&scene, own))),
@@ -110,9 +112,9 @@ pub fn add(analysis: &Analysis<'_>, scene: Option<&Scene>, kind: &str) -> Option
     })
 }
 
-/// Returns a colour that is not similar ([`ALIKE`]) to any colour of the scene: `own`, the default
-/// colour of the new object's kind, or else one of [`COLORS`]. If all of them are taken, they are
-/// used in turn.
+/// Returns a colour that is not similar ([`ALIKE`]) to any colour of the scene. Tries `own`, the
+/// default colour of the new object's kind, and then [`COLORS`]. If all of these are taken, returns
+/// one of [`COLORS`] that depends on the number of objects.
 fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     let shapes = scene.objects.iter().flat_map(|it| it.shape.colors());
     let taken: Vec<Color> = shapes.chain([scene.image.background]).collect();
@@ -125,9 +127,9 @@ fn free_color(scene: &Scene, own: &'static str) -> &'static str {
     found.unwrap_or(COLORS[scene.objects.len() % COLORS.len()])
 }
 
-/// Returns a scene for a text with errors, in which a new object can be placed. It has the objects
-/// without errors. An image, camera or sampler with errors is replaced by that of the smallest
-/// scene.
+/// Returns the scene of a text with errors as far as it is known, so that a new object can be
+/// placed in it. It contains the objects without errors. An image, camera or sampler with errors is
+/// replaced by the default one ([`SMALLEST`]).
 fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     let smallest = Sources::new(Source::from_text("", SMALLEST));
     let smallest = Analysis::new(&smallest).scene()?;
@@ -145,9 +147,10 @@ fn sketch(analysis: &Analysis<'_>) -> Option<Scene> {
     })
 }
 
-/// Returns the edit that copies an object's block to the line after it. The copy is moved to the
-/// right by a twentieth of the picture. Only numbers that stand in the block itself are changed for
-/// that, so a block that consists of names is copied without a move.
+/// Returns the edit that inserts a copy of an object's block in the line after it. The copy is
+/// moved to the right by a twentieth of the picture's width. For this, only numbers that stand in
+/// the block itself are changed. A block whose position is given by names of definitions is
+/// therefore copied without a move.
 pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option<Added> {
     let object = scene.objects.get(index)?;
     let block = analysis.blocks().find(|block| block.span == object.span)?;
@@ -172,7 +175,7 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     let whole = apply(&Fix::new("", edits), SourceId::File, text);
     let rest = &text[block.span.end..];
     let copy = format!("\n{}", &whole[block.span.start..whole.len() - rest.len()]);
-    // A comment after the block belongs to it, so the copy is inserted after the comment.
+    // A comment after the block belongs to the block, so the copy is inserted after the comment.
     let behind = rest.lines().next().unwrap_or_default();
     let is_comment = behind.trim_start().starts_with("//");
     let end = block.span.end + if is_comment { behind.len() } else { 0 };
@@ -183,8 +186,8 @@ pub fn duplicate(analysis: &Analysis<'_>, scene: &Scene, index: usize) -> Option
     })
 }
 
-/// Returns a name that is not in the text: the kind followed by the smallest possible number, such
-/// as `Sphere2`.
+/// Returns a name that does not occur in the text: the kind followed by the smallest possible
+/// number, such as `Sphere2`.
 fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     let capital = kind[..1].to_uppercase() + &kind[1..];
     let names = (1..).map(|number| format!("{capital}{number}"));
@@ -197,9 +200,9 @@ fn free_name(analysis: &Analysis<'_>, kind: &str) -> String {
     names.into_iter().find(is_free).unwrap_or(capital)
 }
 
-/// Returns the height of a new board: 0, unless that is not below the eye, above the lowest point
-/// of an object, or less than 1 m below another board. In these cases, returns a lower height to
-/// which none of them applies.
+/// Returns the height of a new checkerboard. It is 0 if possible, and otherwise a lower height that
+/// is below the eye, not above the lowest point of any object, and at least 1 below every other
+/// board.
 fn free_height(scene: &Scene) -> f64 {
     let below_eye = if scene.camera.eye.y > 0.0 {
         0.0
@@ -213,8 +216,8 @@ fn free_height(scene: &Scene) -> f64 {
     bottoms.fold(below_eye, f64::min)
 }
 
-/// Returns the centre of a free position in front of the camera, and half of the side of a cube
-/// that an object there should fill.
+/// Returns the centre of a free position in front of the camera, and half of the side length of the
+/// cube that a new object there should fill.
 fn free_place(scene: &Scene) -> (DVec3, f64) {
     let projection = Projection::new(&scene.camera, &scene.image);
     let distance = distance(scene);
@@ -222,8 +225,8 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let boards = scene.objects.iter();
     let boards = boards.filter_map(|object| Some(object.shape.checkerboard()?.y));
     let floors = boards.filter(|y| *y < projection.eye.y);
-    // If there is no board yet, but objects near the height 0 are in view, they stand on that
-    // height, because a board will be added there.
+    // If the scene has no board yet, but the view axis is near the height 0, objects stand on that
+    // height, because a board would be added there.
     let floor = floors.reduce(f64::max).or_else(|| {
         let bottom = projection.eye.y + projection.ahead.y * distance - size;
         (projection.eye.y > 0.0 && bottom.abs() <= size).then_some(0.0)
@@ -235,12 +238,12 @@ fn free_place(scene: &Scene) -> (DVec3, f64) {
     let taken: Vec<DVec3> = middles.collect();
     let place = |floor: Option<f64>, steps: i32, row: i32| {
         // Every other row is shifted by half the distance of its positions, so that its objects are
-        // seen between those of the row in front of it.
+        // visible between the objects of the row in front of it.
         let aside = f64::from(steps) + 0.5 * f64::from(row % 2);
         let [aside, behind] = [aside, f64::from(row)].map(|steps| 2.5 * size * steps);
         let at = projection.eye + projection.right * aside + projection.ahead * (distance + behind);
         let at = DVec3::from(at.to_array().map(|x| rounded(x, size / 10.0)));
-        // The height of an object that stands on a floor is exact rather than rounded.
+        // The height of an object on a floor is exact; the other coordinates are rounded.
         floor.map_or(at, |y| at.with_y(y + size))
     };
     let is_seen = |at: &DVec3| is_seen(*at, size, &projection);

@@ -1,4 +1,5 @@
-//! Moves the camera as the pointer moves: orbit, pan, dolly, roll, look, view distance.
+//! Moves the camera while the pointer drags: orbit, pan, dolly, roll, look around, and view
+//! distance.
 
 use std::f64::consts::PI;
 
@@ -12,16 +13,19 @@ use crate::{
     scene::{Camera, FieldOwner, Lens, Scene, View},
 };
 
-/// Minimum angle between the view direction and the line of the up vector, in radians: one degree.
-/// The pointer cannot turn the camera to look more steeply up or down.
+/// Minimum angle, in radians, between the view direction and the up vector or its opposite: one
+/// degree. The pointer cannot tilt the camera any closer. If the view direction were parallel to
+/// the up vector, the picture would have no defined top. Any small angle avoids this.
 const POLE: f64 = PI / 180.0;
 
-/// Factor by which the distance from the eye to the pivot, or to the view plane, changes if the
-/// pointer moves by the height of the picture.
+/// Factor by which the distance from the eye to the pivot, or to the view plane, changes while the
+/// pointer moves by the height of the picture. The pivot is the point about which the camera moves.
+/// Chosen by judgment: a larger factor is faster but harder to control.
 const ZOOM: f64 = 4.0;
 
-/// Returns the distance from the eye to the pivot, i.e. the point about which the camera moves:
-/// `lookat`, or else the point that is visible in the middle of the picture, or the nearest object.
+/// Returns the distance from the eye to the pivot, i.e. the point about which the camera moves. The
+/// pivot is `lookat` or, if that is not given, the point that is visible in the middle of the
+/// picture, or else the centre of the nearest object. Returns 1 if there is none of these.
 pub fn distance(scene: &Scene) -> f64 {
     let camera = &scene.camera;
     let from_eye = |point: DVec3| unit(point - camera.eye).1;
@@ -42,12 +46,12 @@ pub fn distance(scene: &Scene) -> f64 {
 }
 
 /// Returns the camera after the pointer has dragged the handle `handle`, such as `orbit`, from the
-/// point `from` to the point `to` of the picture. `distance` is that from the eye to the pivot; see
-/// [`distance`].
+/// point `from` to the point `to` of the picture. `distance` is the distance from the eye to the
+/// pivot, which [`distance`] returns.
 ///
 /// # Errors
 ///
-/// Returns a sentence that says why the camera cannot be moved so.
+/// Returns a sentence that says why the camera cannot be moved in this way.
 pub fn moved(
     camera: &Camera,
     projection: &Projection,
@@ -68,8 +72,8 @@ pub fn moved(
     let mut moved = *camera;
     match handle {
         "orbit" | "look" => {
-            // In both modes, the picture follows the pointer. The camera therefore turns against
-            // the pointer's movement when it looks around, and with it when it orbits.
+            // The picture follows the pointer in both cases. Hence, a camera that looks around
+            // turns against the pointer's movement, and a camera that orbits turns with it.
             let is_orbit = handle == "orbit";
             let ahead = turned(camera, projection, if is_orbit { -by } else { by });
             if is_orbit {
@@ -93,7 +97,7 @@ pub fn moved(
             if from == DVec2::ZERO || to == DVec2::ZERO {
                 return Err("the middle of the picture has no direction to roll to".to_owned());
             }
-            // This angle is clockwise in the picture, because y points down. The camera turns the
+            // The angle is clockwise in the picture, because y points down. The camera turns the
             // other way.
             let turn = trig::atan2(from.perp_dot(to), from.dot(to));
             moved.roll = within_half_turn(camera.roll, -turn.in_degrees());
@@ -124,10 +128,10 @@ fn zoom(heights: f64) -> f64 {
     libm::pow(ZOOM, heights)
 }
 
-/// Returns the view direction of a camera that looks around while the pointer moves by `by`,
-/// measured in heights of the picture. One height corresponds to half a turn. A movement to the
-/// right turns the direction about the up vector, to the left, and a movement down turns it towards
-/// the up vector, so that the picture follows the pointer.
+/// Returns the view direction of a camera that looks around while the pointer moves by `by`. The
+/// movement is measured in heights of the picture, one of which corresponds to half a turn. A
+/// movement to the right turns the direction about the up vector to the left, and a movement down
+/// turns it towards the up vector. So the picture follows the pointer.
 fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let (up, ahead) = (unit(camera.up).0, projection.ahead);
     // `level_top` is the direction of the picture's top without roll.
@@ -138,8 +142,8 @@ fn turned(camera: &Camera, projection: &Projection, by: DVec2) -> DVec3 {
     let axial = ahead.dot(up);
     let radial = ahead - up * axial;
     let polar = trig::atan2(radial.length(), axial).radians;
-    // If the camera looks straight up or down, its horizontal direction follows from the picture's
-    // top.
+    // If the camera looks straight up or down, its horizontal direction is the direction of the
+    // picture's top or bottom.
     let level = if radial == DVec3::ZERO {
         -level_top * axial.signum()
     } else {

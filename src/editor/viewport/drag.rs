@@ -2,8 +2,8 @@
 //!
 //! First, the object or the camera is moved with unrounded numbers; this is the ideal result. Then
 //! the changed fields are written with more and more decimals, until the scene of the new text
-//! agrees with the ideal one within half a pixel. That may fail, because the text shares numbers
-//! between fields, or because a condition of the language would be violated.
+//! agrees with the ideal one within half a pixel. This fails if fields share a number of the text,
+//! or if the result would violate a condition of the language.
 
 use std::{iter, sync::Arc};
 
@@ -26,46 +26,47 @@ use crate::{
     syntax::tree::Block,
 };
 
-/// Number of significant digits that identify every `f64`. Numbers with more digits are not tried.
+/// Number of significant digits that identify every `f64`. More digits would not change the number,
+/// so none are tried.
 const DIGITS: i32 = 17;
 
-/// The movement of a handle by the pointer.
+/// A movement of a handle by the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drag<'a> {
     /// Index of the dragged object in the scene; `None` if the camera is dragged.
     pub object: Option<usize>,
-    /// The name of the handle.
+    /// Name of the handle, such as `center` or `orbit`.
     pub handle: &'a str,
-    /// Point of the pointer at the previous step of the drag, in pixels. Only movements of the
-    /// camera depend on it.
+    /// Position of the pointer at the previous step of the drag, in pixels. Only movements of the
+    /// camera use it.
     pub from: DVec2,
-    /// Point of the pointer now, in pixels.
+    /// Current position of the pointer, in pixels.
     pub to: DVec2,
     /// Axis or plane along which the handle moves; `None` if it follows the pointer freely.
     pub along: Option<Along>,
-    /// Maximum step of the handle in the picture, in pixels, if the drag snaps to a grid. The
-    /// changed numbers are multiples of a power of ten: the greatest with which the handle moves by
-    /// at most this step.
+    /// Maximum distance in the picture, in pixels, between neighbouring positions of the handle if
+    /// the drag snaps to a grid; `None` if it does not snap. On the grid, the changed numbers are
+    /// multiples of a power of ten, the greatest one that keeps the positions this close.
     pub step: Option<f64>,
 }
 
-/// Changes of a text that follow from a dragged handle. All lists are empty if the picture would
-/// not change visibly.
+/// Changes of a text that a dragged handle causes. All lists are empty if the picture would not
+/// change visibly.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Dragged {
-    /// The edits.
+    /// Edits of the text.
     pub edits: Vec<Edit>,
-    /// Fields of the dragged object or camera that change, with their new values, as in
-    /// `Ball.radius = 2`.
+    /// New values of the changed fields of the dragged object or camera, such as `Ball.radius = 2`.
     pub values: Vec<String>,
-    /// Other fields that change, too, because their values use the same numbers of the text: fields
-    /// of other blocks, such as `camera.lookat`, and of other objects of a repeated block.
+    /// Names of other fields that change, too, because their values use the same numbers of the
+    /// text. They are fields of other blocks, such as `camera.lookat`, or of other objects of the
+    /// same repeated block.
     pub also: Vec<String>,
 }
 
 /// Returns the text of a scene in which the blocks of all objects except `object` are replaced by
-/// blanks. All offsets stay the same, and the text is read quickly.
+/// blanks. All offsets stay the same, but the text is analyzed faster.
 pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources {
     let source = &sources.file;
     let mut text = String::with_capacity(source.text().len());
@@ -82,7 +83,7 @@ pub fn alone(sources: &Sources, scene: &Scene, object: Option<usize>) -> Sources
     Sources::new(Source::from_text(source.name(), text))
 }
 
-/// Returns the spans of all objects' blocks except the block of `object`.
+/// Returns the spans of the blocks of all objects, except the block of `object`.
 fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Span> {
     let own = object
         .and_then(|index| scene.objects.get(index))
@@ -92,8 +93,8 @@ fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Sp
     blocks.filter(move |span| Some(*span) != own)
 }
 
-/// Returns the edits of the text that move a handle as `drag` says. `alone` is the text in which
-/// only the dragged object is left; see [`alone`].
+/// Returns the edits of the text that move a handle as `drag` says. `alone` is the text without the
+/// blocks of other objects; the function [`alone`] returns it.
 ///
 /// # Errors
 ///
@@ -167,9 +168,9 @@ pub fn drag(
         .and_then(|step| view.snapped(current, &changes, step));
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
-    // If the drag snaps to a grid, the tolerance is a whole step of the grid, in which a change of
-    // another field of the object would go unnoticed. So those fields, which may share a number
-    // with the changed ones, must keep their values exactly.
+    // If the drag snaps to a grid, the tolerance is a whole step of the grid. A small change of
+    // another field of the object, whose value uses the same number, would then go unnoticed. So
+    // all fields that should not change must keep their exact values.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
@@ -224,8 +225,8 @@ pub fn drag(
             }
             Ok(_) => refusal = refused(),
             // If the text has errors although its rounded numbers already look like the ideal ones,
-            // the search ends: more digits could remove the errors, but the difference would not be
-            // visible.
+            // the search ends. More digits might remove the errors, but would not bring the picture
+            // visibly nearer to the ideal one.
             Err(why) => match rounded(current, changes, &rounding) {
                 Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,
@@ -235,8 +236,8 @@ pub fn drag(
     Err(refusal)
 }
 
-/// Describes the field of view of a camera in several forms, if one of the fields that determine it
-/// has changed.
+/// Describes the field of view of a camera in several forms, such as degrees. Returns `None` if no
+/// field that determines the field of view has changed.
 fn lens(image: &Image, changes: &[FieldChange], found: FieldOwner) -> Option<String> {
     // Names of the fields that determine the field of view.
     const LENS: [&str; 4] = [
@@ -254,8 +255,8 @@ fn lens(image: &Image, changes: &[FieldChange], found: FieldOwner) -> Option<Str
     Some(format!("d {d} = fov {fov:.1}° of a window {high} high"))
 }
 
-/// Returns the message that a field cannot be changed because it shares numbers with other fields,
-/// and how the text must be changed first.
+/// Returns the message that a field cannot be changed because it shares numbers with other fields.
+/// The message says how the author can change the text first.
 fn shared_numbers(
     analysis: &Analysis<'_>,
     block: &Block<'_>,
@@ -274,8 +275,8 @@ fn shared_numbers(
     )
 }
 
-/// Returns the shape of `object`, or the camera if it is `None`. Returns `None` if there is no such
-/// object.
+/// Returns the shape of the object with the index `object`, or the camera if `object` is `None`.
+/// Returns `None` if there is no such object.
 fn owner(scene: &Scene, object: Option<usize>) -> Option<FieldOwner> {
     Some(match object {
         None => FieldOwner::Camera(scene.camera),
@@ -301,8 +302,8 @@ fn block<'a, 's>(
 }
 
 /// Returns the names of the fields, such as `camera.lookat`, whose values differ between two scenes
-/// that have the same blocks. Leaves out the dragged object itself. Of other objects of its block,
-/// only the fields in `changes` are compared.
+/// with the same blocks. Leaves out the dragged object itself. For other objects of its block,
+/// compares only the fields in `changes`.
 fn others_changed(
     analysis: &Analysis<'_>,
     dragged: Option<usize>,
@@ -346,8 +347,8 @@ fn others_changed(
     changed
 }
 
-/// Reads the scene of the text of `source` after `edits`, which are given as two lists. Returns a
-/// message if the text has errors then.
+/// Applies two lists of edits to the text of `source`, and returns the scene of the result. Returns
+/// a message if the changed text has errors.
 fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     let fix = Fix::new("", edits.concat());
     let text = apply(&fix, SourceId::File, source.text());
@@ -360,9 +361,9 @@ fn read(source: &Source, edits: [&[Edit]; 2]) -> Result<Scene, String> {
     })
 }
 
-/// Returns points in space that the camera sees in the middle and in the corners of its picture: at
-/// each of these five points, at 0.5, 1 and 2 times the depth `distance`. Returns `None` if `f64`
-/// has too few digits for such coordinates to place a point within [`TOLERANCE`].
+/// Returns 15 points in space that the camera sees in the middle and in the corners of its picture.
+/// In each of these five directions, the points have 0.5, 1 and 2 times the depth `distance`.
+/// Returns `None` if an `f64` has too few digits to place a point within [`TOLERANCE`].
 fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     let corners = [(0.5, 0.5), (0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)];
     let depths = [0.5, 1.0, 2.0].into_iter();
@@ -376,22 +377,21 @@ fn landmarks(projection: &Projection, distance: f64) -> Option<Vec<DVec3>> {
     places.map(point).collect()
 }
 
-/// View of the scene before a drag. Different results of the drag are compared by how they look in
-/// this view.
+/// View of the scene before a drag. It shows whether two possible results of the drag look alike.
 struct DragView<'a> {
     image: &'a Image,
     projection: Projection,
     drag: &'a Drag<'a>,
-    /// Points in space that stand for the scene: for a dragged camera or board, results are
-    /// compared by where these points appear in the picture.
+    /// Points in space by which results are compared if the camera or a checkerboard is dragged.
+    /// Two results agree if these points appear at nearly equal places of the picture.
     points: Vec<DVec3>,
 }
 
 impl DragView<'_> {
-    /// Returns the number of decimals of the grid that the drag snaps to, and the tolerance `step`,
-    /// in pixels. The spacing of the grid is the greatest power of ten that moves the dragged
-    /// handle by at most `step`. Returns `None` for the camera, and if no grid with up to 12
-    /// decimals is fine enough.
+    /// Returns the number of decimals of the grid that the drag snaps to, together with `step`, in
+    /// pixels. The spacing of the grid is the greatest power of ten that moves the dragged handle
+    /// by at most `step`. Returns `None` for the camera, and if even a grid with 12 decimals is too
+    /// coarse.
     fn snapped(&self, owner: FieldOwner, changes: &[FieldChange], step: f64) -> Option<(i32, f64)> {
         let held = |owner: FieldOwner| {
             let mut marks = self.marks(owner).into_iter();
@@ -410,9 +410,9 @@ impl DragView<'_> {
         Some(((-9..=12).find(is_small)?, step))
     }
 
-    /// Returns whether two states of the dragged object or camera look alike: in the state `found`,
-    /// the dragged handle is within `tolerance` pixels of its place in the state `ideal`, and so is
-    /// every other handle that is in or near the picture.
+    /// Returns whether two states of the dragged object or camera look alike. For every handle in
+    /// or near the picture, and for the dragged one, the places in the states `found` and `ideal`
+    /// must differ by at most `tolerance` pixels.
     fn agree(&self, ideal: FieldOwner, found: FieldOwner, tolerance: f64) -> bool {
         // A length that was rounded to few digits may have become 0, which the language forbids.
         if ideal.is_possible() && !found.is_possible() {
@@ -430,8 +430,8 @@ impl DragView<'_> {
         })
     }
 
-    /// Returns the points of the picture by which a state of the object or camera is compared with
-    /// another. The flag says whether the pointer drags the point.
+    /// Returns the points of the picture by which two states of the object or camera are compared.
+    /// Each point has a flag that says whether the pointer drags it.
     fn marks(&self, owner: FieldOwner) -> Vec<(bool, Option<DVec2>)> {
         let points = self.points.iter();
         match owner {
@@ -439,8 +439,8 @@ impl DragView<'_> {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()
             }
-            // The handle of a board is always where the view axis hits the board, so it says little
-            // about the board's height. Fixed points of the board are compared instead.
+            // The handle of a checkerboard is always where the view axis hits the board, so it says
+            // little about the board's height. Fixed points of the board are compared instead.
             FieldOwner::Shape(Shape::Checkerboard(board)) => {
                 let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
                 points.map(|at| (true, seen(at))).collect()

@@ -1,8 +1,9 @@
 //! Writes changed numbers of fields into the text.
 //!
-//! A literal is replaced number by number, so that unchanged numbers keep their spelling. For a
-//! name, the literal in its `let` is replaced. An offset is added to an expression, or changed if
-//! the expression ends with one. A missing field is added to its block.
+//! In a literal, only the numbers that change are replaced, so that the others keep their spelling.
+//! If a name is used, the literal in its `let` is replaced. An expression gets an offset, such as
+//! `+ 0.5`, at its end; if it ends with an offset already, that one is changed. A missing field is
+//! added to its block.
 
 use glam::DVec3;
 
@@ -16,19 +17,20 @@ use crate::{
     syntax::tree::{self, Block, Operator, Step, Unit, ValueKind},
 };
 
-/// A change of a field's value by a drag.
+/// A change of a field's value because a handle is dragged.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldChange {
-    /// The field's name.
+    /// Name of the changed field.
     pub name: &'static str,
-    /// The old value.
+    /// The field's old value.
     pub from: Value,
     /// Amount that is added to the old value.
     pub by: Value,
 }
 
 impl FieldChange {
-    /// Returns the greatest absolute number in the amount `by`; for an angle, in degrees.
+    /// Returns the greatest absolute number in the amount `by`. The amount of an angle is in
+    /// degrees.
     pub fn size(&self) -> f64 {
         match self.by {
             Value::Vector(vector) => vector.abs().max_element(),
@@ -36,8 +38,8 @@ impl FieldChange {
         }
     }
 
-    /// Returns a copy of the owner for each number of the field that changes. In that copy, only
-    /// this number is changed, namely by 10^−`decimals`.
+    /// Returns a copy of `owner` for each number of the field that changes. In a copy, only this
+    /// number is changed, namely by 10^−`decimals`.
     pub fn with_unit(&self, owner: FieldOwner, decimals: i32) -> Vec<FieldOwner> {
         let unit = libm::pow(10.0, f64::from(-decimals));
         let units = match self.by {
@@ -55,8 +57,8 @@ impl FieldChange {
 }
 
 /// Returns the changes of the fields in which two states of an object or camera, `current` and
-/// `ideal`, differ. A box has two sets of fields, corners or centre and size; those are changed
-/// with which `block` gives it.
+/// `ideal`, differ. A box can be given either by its corners or by its centre and size; only the
+/// fields of the form that `block` uses are returned.
 pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec<FieldChange> {
     let has_min = |field: &tree::Field<'_>| field.name.text == BOX.min.name;
     let other_way = if block.fields.iter().any(has_min) {
@@ -76,29 +78,33 @@ pub fn changes(block: &Block<'_>, current: FieldOwner, ideal: FieldOwner) -> Vec
         .collect()
 }
 
-/// When a point is dragged, several fields of an object may change together. These are the possible
-/// ratios of one field's change to the largest change on the same axis: 1 for the vertices `v0` and
-/// `v1`, ±1/2 for the `center` of a box whose `size` changes.
+/// Ratios of one field's change to the largest change on the same axis. If each change on an axis
+/// has one of these ratios, the changes are rounded together, so that the ratios remain exact. The
+/// ratio is 1 for two vertices of a triangle, which move alike, and ±1/2 for the `center` of a box
+/// whose `size` changes.
 const RATIOS: [f64; 3] = [1.0, 0.5, -0.5];
 
 /// Maximum difference between a field's change and one of [`RATIOS`] times the largest change,
-/// relative to the largest change, for which the two count as equal. It allows for rounding errors.
+/// relative to the largest change, for which the two count as equal. It only has to exceed rounding
+/// errors, which are about 1e-16, and to be far below the ratios; any value in between works.
 const SAME: f64 = 1e-6;
 
-/// Rounding of the numbers that a drag changes.
+/// The way in which the numbers that a drag changes are rounded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DecimalRounding {
-    /// Number of decimals of a changed number. A negative one stands for tens, hundreds and so on.
+    /// Number of decimals of a changed number. A negative number means rounding to tens, hundreds
+    /// and so on.
     decimals: i32,
-    /// Absolute values of the changes that [`together`] has rounded. If a number changes by such an
-    /// amount, the new number keeps all decimals of the old one, and is not rounded to `decimals`.
-    /// So points of the object that the pointer does not drag stay exactly in place.
+    /// Absolute values of the changes that [`together`] has rounded already. A number that changes
+    /// by one of these amounts keeps all its old decimals and is not rounded to `decimals`. So the
+    /// points of the object that the pointer does not drag stay exactly in place.
     exact: Vec<f64>,
 }
 
-/// Rounds changes to `decimals` decimals. If the numbers on one axis change in the ratios
-/// [`RATIOS`], the largest change is rounded, and the others are the same multiples of it as
-/// before. So points of the object that the pointer does not drag stay exactly in place.
+/// Rounds changes to `decimals` decimals. If each change on an axis is the largest change on this
+/// axis times one of [`RATIOS`], the largest change is rounded, and the others become the same
+/// multiples of it as before. So the points of the object that the pointer does not drag stay
+/// exactly in place.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();
@@ -124,8 +130,8 @@ pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, De
     (changes, DecimalRounding { decimals, exact })
 }
 
-/// Returns the amount by which a vector changes along an axis. Returns `None` if that is 0 or if
-/// the value is not a vector.
+/// Returns the amount by which a vector changes along an axis. Returns `None` if the amount is 0 or
+/// if the value is not a vector.
 fn along(change: &mut FieldChange, axis: usize) -> Option<&mut f64> {
     match &mut change.by {
         Value::Vector(by) => Some(&mut by[axis]).filter(|by| **by != 0.0),
@@ -134,7 +140,7 @@ fn along(change: &mut FieldChange, axis: usize) -> Option<&mut f64> {
 }
 
 impl DecimalRounding {
-    /// Returns the rounded sum of a value and an amount; an angle is rounded in a unit.
+    /// Returns the rounded sum of a value and an amount. An angle is rounded in the unit `unit`.
     fn sum(&self, from: Value, by: Value, unit: Unit) -> Value {
         match (from, by) {
             (Value::Vector(from), Value::Vector(by)) => {
@@ -153,7 +159,8 @@ impl DecimalRounding {
     fn number(&self, from: f64, by: f64) -> f64 {
         let decimals = self.decimals;
         if self.exact.contains(&by.abs()) {
-            // If the ratio is 1/2, half of a rounded amount may have one more decimal.
+            // An amount that is half of a rounded amount, as [`RATIOS`] allows, may have one
+            // decimal more than `decimals`.
             let [own, more] = [decimals_of(from), decimals.saturating_add(1)];
             return round(from + by, own.max(more));
         }
@@ -173,7 +180,7 @@ fn decimals_of(number: f64) -> i32 {
 }
 
 /// Returns a copy of the object or camera `owner` in which the fields of `changes` have their new,
-/// rounded values. Returns `None` if it has no such field.
+/// rounded values. Returns `None` if `owner` lacks one of these fields.
 pub fn rounded(
     owner: FieldOwner,
     changes: &[FieldChange],
@@ -219,7 +226,7 @@ pub fn edits<'s>(
     edits.windows(2).all(apart).then_some(edits)
 }
 
-/// Writer of the edits that change numbers in the text.
+/// Collects the edits that change numbers in the text.
 struct NumberWriter<'a, 's> {
     analysis: &'a Analysis<'s>,
     rounding: &'a DecimalRounding,
@@ -227,9 +234,9 @@ struct NumberWriter<'a, 's> {
 }
 
 impl<'s> NumberWriter<'_, 's> {
-    /// Adds edits with which the value of the expression `tree` changes by the amount `by`. Returns
-    /// `None` if that is not possible, for example because the amount would have to be negated or
-    /// scaled and its type does not allow that.
+    /// Adds edits by which the value of the expression `tree` changes by the amount `by`. Returns
+    /// `None` if no edits can achieve this, for example because the amount would have to be negated
+    /// and its type does not allow that.
     fn change(&mut self, tree: &tree::Value<'s>, by: Value) -> Option<()> {
         let model = &self.analysis.model;
         if let Some(unit) = literal_unit(tree) {
@@ -264,8 +271,8 @@ impl<'s> NumberWriter<'_, 's> {
         self.offset(tree.span, by)
     }
 
-    /// Changes the literal at the end of a sum. If the literal becomes negative, the operator
-    /// before it changes instead, so that `+ 1` becomes `- 1`.
+    /// Changes the literal at the end of a sum or difference. If the literal would become negative,
+    /// the operator before it changes instead: `+ 1` becomes `- 1` rather than `+ -1`.
     fn change_last(&mut self, step: &Step<'s>, by: Value) -> Option<()> {
         let (sign, other) = match step.operator {
             Operator::Subtract => (-1.0, '+'),
@@ -297,15 +304,15 @@ impl<'s> NumberWriter<'_, 's> {
         Some(())
     }
 
-    /// Formats `from` + `by` with the decimals of the rounding. If the amount is rounded to 0,
-    /// formats the old number. An angle is written in a unit.
+    /// Formats the sum of `from` and `by`, rounded as this writer rounds. If the amount is rounded
+    /// to 0, formats the old number. An angle is written in `unit`.
     fn sum(&self, from: Value, by: Value, unit: Unit) -> String {
         written(self.rounding.sum(from, by, unit), unit)
     }
 }
 
-/// Returns the unit of a number or angle literal, degrees if it has none; `None` for any other
-/// value.
+/// Returns the unit of an angle literal, and degrees for a number literal. Returns `None` for any
+/// other value.
 fn literal_unit(tree: &tree::Value<'_>) -> Option<Unit> {
     match &tree.kind {
         ValueKind::Number(_) => Some(Unit::Degrees),
@@ -315,12 +322,14 @@ fn literal_unit(tree: &tree::Value<'_>) -> Option<Unit> {
     }
 }
 
-/// Returns whether a value is a literal or a list, whose numbers can express any change.
+/// Returns whether a value is a literal or a list. Each of its numbers can be replaced by any
+/// other, so it can express any change.
 fn is_literal(tree: &tree::Value<'_>) -> bool {
     literal_unit(tree).is_some() || matches!(tree.kind, ValueKind::Tuple(_))
 }
 
-/// Returns a number, or an angle in `unit` (in degrees if `unit` is `None`).
+/// Returns the number of a number value, or the size of an angle in `unit`. Returns 0 for any other
+/// value.
 fn amount(value: Value, unit: Unit) -> f64 {
     match (value, unit) {
         (Value::Number(number), _) => number,
@@ -330,7 +339,8 @@ fn amount(value: Value, unit: Unit) -> f64 {
     }
 }
 
-/// Writes a number, an angle or a vector with all digits.
+/// Formats a number, an angle or a vector with all digits, as in a scene. An angle is written in
+/// `unit`.
 fn written(value: Value, unit: Unit) -> String {
     match value {
         Value::Vector(vector) => {
@@ -342,7 +352,7 @@ fn written(value: Value, unit: Unit) -> String {
     }
 }
 
-/// Formats a number with all its digits, and its unit.
+/// Formats a number with all its digits. Very small and very large numbers get an exponent.
 fn spelled(number: f64) -> String {
     let number = number + 0.0;
     if number == 0.0 || (1e-4..1e9).contains(&number.abs()) {
@@ -352,7 +362,8 @@ fn spelled(number: f64) -> String {
     }
 }
 
-/// Rounds a number to `decimals` decimals, which may be negative.
+/// Rounds a number to `decimals` decimals. A negative number of decimals means rounding to tens,
+/// hundreds and so on.
 fn round(x: f64, decimals: i32) -> f64 {
     let text = match usize::try_from(decimals) {
         Ok(decimals) => format!("{x:.decimals$}"),

@@ -1,5 +1,5 @@
-//! The handles and the outlines of each kind of object, and the object after one of its handles is
-//! moved. A handle is a point that can be dragged in the picture.
+//! Computes the handles and the outlines of objects, and moves an object by one of its handles. A
+//! handle is a point of an object that can be dragged in the picture.
 
 use glam::{DVec2, DVec3};
 
@@ -16,28 +16,30 @@ use crate::{
     tracer::vertices,
 };
 
-/// Maximum distance, in pixels of the picture, between a dragged handle and the pointer. If the
-/// changed text would show the handle farther away, the drag is refused.
+/// Maximum distance, in pixels of the picture, between the pointer and the handle that it drags. If
+/// no text can bring the handle so near, the drag is refused. Half a pixel is not visible; a
+/// smaller tolerance would need numbers with more digits in the text.
 pub const TOLERANCE: f64 = 0.5;
 
-/// Message for a drag after which numbers would be too large, or would have too few digits to place
-/// the handle.
+/// Message about a drag that would need numbers too large for the scene, or so large that an `f64`
+/// has too few digits to place the handle.
 pub const TOO_FAR: &str = "that is too far away";
 
-/// Name of a handle, and its position in space, which is `None` if the eye cannot see it.
+/// Name of a handle, and its position in space. The position is `None` if the eye cannot see the
+/// handle.
 ///
-/// The name is that of the field that changes with the handle. If the handle moves only along one
-/// axis, the name of that axis follows, as in `min_x`.
+/// The name is the field that changes with the handle. If the handle moves only along one axis, the
+/// name of that axis follows, as in `min_x`.
 pub type Handle = (&'static str, Option<DVec3>);
 
-/// Axis or plane along which a dragged point moves. If none is given, the point moves in the plane
-/// through it that is parallel to the view plane.
+/// Axis or plane along which a dragged point moves in space. Without one, the point moves in the
+/// plane through it that is parallel to the view plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Along {
-    /// The axis x, y or z (0, 1 or 2).
+    /// One of the coordinate axes x, y and z, by its index 0, 1 or 2.
     Axis(usize),
-    /// The horizontal plane.
+    /// The horizontal plane through the point.
     Floor,
 }
 
@@ -54,21 +56,22 @@ impl Along {
 /// Names of the fields of a triangle's vertices.
 const CORNERS: [&str; 3] = [TRIANGLE.v0.name, TRIANGLE.v1.name, TRIANGLE.v2.name];
 
-/// Name of the handle at an object's centre, for all kinds that have one.
+/// Name of the handle at an object's centre, for all kinds of objects that have one.
 const CENTER: &str = BOX.center.name;
 
 /// Names of the coordinate axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Names of the handles in the middle of a box's faces. For each axis, the face at the lower
-/// coordinate comes before the opposite one.
+/// Names of the handles in the middle of a box's six faces. The two faces perpendicular to an axis
+/// stand together, the one with the smaller coordinate first.
 const FACES: [&str; 6] = ["min_x", "max_x", "min_y", "max_y", "min_z", "max_z"];
 
-/// Number of sides of the polygon that is drawn as a sphere's silhouette.
+/// Number of sides of the polygon that is drawn as a sphere's silhouette. Chosen by judgment: fewer
+/// sides would look angular on large spheres, more would only lengthen the answer to the editor.
 const SIDES: u32 = 64;
 
-/// Returns the handles of an object. The handle of a sphere's radius is on the side of the
-/// silhouette in the direction `towards`.
+/// Returns the handles of an object. The handle of a sphere's radius lies on the silhouette, in the
+/// direction `towards` from the centre.
 pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Handle> {
     match shape {
         Shape::Sphere(sphere) => vec![
@@ -100,8 +103,8 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
             }
             TriangleOutline::Vertices(corners) => {
                 let corners = CORNERS.into_iter().zip(corners.map(Some));
-                // A triangle given by vertices has no centroid field. This handle moves all
-                // vertices.
+                // A triangle given by vertices has no field for its centroid. The handle there
+                // moves all three vertices.
                 let center = [(CENTER, Some(triangle.outline.centroid()))];
                 corners.chain(center).collect()
             }
@@ -113,8 +116,9 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
     }
 }
 
-/// Returns the direction on whose side the handles of an object are while one of them is dragged to
-/// a point of the picture: a sphere's radius is held on the side of the pointer.
+/// Returns the direction from an object's centre in which its handles are placed while the pointer
+/// drags `handle` to the point `to` of the picture. Only the radius handle of a sphere depends on
+/// it: it stays on the side of the pointer.
 pub fn side_held(shape: &Shape, handle: &str, to: DVec2, projection: &Projection) -> DVec3 {
     match shape {
         Shape::Sphere(_) if handle == SPHERE.radius.name => projection.ray(to),
@@ -124,8 +128,8 @@ pub fn side_held(shape: &Shape, handle: &str, to: DVec2, projection: &Projection
     }
 }
 
-/// Returns the four edges of a box that are parallel to an axis. Returns an empty list for any
-/// other shape.
+/// Returns the four edges of a box that are parallel to the axis with the index `axis`. Returns an
+/// empty list for any other shape.
 pub fn edges_along(shape: &Shape, axis: usize) -> Vec<[DVec3; 2]> {
     let Some(&Cuboid { min, max, .. }) = shape.cuboid() else {
         return Vec::new();
@@ -142,8 +146,8 @@ pub fn edges_along(shape: &Shape, axis: usize) -> Vec<[DVec3; 2]> {
     edges.into()
 }
 
-/// Returns the outline of a shape in the picture. For a board, this is the square that the view
-/// axis hits.
+/// Returns the outline of a shape in the picture. For a checkerboard, returns the outline of the
+/// square that the view axis hits.
 pub fn outline(projection: &Projection, shape: &Shape) -> Vec<Polyline> {
     match shape {
         Shape::Sphere(sphere) => {
@@ -162,8 +166,8 @@ pub fn outline(projection: &Projection, shape: &Shape) -> Vec<Polyline> {
     }
 }
 
-/// Returns points of the sphere's silhouette, as seen from the eye, all around. They are `None` if
-/// the eye is inside the sphere.
+/// Returns points along the whole silhouette of the sphere as seen from the eye. The points are
+/// `None` if the eye is inside the sphere.
 fn circle(projection: &Projection, sphere: &Sphere) -> impl Iterator<Item = Option<DVec3>> {
     let axis = (sphere.center - projection.eye).normalize_or(projection.ahead);
     let (first, second) = axis.any_orthonormal_pair();
@@ -188,8 +192,8 @@ fn square(projection: &Projection, board: &Checkerboard) -> Vec<Polyline> {
 /// Returns the silhouette point of a sphere in the direction `towards`, i.e. a point where a ray
 /// from the eye is tangent to the sphere. Returns `None` if the eye is inside the sphere.
 ///
-/// With c from the eye to the centre, k = r/|c|, and t the unit vector in the direction `towards`
-/// perpendicular to c, the point relative to the eye is
+/// Let r be the radius, c the vector from the eye to the centre, k = r/|c|, and t the unit vector
+/// in the direction of `towards` perpendicular to c. Relative to the eye, the point is
 ///
 ///   (1 − k²)·c + r·√(1 − k²)·t.
 fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec3> {
@@ -202,15 +206,16 @@ fn outline_point(sphere: &Sphere, eye: DVec3, towards: DVec3) -> Option<DVec3> {
     (k < 1.0 && at.is_finite()).then_some(at)
 }
 
-/// Returns the unit vector in the direction of `v`, and the length of `v`. Does not overflow.
+/// Returns the unit vector in the direction of `v`, and the length of `v`. No intermediate result
+/// overflows.
 pub fn unit(v: DVec3) -> (DVec3, f64) {
     let greatest = v.abs().max_element();
     let scaled = v / greatest;
     (scaled.normalize(), scaled.length() * greatest)
 }
 
-/// Returns the object after moving one of its handles to the point `to` of the picture, or as near
-/// to it as possible.
+/// Returns the object after the handle `handle` was dragged to the point `to` of the picture, or as
+/// near to it as possible.
 ///
 /// # Errors
 ///
@@ -257,8 +262,8 @@ pub fn moved(
     let (field, axis) = handle.split_once('_').unwrap_or((handle, handle));
     let along = Along::named(axis).or(along);
     let by = moved_point(at, to, along, projection)? - at;
-    // The centre is moved by moving the corners or vertices: the `center` of a box is a rounded
-    // value, and a triangle given by vertices has no field for its centre.
+    // To move the centre, the corners or vertices are moved: the `center` of a box is a rounded
+    // value, and a triangle given by vertices has no field for its centroid.
     let fields = match shape {
         Shape::Box(_) if field == CENTER => &[BOX.min.name, BOX.max.name][..],
         Shape::Triangle(_) if field == CENTER => &CORNERS,
@@ -275,12 +280,13 @@ pub fn moved(
 }
 
 /// Returns the new position in space of `point`, which is dragged to the point `to` of the picture.
-/// It moves as `along` says, and then appears at `to` or, on an axis, as near to it as possible.
+/// The point moves along the axis or plane `along`. It then appears at `to` or, if it moves along
+/// an axis, as near to `to` as possible.
 ///
 /// # Errors
 ///
-/// Returns a sentence if it would be behind the eye, or too far from `to` because of rounding
-/// errors.
+/// Returns a sentence if the new position would be behind the eye, or too far from `to` because of
+/// rounding errors.
 fn moved_point(
     point: DVec3,
     to: DVec2,
@@ -292,10 +298,9 @@ fn moved_point(
         None => projection.on_plane(to, point, projection.ahead),
         Some(Along::Floor) => projection.on_plane(to, point, DVec3::Y),
         Some(Along::Axis(axis)) => {
-            // In the picture, the axis is a line. The nearest point of this line to `to` is on the
-            // perpendicular through `to`. All points in space that appear on this perpendicular
-            // form a plane that contains the eye, and the moved point is where the axis intersects
-            // it.
+            // In the picture, the axis is a line. Its point nearest to `to` is on the perpendicular
+            // through `to`. All points in space that appear on this perpendicular form a plane
+            // through the eye. The moved point is where the axis intersects this plane.
             let (axis, from_eye) = (DVec3::AXES[axis], point - projection.eye);
             let normal = unit(from_eye.cross(axis)).0;
             across = unit(normal.reject_from(projection.ahead)).0;
@@ -343,16 +348,16 @@ fn radius(sphere: &Sphere, to: DVec2, projection: &Projection) -> Result<f64, St
     }
 }
 
-/// Returns the normal whose tip appears at the point `to` of the picture. Of two such normals,
-/// returns the one that points towards the same side as now, to the eye or away from it. If there
-/// is none, returns the normal whose tip appears nearest to `to`.
+/// Returns the normal of a triangle such that the normal's drawn tip appears at the point `to` of
+/// the picture. If two normals do so, returns the one on the current side: towards the eye, or away
+/// from it. If none does, returns the normal whose tip appears nearest to `to`.
 fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection) -> DVec3 {
     let reach = triangle.sides.z;
     let (ray, _) = unit(projection.ray(to));
     let center = triangle.centroid - projection.eye;
     // `foot` is the point nearest to the centroid on the ray through `to`, relative to the
-    // centroid. The tip is drawn at the distance `reach` from the centroid, so it lies on a sphere
-    // around the centroid, and on the ray.
+    // centroid. The tip is drawn at the distance `reach` from the centroid. So it is where the ray
+    // meets the sphere with the radius `reach` around the centroid.
     let foot = ray * center.dot(ray) - center;
     let (normal, length) = unit(triangle.normal);
     let rest = (reach - foot.length()) * (reach + foot.length());
@@ -360,8 +365,8 @@ fn turned_normal(triangle: &CenteredTriangle, to: DVec2, projection: &Projection
     unit(tip).0 * length
 }
 
-/// Returns the spin with which the apex lies in the direction from the centroid to the point that
-/// appears at `to`.
+/// Returns the spin of a triangle (its rotation about its normal) with which the apex points from
+/// the centroid towards the point that appears at `to`.
 ///
 /// # Errors
 ///
@@ -383,7 +388,8 @@ fn spun(
     Ok(within_half_turn(triangle.spin, turn))
 }
 
-/// Adds degrees to an angle. If the absolute sum is more than half a turn, removes whole turns.
+/// Adds degrees to an angle. If the sum is more than half a turn in either direction, whole turns
+/// are removed.
 pub fn within_half_turn(angle: Angle, degrees: f64) -> Angle {
     let whole = angle.in_degrees() + degrees;
     let turns = if whole.abs() > 180.0 {

@@ -5,21 +5,22 @@ use glam::{DVec2, DVec3};
 use crate::projection::Projection;
 
 /// Minimum depth of the visible part of a line, relative to the greatest coordinate of the line's
-/// points as seen from the eye. A part with less depth is cut off, since its image may be
-/// infinitely far away.
+/// points as seen from the eye. A part with less depth is cut off, since a point of depth 0 would
+/// appear infinitely far away. Any small positive number would do; with a much larger one, the cut
+/// would become visible.
 const NEAREST: f64 = 1e-6;
 
-/// Distance from the picture at which lines are cut off, as a multiple of the picture's size. A
-/// page shows a picture with up to 8192 pixels in a row, so the distance is at most 2^20 pixels. Up
-/// to there, browsers, which draw in single precision, are exact to a tenth of a pixel.
+/// Distance from the picture at which lines are cut off, as a multiple of the picture's width or
+/// height. Browsers draw in single precision, which is exact to a tenth of a pixel up to 2^20
+/// pixels. A page shows a picture with at most 8192 pixels in a row, and 128 · 8192 = 2^20.
 const REACH: f64 = 128.0;
 
 /// A polygonal line through points of the picture, in pixels.
 pub type Polyline = Vec<DVec2>;
 
 impl Projection {
-    /// Returns the visible parts of a polygonal line through points in space. There are several if
-    /// parts of the line are behind the eye or too far outside of the picture.
+    /// Returns the visible parts of a polygonal line through points in space. The line is divided
+    /// if a part of it is behind the eye or too far outside of the picture.
     pub fn line(&self, points: &[DVec3]) -> Vec<Polyline> {
         let far = points
             .iter()
@@ -39,9 +40,9 @@ impl Projection {
         self.joined(segments)
     }
 
-    /// Joins segments in the picture to polygonal lines, and cuts off what is farther outside of
-    /// the picture than `REACH`. A segment that starts at the end of the previous one continues its
-    /// line.
+    /// Joins segments in the picture to polygonal lines. A segment that starts where the previous
+    /// one ends continues its line. Parts that are more than 128 times the picture's size outside
+    /// of it are cut off, since browsers cannot draw them exactly.
     pub fn joined(&self, segments: impl IntoIterator<Item = [DVec2; 2]>) -> Vec<Polyline> {
         let mut lines: Vec<Polyline> = Vec::new();
         let segments = segments.into_iter();
@@ -60,17 +61,17 @@ impl Projection {
         clip(segment, [-grown * self.size, (1.0 + grown) * self.size])
     }
 
-    /// Returns the line in the picture at which rays rise by `height` metres per metre of depth,
-    /// such as the horizon for 0. It is clipped to the picture, enlarged by its own size on each
-    /// side. Returns `None` if no part of it is left.
+    /// Returns the line in the picture at which rays from the eye rise by `height` metres per metre
+    /// of depth. For 0, this is the horizon. The line is clipped to the picture, enlarged by its
+    /// own size on each side. Returns `None` if no part of the line is left.
     pub fn level(&self, height: f64) -> Option<[DVec2; 2]> {
         // The ray through the pixel (x, y) of a picture of w × h pixels has, at depth 1, the height
         //
         //   ahead.y + pitch · (right.y · (x − w/2) − top.y · (y − h/2)).
         let normal = DVec2::new(self.right.y, -self.top.y) * self.pitch;
         let middle = self.size / 2.0;
-        // `foot` is the line's point nearest to the middle of the picture, `along` the line's
-        // direction.
+        // `foot` is the line's point nearest to the middle of the picture, and `along` is the
+        // line's direction.
         let foot = middle + normal * ((height - self.ahead.y) / normal.length_squared());
         let along = normal.perp().normalize_or_zero();
         let far = along * (foot.distance(middle) + 3.0 * self.size.length());
@@ -79,8 +80,9 @@ impl Projection {
     }
 }
 
-/// Clips a segment to a rectangle, which is given by its corners of least and greatest coordinates
-/// (algorithm of Liang and Barsky). Returns `None` if no part of the segment is left.
+/// Clips a segment to a rectangle by the algorithm of Liang and Barsky. The rectangle is given by
+/// two opposite corners: the one with the least coordinates, and the one with the greatest. Returns
+/// `None` if no part of the segment is left.
 pub fn clip([from, to]: [DVec2; 2], rectangle: [DVec2; 2]) -> Option<[DVec2; 2]> {
     let along = to - from;
     let (mut first, mut last): (f64, f64) = (0.0, 1.0);

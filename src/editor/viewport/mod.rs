@@ -7,7 +7,7 @@
 //!
 //! `lines` projects lines into the picture. `handles` computes the handles of an object and moves
 //! the object, `camera` moves the camera, and `edits` writes the changed fields into the text.
-//! `drag` combines these. `add` writes new blocks.
+//! `drag` combines them. `add` writes new blocks.
 
 mod add;
 mod camera;
@@ -33,8 +33,8 @@ pub use overlays::{
 };
 pub use pick::{MOST_SAMPLES, PixelSamples, pick, samples};
 
-/// Returns for each object the span that an editor selects when the object is chosen: its name, or
-/// the keyword of its block.
+/// Returns for each object the span that an editor selects when the object is clicked in the
+/// picture: its name, or else the keyword of its block.
 pub fn selections(analysis: &Analysis<'_>, scene: &Scene) -> Vec<Span> {
     let mut blocks = analysis.blocks().peekable();
     let selection = |object: &Object| {

@@ -1,5 +1,5 @@
-//! Computes drawings over a picture: the horizon, vanishing points with the lines that lead there,
-//! and the outlines and handles of objects.
+//! Computes the drawings over a picture: the horizon, vanishing points with the lines that lead to
+//! them, and the outlines and handles of objects.
 
 use glam::{DVec2, DVec3};
 
@@ -15,50 +15,56 @@ use crate::{
     tracer::World,
 };
 
-/// Distance, in pixels, between the points of a board's outline at which the tracer is asked
-/// whether an object hides the outline.
+/// Distance, in pixels, between the points of a checkerboard's outline at which a ray tests whether
+/// an object hides the outline. A smaller distance would cost more rays; with a larger one, the
+/// outline would visibly end too early or too late at an object.
 const TEST_DISTANCE: f64 = 2.0;
 
-/// Maximum number of points per segment of a board's outline at which the tracer is asked. On a
-/// longer segment, the points are farther apart than [`TEST_DISTANCE`].
+/// Maximum number of points per segment of a checkerboard's outline at which a ray tests whether an
+/// object hides the outline. It bounds the time for one segment. With points at a distance of
+/// [`TEST_DISTANCE`], it suffices for segments of 2000 pixels; on longer ones, the points are
+/// farther apart.
 const MOST_TESTS: f64 = 1000.0;
 
-/// Number of tested points, for all outlines of a picture together, after which no further outline
-/// is tested, which bounds the time. The outlines of the remaining boards are drawn as if nothing
-/// hid them.
+/// Number of tested points, for all checkerboards of a picture together, after which no further
+/// outline is tested. It bounds the time. The remaining outlines are drawn as if nothing hid them.
+/// It suffices for the four sides of at least two boards, since a side has at most [`MOST_TESTS`]
+/// points.
 const MOST_TESTS_IN_ALL: f64 = 8000.0;
 
-/// Maximum number of objects whose outlines are drawn over a picture. Nobody can tell more apart.
+/// Maximum number of objects whose outlines are drawn over a picture. Nobody can tell more outlines
+/// apart, and more would make the answer to the editor longer.
 pub const MOST_OBJECTS: usize = 1000;
 
-/// Drawings over a picture.
+/// Drawings over a picture. All points are in pixels from its top left corner.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Overlays {
-    /// The picture's width and height, in pixels.
+    /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
     /// Point where the view axis intersects the picture.
     pub axis: DVec2,
     /// The horizon, i.e. the image of all level directions; `None` if it is not visible.
     pub horizon: Option<[DVec2; 2]>,
-    /// Vanishing points of the x, y and z axes.
+    /// Vanishing points of the x, y and z axes, in this order.
     pub vanishing: [Vanishing; 3],
-    /// Lines in which the near plane intersects the checkerboards.
+    /// Lines of the picture in which the near plane intersects the checkerboards.
     pub near: Vec<[DVec2; 2]>,
-    /// Lines in which the far plane intersects the checkerboards.
+    /// Lines of the picture in which the far plane intersects the checkerboards.
     pub far: Vec<[DVec2; 2]>,
     /// Outlines and handles of the shown objects.
     pub objects: Vec<ObjectOverlay>,
 }
 
-/// Vanishing point of a coordinate axis.
+/// Vanishing point of a coordinate axis, with the lines that lead to it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Vanishing {
-    /// The point; `None` if the axis is parallel to the view plane, and so has none.
+    /// The vanishing point; `None` if the axis is parallel to the view plane, because parallel
+    /// lines then stay parallel in the picture.
     pub point: Option<DVec2>,
-    /// For each edge of a box that is parallel to the axis: the line along the edge and on to the
-    /// vanishing point.
+    /// For each edge of a box that is parallel to the axis, a line along the edge that continues to
+    /// the vanishing point.
     pub lines: Vec<Polyline>,
 }
 
@@ -68,20 +74,21 @@ pub struct Vanishing {
 pub struct ObjectOverlay {
     /// Index of the object in the scene.
     pub object: usize,
-    /// The outline.
+    /// Lines of the outline in the picture.
     pub lines: Vec<Polyline>,
-    /// Names of the handles, and their points in the picture; `None` for a handle that is not
-    /// visible.
+    /// Names of the handles, with their points in the picture. A handle that is not visible has no
+    /// point.
     pub handles: Vec<(&'static str, Option<DVec2>)>,
 }
 
-/// Selection of the objects whose outlines are drawn.
+/// Choice of the objects whose outlines are drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ShownObjects {
     /// The objects with these indices.
     Only(Vec<usize>),
-    /// The first [`MOST_OBJECTS`] objects, and the object with this index, if one is given.
+    /// The first [`MOST_OBJECTS`] objects and, if an index is given, also the object with this
+    /// index.
     First(Option<usize>),
 }
 
@@ -115,7 +122,7 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     });
     let cut = |depth: f64| {
         let boards = objects().filter_map(|(_, object)| object.shape.checkerboard());
-        // A plane at depth 0 has no visible intersection.
+        // At depth 0, the plane through the eye, nothing is visible.
         let lines = boards
             .filter_map(|&Checkerboard { y, .. }| projection.level((y - camera.eye.y) / depth));
         lines.take(MOST_OBJECTS).collect()
@@ -140,8 +147,8 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     }
 }
 
-/// Removes the parts of the boards' outlines that other objects hide. Without that, a square that
-/// is far larger than the objects would be drawn across all of them.
+/// Removes the parts of the checkerboards' outlines that other objects hide. Otherwise, a square
+/// that is far larger than the objects would be drawn across all of them.
 pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
     let is_seen = |index: usize, at: DVec2| {
         let hit = pick(scene, world, at).and_then(|(hit, _)| hit);
@@ -175,8 +182,8 @@ pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
                 let joined = lines.last_mut().filter(|line| line.last() == Some(&begin));
                 match joined {
                     Some(line) => {
-                        // If the parts before and after this point are on one straight segment, the
-                        // point is left out.
+                        // If the parts before and after this point belong to one straight segment,
+                        // the point is left out.
                         if part > 0 {
                             line.pop();
                         }

@@ -12,16 +12,19 @@ use crate::{
     tracer::{Hit, World, ray},
 };
 
-/// Maximum number of samples of a pixel that [`samples`] returns; further ones are left out.
+/// Maximum number of samples of a pixel that [`samples`] returns; further ones are left out. It
+/// limits the length of the answer to the editor. A drawing of one pixel cannot show 65 536 points
+/// separately, so nobody misses further ones.
 pub const MOST_SAMPLES: u64 = 1 << 16;
 
 /// Maximum number of samples of a pixel for which [`samples`] renders the pixel. If the pixel has
-/// more, an error is returned, since rendering it would take too long.
+/// more samples, an error is returned, since rendering them all would delay the answer too long.
+/// The colour of the pixel needs all samples, also those that are not returned.
 const MOST_TRACED: u64 = 1 << 20;
 
-/// Returns the nearest hit of the ray through a point of the picture, and the colour that is
-/// visible there. The hit is `None` if the ray shows the background. Returns `None` for both if the
-/// point is outside of the picture.
+/// Returns the nearest visible hit of the ray through the point `point` of the picture, and the
+/// colour there. The hit is `None` if the background is visible there. Returns `None` if the point
+/// is outside of the picture.
 pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, Color)> {
     let picture = world.picture();
     let size = DVec2::new(f64::from(picture.width), f64::from(picture.height));
@@ -33,18 +36,18 @@ pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, 
     Some((seen, seen.map_or(scene.image.background, |hit| hit.color)))
 }
 
-/// Samples of a pixel.
+/// The colour of a pixel, and the samples from which it is computed.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PixelSamples {
-    /// Positions of the samples in pixels from the pixel's top left corner, and their colours.
+    /// Positions of the samples, in pixels from the pixel's top left corner, with their colours.
     pub samples: Vec<(DVec2, Color)>,
-    /// The colour of the pixel.
+    /// The pixel's colour, which takes all samples into account.
     pub color: Color,
 }
 
 /// Returns the colour of the pixel in column `x` and row `y`, and its first [`MOST_SAMPLES`]
-/// samples. An exact picture has no samples.
+/// samples. A picture that is computed exactly has no samples.
 ///
 /// # Errors
 ///

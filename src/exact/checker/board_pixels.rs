@@ -2,11 +2,11 @@
 //! pixels of more than one colour are of this kind.
 //!
 //! In: such pixels one by one, in any order, with the numbers of the board's squares at their
-//! corners. Out: the integral of the board's sign over each pixel. A pixel joins the batch of
-//! pixels that are crossed by the same numbers of lines of the two families. When a batch has eight
-//! pixels, `strips_simd` computes them at once and bounds the errors. The result for a pixel
-//! depends neither on the other pixels of its batch nor on the part of the picture that is
-//! rendered.
+//! corners. Out: the integral of the board's sign over each pixel. A board has two families of
+//! lines, those between columns and those between rows of squares. All pixels of a batch are
+//! crossed by the same numbers of lines of the two families. When a batch has eight pixels,
+//! `strips_simd` computes them at once and bounds the errors. The result for a pixel depends
+//! neither on the other pixels of its batch nor on the part of the picture that is rendered.
 
 use super::{
     homography::BoundedSum,
@@ -14,11 +14,10 @@ use super::{
 };
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
-/// Maximum number of the board's lines of one family that may cross a pixel of a batch; a pixel
-/// that more lines cross is returned without an integral. The board has two families of lines,
-/// those between columns and those between rows of squares. There is a batch for each pair of their
-/// two numbers, and few pixels have more lines. Not critical: with 8 or 128, the measured running
-/// time changes by at most about 10 %.
+/// Maximum number of lines between a board's columns, or between its rows, that may cross a pixel
+/// of a batch. A pixel that more lines cross is computed alone. There is one batch for each pair of
+/// a number of column lines and a number of row lines, and few pixels have more lines. Not
+/// critical: with 8 or 128, the measured running time changes by at most about 10 %.
 const MAX_LINES: usize = 32;
 
 /// A pixel that shows only a checkerboard.
@@ -40,10 +39,11 @@ pub(in crate::exact) struct BoardBatches {
     buffer: StripBuffer,
 }
 
-/// A queue of pixels that are crossed by the same numbers of lines of the board's two families.
+/// A queue of pixels that are crossed by the same number of lines between the board's columns, and
+/// by the same number of lines between its rows.
 #[derive(Debug, Default)]
 struct Batch {
-    /// The pixels, fewer than [`PIXELS`] between calls.
+    /// The queued pixels. A queue of [`PIXELS`] pixels is computed and emptied at once.
     pixels: Vec<BoardPixel>,
     lines: BoardLanes,
 }
@@ -59,8 +59,9 @@ impl BoardBatches {
     }
 
     /// Adds a pixel to the queue of its batch. If the batch is then full, computes it and calls
-    /// `emit` with each of its pixels and the pixel's integral, which is positive for the first
-    /// colour. If too many lines cross the pixel, calls `emit` at once, without an integral.
+    /// `emit` with each of its pixels and the pixel's integral, which is positive if the first
+    /// colour prevails. If too many lines cross the pixel, calls `emit` at once, without an
+    /// integral.
     pub fn push(
         &mut self,
         pixel: BoardPixel,
@@ -96,8 +97,8 @@ impl BoardBatches {
 
 impl Batch {
     /// Computes the queued pixels, calls `emit` with each and its integral, and empties the queue.
-    /// `crossing` has the numbers of lines of the board's two families that cross each pixel, the
-    /// smaller number first.
+    /// `crossing` holds how many lines between columns of the board cross each pixel, and how many
+    /// lines between rows do, the smaller number first.
     fn compute(
         &mut self,
         crossing: [usize; 2],
@@ -137,8 +138,8 @@ mod tests {
         World::new(&scene)
     }
 
-    /// Returns the integrals of all pixels that show only the board and whose corners' squares are
-    /// known.
+    /// Returns the integrals of all pixels that show only the board and at whose corners the
+    /// board's squares are known.
     fn sums(world: &World) -> Vec<(BoardPixel, Option<BoundedSum>)> {
         let [width, height] = SIZE;
         let mut batches = BoardBatches::new();
@@ -183,8 +184,8 @@ mod tests {
         fn it_is_what_clipping_square_by_square_gives(
             place in prop::array::uniform2(-9.0..9.0_f64),
             offset in prop::sample::select(vec![0.0, 1e6, -1e12]),
-            // The camera's height and the side of a square are powers of ten, and `height` and
-            // `square` are the exponents.
+            // The test draws the camera's height and the side of a square as powers of ten.
+            // `height` and `square` are the exponents.
             height in -1.0..2.0_f64,
             square in -1.0..3.0_f64,
             yaw in 0.0..360.0_f64,

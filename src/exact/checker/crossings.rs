@@ -1,10 +1,13 @@
 //! The lines that one edge of a polygon crosses, and the direct sum over these crossings.
 //!
-//! In: the series X along an edge ([`green`](super::green) derives it), and the point where the
-//! edge crosses its first line. Out: the alternating sum Σ (−1)^j·X over the crossings j, computed
-//! in lanes that the compiler vectorises, with a bound on truncation and rounding errors. The sum
-//! is divided into blocks of consecutive crossings, each of which uses as few terms of X as its
-//! depth allows.
+//! By Green's theorem ([`green`](super::green)), the integral of a board's sign over a polygon is a
+//! sum over the points where the polygon's edges cross lines of the board. What an edge contributes
+//! at each point is a function X, given as a truncated series.
+//!
+//! In: the function X of an edge, and the point where the edge crosses its first line. Out: the
+//! alternating sum Σ (−1)^j·X over the crossings j, with a bound on truncation and rounding errors.
+//! The compiler vectorises the sum. It is divided into blocks of consecutive crossings, each of
+//! which uses as few terms of X as its depth allows.
 
 use super::homography::{BoundedSum, UNIT};
 use super::special::{reduce_double, waves};
@@ -13,12 +16,15 @@ use std::f64::consts::PI;
 
 use multiversion::multiversion;
 
-/// Maximum number of terms of the series X ([`EdgeSeries`]). The omitted terms count as an error.
+/// Maximum number of terms of the series ([`EdgeSeries`]) by which a checkerboard is integrated
+/// along an edge. The omitted terms count as an error. With 20 terms, the last term is at most
+/// about 2e-17 of the first, because it is used only at distances of 18 squares (`NEAR_SQUARES`)
+/// and more; nearer squares are integrated one by one.
 pub(super) const MAX_TERMS: usize = 20;
 /// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
-/// truncation error of a block is limited to the tolerance divided by this number. The depth m
-/// grows by half over a block, so that after 15 blocks, a block has `MAX_BLOCK` crossings. The
-/// longest sum, 300,000 crossings, has 74 such blocks.
+/// truncation error of each block is limited to the tolerance divided by this number, so that all
+/// blocks together keep the tolerance. The longest sum, 300,000 crossings, has about 15 blocks that
+/// grow up to `MAX_BLOCK` crossings, and then about 74 of this length.
 const MAX_BLOCKS: f64 = 128.0;
 
 /// Minimum number of crossings in a block of the sum over an edge's crossings. With this many,
@@ -30,18 +36,24 @@ const MIN_BLOCK: f64 = 16.0;
 /// changes by at most about 10 %.
 const MAX_BLOCK: f64 = 4096.0;
 
-/// Number of running sums in which the terms (−1)^j·X of the crossings j are added, so that the
-/// compiler vectorises the loop: crossing j goes to sum j mod `LANES`. The number is even, so that
-/// all terms of a sum have one sign.
+/// Number of running sums in which the alternating terms of an edge's crossings are added: crossing
+/// j goes to sum j mod `LANES`. The compiler vectorises the loop, and the widest vectors hold eight
+/// `f64`. The number is even, so that the signs (−1)^j of all terms in one running sum are equal.
 const LANES: usize = 8;
-/// Number of crossings of an edge after which its coordinate t ([`EdgeSeries`]) is computed anew in
-/// double-double, so that the errors of its steps from crossing to crossing do not add up.
+/// Number of crossings of an edge after which the position along the edge is computed anew in
+/// double-double. In between, the position advances in `f64`, with an error that grows with the
+/// number of steps. A larger number would make the error larger; a smaller one would use the slow
+/// double-double more often.
 const CHUNK: usize = 64;
 
-/// The series X along an edge, where t is the coordinate along the edge, m the depth, and A_k are
-/// the periodic Euler polynomials ([`waves`]):
+/// A truncated series X, a function of the position along an edge of a polygon. Added up with
+/// alternating signs over the points where the edge crosses lines of a board, it gives the edge's
+/// contribution to the integral of the board's sign over the polygon.
 ///
 /// X = Σ `factors[k]`·A_k+1(t)·m^(−2−k), k = 1 … `terms`
+///
+/// Here t is the coordinate along the edge, m is the depth of the point, and the A_k are the
+/// periodic Euler polynomials ([`waves`]).
 pub(super) struct EdgeSeries {
     pub terms: usize,
     pub factors: [f64; MAX_TERMS + 1],
@@ -67,8 +79,9 @@ impl EdgeSeries {
         sum * u * u
     }
 
-    /// Returns an upper bound of the absolute value of term `k` of X at the depth `depth`. It
-    /// follows from |A_k+1| ≤ ½π^(−k).
+    /// Returns an upper bound of the absolute value of term `k` of the series ([`EdgeSeries`]) at
+    /// the depth `depth`. It uses |A_k+1| ≤ ½π^(−k), which holds for the periodic Euler polynomials
+    /// A_k.
     pub(super) fn size(&self, k: usize, depth: f64) -> f64 {
         let u = 1.0 / depth;
         let mut size = 0.5 * self.factors[k].abs() * u * u;
@@ -78,8 +91,9 @@ impl EdgeSeries {
         size
     }
 
-    /// Returns the number of terms of X needed in a sum over `lines` crossings, of which the
-    /// nearest has the depth `depth`, and the sum's truncation error. The error is at most `limit`.
+    /// Returns how many terms of the series are needed in a sum over `lines` crossings, and the
+    /// sum's truncation error, which is at most `limit`. `depth` is the depth of the nearest
+    /// crossing.
     fn terms_for(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
         let (mut terms, mut left) = (self.terms, 0.0);
         while terms > 1 {
@@ -94,28 +108,29 @@ impl EdgeSeries {
     }
 }
 
-/// The crossings of one edge of a polygon with the board's lines of one family, that is with the
-/// lines between columns or those between rows of squares.
+/// The points where one edge of a polygon crosses the lines between the columns of a board, or the
+/// lines between its rows.
 pub(super) struct LineCrossings {
-    /// Coordinate t along the edge at the first line, and the step of t from line to line, in
-    /// double-double. Their unit is a square of the board, half a period (half a turn) of the
-    /// square wave; whole turns are subtracted.
+    /// Coordinate t along the edge at the first crossed line, and the step of t from line to line,
+    /// in double-double. The unit is the side of a square. Multiples of 2, the period of the square
+    /// wave, are subtracted.
     pub reduced: [Double; 2],
-    /// Depth m at the first line.
+    /// Depth m of the edge at the first line that it crosses.
     pub depth: f64,
-    /// Step of the depth m from line to line.
+    /// Step of the depth m from one crossed line to the next.
     pub rise: f64,
-    /// Number of lines, an integer; infinite if the edge ends on the horizon.
+    /// Number of crossed lines, an integer; infinite if the edge ends on the horizon.
     pub count: Double,
 }
 
 impl LineCrossings {
-    /// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over the first
-    /// `lines` crossings, crossing by crossing, in blocks.
+    /// Computes the alternating sum Σ (−1)^j·X over the first `lines` crossings j, one by one, in
+    /// blocks. `series` gives X, the edge's contribution at a crossing. `tolerance` limits the
+    /// truncation error.
     ///
-    /// Over each block, the depth m grows by half, unless that takes fewer than [`MIN_BLOCK`] or
-    /// more than [`MAX_BLOCK`] crossings. Each block uses as few terms of X as `tolerance`, the
-    /// limit of the truncation error, allows.
+    /// Over each block, the depth grows by half, unless this takes fewer than [`MIN_BLOCK`] or more
+    /// than [`MAX_BLOCK`] crossings. Each block uses as few terms of the series as the tolerance
+    /// allows.
     pub(super) fn one_by_one(&self, series: &EdgeSeries, lines: f64, tolerance: f64) -> BoundedSum {
         let limit = tolerance / MAX_BLOCKS;
         let mut sum = BoundedSum::default();
@@ -129,12 +144,12 @@ impl LineCrossings {
             let (terms, left) = series.terms_for(depth, count, limit);
             let block = block(self, series, terms, [done, count]);
             sum.value += if done % 2.0 == 0.0 { block } else { -block };
-            // The error of t consists of two roundings, and of three roundings of the distance from
-            // the start of the chunk, which is half a chunk on average. The slope of X is at most π
-            // times the bound of X, so that an error of t causes π times as large an error of X.
-            // The factor 4 of `reach` covers these roundings with a margin. A term of X has 14
-            // roundings of its own, derived in `green`. The running sum of a lane has one rounding
-            // for each number added.
+            // The error of the coordinate t consists of two roundings, and of three roundings of
+            // the distance from the start of the chunk, which is half a chunk on average. The slope
+            // of the series X is at most π times the bound of X, so that an error of t causes π
+            // times as large an error of X. The factor 4 of `reach` covers these errors with a
+            // margin. A term of X has 14 roundings of its own, derived in `green`. The running sum
+            // of a lane has one rounding for each number added.
             let reach = 2.0 + 0.5 * count.min(CHUNK as f64);
             let added = count / LANES as f64 + 4.0;
             let rounding = UNIT * series.size(1, depth) * (added + 16.0 + 4.0 * PI * reach);
@@ -176,19 +191,22 @@ impl LineCrossings {
         ((sums[0] - sums[1]) + (sums[2] - sums[3])) + ((sums[4] - sums[5]) + (sums[6] - sums[7]))
     }
 
-    /// Returns the edge's coordinate t at crossing `j`, in half turns, reduced by whole turns.
+    /// Returns the coordinate t along the edge at crossing `j`, in squares, with multiples of 2,
+    /// the period of the square wave, subtracted.
     pub(super) fn reduced_at(&self, j: &Double) -> Double {
         let [t, stride] = &self.reduced;
         reduce_double(&t.plus(&stride.times(j)))
     }
 
-    /// Returns the step of t from line to line plus 1, in half turns, reduced by whole turns. The
-    /// added half turn stands for the sign (−1)^j, which alternates from crossing to crossing.
+    /// Returns the step of the coordinate t from crossing to crossing, plus 1, in squares, with
+    /// multiples of 2, the period of the square wave, subtracted. The added 1, half a period,
+    /// stands for the sign (−1)^j, which alternates from crossing to crossing.
     pub(super) fn alternating_step(&self) -> Double {
         reduce_double(&self.reduced[1].plus(&Double::from_f64(1.0)))
     }
 
-    /// Computes X at crossing `j` + `i`. `t` is the coordinate t at crossing `j`, in half turns.
+    /// Computes the series ([`EdgeSeries`]) at crossing `j` + `i`. `t` is the coordinate along the
+    /// edge at crossing `j`, in squares.
     #[inline(always)]
     fn at<const TERMS: usize, const ROWS: usize>(
         &self,
@@ -208,8 +226,9 @@ impl LineCrossings {
     }
 }
 
-/// Computes Σ (−1)^j·X over `count` crossings that follow the first `done` crossings of the edge,
-/// with j = 0 at the first of them. Uses at least `terms` terms of X ([`EdgeSeries`]).
+/// Computes the alternating sum Σ (−1)^j·X over the `count` crossings of an edge that follow its
+/// first `done` crossings, with j = 0 at the first of them. X is what the edge contributes at a
+/// crossing ([`EdgeSeries`]). At least `terms` terms of this series are used.
 #[multiversion(targets(
     "x86_64+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+fma+lzcnt+popcnt",
     "x86_64+avx2+bmi1+bmi2+fma+lzcnt+popcnt",

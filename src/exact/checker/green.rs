@@ -1,10 +1,14 @@
 //! The board's integral over a polygon of many squares, as a sum along its boundary, by Green's
-//! theorem with periodic Euler polynomials. The symbols a, b, m, K, s are those of [`Homography`].
+//! theorem with periodic Euler polynomials.
 //!
 //! In: a convex polygon in which the depth m changes little from square to square, and which may
 //! reach the horizon. Out: the integral of the board's sign, with an error bound. The bound covers
 //! the truncation of the series and of sums over crossings, rounding errors, and the displacement
 //! of squares by rounding errors of the forms.
+//!
+//! In the formulas, (a, b) is a point of the board's plane, in squares, and s is the square wave, 1
+//! and −1 in turn from square to square. A unit of the plane at the depth m covers K/m³ square
+//! pixels, where K is a constant ([`Homography`]). n is the number of terms of a series.
 //!
 //! With the periodic Euler polynomials A_k of [`waves`] and J = K/m³, the sum
 //!
@@ -47,27 +51,39 @@ use crate::math::{Double, Real};
 use glam::DVec2;
 use std::f64::consts::PI;
 
-/// Maximum error from truncating the series P, Ψ and X (module documentation) over a polygon, as a
-/// fraction of the pixel's tolerance; the number of terms is chosen accordingly.
+/// Maximum error from truncating the series along the edges and at the corners of a polygon, as a
+/// fraction of the pixel's tolerance. The number of terms is chosen accordingly. The fraction is
+/// small, because the sums over the points where edges cross lines of the board may use up all of
+/// the tolerance ([`FINITE_TAIL`]).
 const TRUNCATION: f64 = 1e-3;
 
-/// Maximum truncation error of the sum over the crossings of an edge that ends before the horizon,
-/// as a fraction of the pixel's tolerance, if another edge of the polygon ends on the horizon. At
-/// most two edges of each kind contribute noticeably. Their errors add up to twice the tolerance,
-/// of which half counts, because a colour's share is half of the integral of signs.
+/// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
+/// pixel's tolerance. It holds for an edge that ends before the horizon, in a polygon that reaches
+/// the horizon. Edges that end on the horizon get the larger fraction [`ENDLESS_TAIL`], because
+/// they cross infinitely many lines.
+///
+/// A polygon has at most two edges of each kind with noticeable errors, which add up to 2·(1/9 +
+/// 8/9), twice the tolerance. Half of this counts, because a colour's share is half of the integral
+/// of signs.
 const FINITE_TAIL: f64 = 1.0 / 9.0;
-/// Maximum truncation error of the sum over the crossings of an edge that ends on the horizon, as a
-/// fraction of the pixel's tolerance. Together with [`FINITE_TAIL`], it adds up to 1.
+/// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
+/// pixel's tolerance. It holds for an edge that ends on the horizon. Other edges of the polygon get
+/// the rest, 1/9 ([`FINITE_TAIL`]).
 const ENDLESS_TAIL: f64 = 8.0 / 9.0;
-/// Maximum truncation error of the sum over the crossings of an edge, as a fraction of the pixel's
-/// tolerance, if no edge of the polygon reaches the horizon. Only two edges then recede and have
-/// long sums; the sums over other edges hardly contribute (`tail::level`).
+/// Maximum truncation error of the sum over the lines that one edge crosses, as a fraction of the
+/// pixel's tolerance, if no edge of the polygon reaches the horizon. It is the whole tolerance,
+/// because only the two edges that recede from the eye have long sums; the sums over other edges
+/// hardly contribute.
 const ONLY_FINITE_TAIL: f64 = 1.0;
-/// Minimum fraction of the pixel's tolerance that the truncated sums over a polygon may use up. A
-/// polygon of a larger area may use that area, in square pixels, as its fraction.
+/// Minimum fraction of the pixel's tolerance that the truncated sums over one polygon may use up. A
+/// polygon gets its area in square pixels as the fraction, if this is more. With a smaller minimum,
+/// the sums over tiny polygons would become long. With a larger one, the errors of many tiny
+/// polygons could exceed the tolerance.
 const MIN_SHARE: f64 = 1.0 / 64.0;
 
-/// Factors (k + 1)!/2 of the terms of the series X ([`EdgeSeries`]), by the index k.
+/// Factors (k + 1)!/2, by k: the k-th derivative of K/m³ with respect to m is ±K·(k +
+/// 2)!/2·m^(−3−k), which uses the factor of index k + 1. The series ([`EdgeSeries`]) and the
+/// potential ([`potential`]) consist of such derivatives.
 pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
     let mut all = [0.5; MAX_TERMS + 2];
     let mut k = 1;
@@ -79,8 +95,8 @@ pub(super) const HALF_FACTORIAL: [f64; MAX_TERMS + 2] = {
 };
 
 /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over a convex polygon
-/// in which the depth changes little from square to square. The polygon must lie in `visible`, the
-/// part of the picture's polygon that shows the floor, and may reach the horizon.
+/// in which the depth changes little from square to square. The polygon may reach the horizon. It
+/// must lie in `visible`, the part of a polygon of the picture in which the floor is seen.
 pub(super) fn sum(
     board: &Homography,
     polygon: &[DVec2],
@@ -90,10 +106,10 @@ pub(super) fn sum(
     let (area, _) = measure(polygon);
     let corner = |&at: &DVec2| board.corner(at, visible);
     let corners: Vec<Corner> = polygon.iter().map(corner).collect();
-    // The polygons of a pixel divide its tolerance among them in proportion to their areas, but
-    // each gets at least `MIN_SHARE`. The omitted terms of all polygons then add up to about those
-    // of a single polygon. The limits of the tails (`FINITE_TAIL` and the two that follow it)
-    // assume four edges, so that a polygon of more edges gets proportionally less per edge.
+    // The polygons of a pixel divide its tolerance in proportion to their areas, but each gets at
+    // least the fraction `MIN_SHARE`. The limits of truncated sums (`FINITE_TAIL` and the constants
+    // after it) assume four edges, so that a polygon of more edges gets proportionally less per
+    // edge.
     let share = area.abs().max(MIN_SHARE) * (4.0 / corners.len() as f64).min(1.0);
     let edges: Vec<Option<Edge>> = (0..corners.len())
         .map(|i| Edge::new(board, &corners[i], &corners[(i + 1) % corners.len()]))
@@ -126,8 +142,9 @@ pub(super) fn sum(
         if ends != 0.0 && corners[i].depth.is_finite() {
             let (psi, size) = potential(board, &corners[i], terms);
             sum.value += ends * psi;
-            // Term k of Ψ has at most 3k + 4 roundings and is less than 2^−k of term 0. The
-            // roundings add up to Σ (3k + 4)/2^k = 14 of term 0. The product with K has two more.
+            // Term k of the potential Ψ has at most 3k + 4 roundings and is less than 2^−k of term
+            // 0. The roundings add up to Σ (3k + 4)/2^k = 14 roundings of term 0. The product with
+            // the density factor K has two more.
             sum.bound += (16.0 * UNIT + 2.0 * board.density_error) * size;
         }
     }
@@ -135,22 +152,10 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns the number of terms n that the series needs for a truncation error of at most `limit`,
-/// and a bound on the error. If no number of terms is enough, returns the one with the smallest
-/// bound.
-///
-/// The module's documentation defines P, Ψ, X and γ. The truncation error of P follows from |A_k| ≤
-/// ½π^(1−k). Let p be the larger of the slopes |∂m/∂a| and |∂m/∂b|, and m the smallest depth. The
-/// integral of the error is at most the polygon's area in the picture times
-///
-/// ½π^(1−n)·(n+2)!/2·(p/m)^n.
-///
-/// The truncation errors of Ψ and X on an edge have an integral of at most
-///
-/// n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|.
-///
-/// Here g is the larger of two slopes of m, the one along the edge and the one along its coordinate
-/// t. The integral ∫ J |dt| is at most J·min(|Δt|, m/2γ), with J at the near end.
+/// Returns how many terms the series need for a truncation error of the polygon's integral of at
+/// most `limit`, and a bound on this error. If no number of terms is enough, returns the one with
+/// the smallest bound. `nearest` is the smallest depth in the polygon, and `area` its area in the
+/// picture.
 fn terms(
     board: &Homography,
     nearest: f64,
@@ -158,6 +163,20 @@ fn terms(
     area: f64,
     limit: f64,
 ) -> (usize, f64) {
+    // The symbols are those of the module's documentation; n is the number of terms. The truncation
+    // error of P follows from |A_k| ≤ ½π^(1−k). Let p be the larger of the slopes |∂m/∂a| and
+    // |∂m/∂b|, and m the smallest depth. The integral of the error is at most the polygon's area in
+    // the picture times
+    //
+    // ½π^(1−n)·(n+2)!/2·(p/m)^n.
+    //
+    // The truncation errors of Ψ and X on an edge have an integral of at most
+    //
+    // n·π^(1−n)·(n+2)!/2·(g/m)^n·∫ J |dt|.
+    //
+    // Here t is the one of the coordinates a and b that changes more along the edge. g is the
+    // larger of |∂m/∂t| on the floor and |dm/dt| along the edge. The integral ∫ J |dt| is at most
+    // J·min(|Δt|, m/2γ), with J at the near end.
     let slope = board.slope[0].abs().max(board.slope[1].abs());
     let (mut ratio, mut weight) = (slope / nearest, 0.0);
     for edge in edges.iter().flatten() {
@@ -184,9 +203,10 @@ fn terms(
     best
 }
 
-/// Returns two values at a corner: Ψ, the potential whose differences along the edges contribute to
-/// the integral, up to the order `terms`; and J = K/m³, to which the rounding error of Ψ is
-/// proportional.
+/// Returns two values at a corner of a polygon. The first is a potential; its differences between
+/// the ends of the edges are part of the polygon's integral. `terms` is the number of orders of
+/// derivatives in it. The second is the density of the floor in the picture, in square pixels per
+/// square of the board. The rounding error of the potential is proportional to it.
 fn potential(board: &Homography, corner: &Corner, terms: usize) -> (f64, f64) {
     match terms {
         0..=2 => potential_of::<2, 4>(board, corner, terms),
@@ -202,6 +222,7 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     corner: &Corner,
     terms: usize,
 ) -> (f64, f64) {
+    // The potential is Ψ of the module's documentation, and the density is K/m³.
     let u = 1.0 / corner.depth;
     let [a, b] = [0, 1].map(|i| {
         let mut waves = waves::<MOST, ROWS>(reduce(corner.floor[i]));
@@ -224,37 +245,49 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
     (density * sum, density)
 }
 
-/// An edge of a polygon, directed from its near end to its far end, with the symbols of the
-/// module's documentation. Of the two coordinates (a, b) on the board's plane, t is the one that
-/// changes more along the edge, and c is the other; m is the depth. The sum over the edge's
-/// crossings runs over the lines of constant c.
+/// An edge of a polygon, directed from its near end to its far end. A point of the edge shows a
+/// point (a, b) of the floor, in squares. t is the one of these two coordinates that changes more
+/// along the edge, c is the other one, and m is the depth. The sum over the edge's crossings runs
+/// over the lines of the board on which c is constant.
 struct Edge {
-    /// Sign of the integral ρ·∫ s(c) dX in the polygon's sum: +1 if the boundary runs from the near
-    /// to the far end and t is b, or if neither holds; otherwise −1.
+    /// Sign, +1 or −1, with which the edge's integral is added to the polygon's. It depends on two
+    /// conditions: whether the polygon's boundary runs from the edge's near end to its far end, and
+    /// whether b is the coordinate of the floor that changes more along the edge. It is +1 if both
+    /// hold or neither does.
     sign: f64,
-    /// Weight of the difference of Ψ between the edge's ends: 1 if t is b, 0 if t is a.
+    /// Factor, in the polygon's integral, of the potential's difference ([`potential`]) between the
+    /// edge's ends. It is 1 if b is the coordinate of the floor that changes more along the edge,
+    /// and 0 if it is a.
     potential: f64,
     c: f64,
     t: f64,
     depth: f64,
-    /// Values of c, t and m at the far end; `None` if the far end is on the horizon.
+    /// Values at the far end: the coordinate of the floor that changes less along the edge, the one
+    /// that changes more, and the depth. `None` if the far end is on the horizon.
     end: Option<(f64, f64, f64)>,
-    /// Number of lines of constant c that the edge crosses; infinite if the edge ends on the
+    /// Number of the board's lines that the edge crosses, counting only those on which the
+    /// coordinate that changes less along the edge is constant. Infinite if the edge ends on the
     /// horizon.
     count: Double,
-    /// Change of t from the near to the far end; infinite if the far end is on the horizon.
+    /// Change from the near to the far end of the coordinate of the floor that changes more along
+    /// the edge. Infinite if the far end is on the horizon.
     length: f64,
-    /// The slope dc/dt of the edge, ρ.
+    /// Slope dc/dt of the edge on the floor, where t is the coordinate that changes more along the
+    /// edge, and c the other one.
     rho: f64,
-    /// The change dm/dt of the depth m along the edge.
+    /// Derivative dm/dt of the depth m along the edge, where t is the coordinate of the floor that
+    /// changes more along the edge.
     climb: f64,
-    /// The slope ∂m/∂t of the depth m on the floor.
+    /// Partial derivative ∂m/∂t of the depth m on the floor, where t is the coordinate that changes
+    /// more along the edge.
     slope: f64,
-    /// Change of t from one crossed line to the next.
+    /// Change of the coordinate of the floor that changes more along the edge, from one crossed
+    /// line to the next.
     stride: Double,
     /// Change of the depth m from one crossed line to the next.
     rise: f64,
-    /// Direction in which c changes along the edge, +1 or −1.
+    /// Sign, +1 or −1, of the change from the near to the far end of the coordinate of the floor
+    /// that changes less along the edge.
     sense: f64,
 }
 
@@ -314,9 +347,9 @@ impl Edge {
         })
     }
 
-    /// Computes the edge's contribution ρ·∫ s(c) dX to the polygon's integral, with the square wave
-    /// s and the series X, from the near to the far end. `tolerance` limits the truncation error of
-    /// the sum over crossings.
+    /// Computes the edge's contribution to the polygon's integral, except for the potentials at the
+    /// edge's ends. It consists of the values of the series ([`EdgeSeries`]) at the two ends, and
+    /// of its sum over the crossed lines. `tolerance` limits the truncation error of this sum.
     fn integral(
         &self,
         board: &Homography,
@@ -324,6 +357,8 @@ impl Edge {
         tolerance: f64,
         budget: &PixelBudget,
     ) -> BoundedSum {
+        // With the symbols of the module's documentation, the contribution is ρ·∫ s(c) dX from the
+        // near to the far end, where c is the coordinate that changes less along the edge.
         let series = self.series(board, terms);
         let square = self.c.floor();
         let start = square_wave(square);
@@ -349,16 +384,16 @@ impl Edge {
                 rise: self.rise,
                 count: self.count,
             };
-            // At the first crossed line, the square wave s(c) changes by −2·s(c) of the near end.
-            // The changes at the following lines alternate in sign.
+            // At the first crossed line, the square wave s(c) changes by −2 times its value at the
+            // near end. The changes at the following lines alternate in sign.
             let tolerance = 0.5 * tolerance / self.rho.abs();
             let jumps = tail::sum(&crossings, &series, tolerance, budget);
             sum.value += 2.0 * start * jumps.value;
             sum.bound += 2.0 * jumps.bound;
         }
-        // X at each end has 14 roundings of its first term: term k has 3k + 4 roundings and is less
-        // than 2^−k of the first. The constant covers both ends. Every term is also proportional to
-        // K, which has an error of its own.
+        // The series X at each end of the edge has 14 roundings of its first term: term k has 3k +
+        // 4 roundings and is less than 2^−k of the first. The constant covers both ends. Every term
+        // is also proportional to the density factor K, which has an error of its own.
         let (ends, all) = (32.0 * UNIT * ends, ends + sum.value.abs());
         sum.value *= self.rho;
         sum.bound = self.rho.abs() * (sum.bound + ends + 2.0 * board.density_error * all);

@@ -1,10 +1,12 @@
-//! The homography from a pixel to a checkerboard, and the effect of the rounding of its forms.
+//! The homography (perspective map) from a pixel to the plane of a checkerboard, and how rounding
+//! errors displace what the pixel shows.
 //!
-//! In: a board's three linear forms from the tracer, for a sub-pixel. Out: points of the floor (the
-//! infinite plane of the board) and their depths; the slopes of the depth; the density of the floor
-//! in the picture; and a bound on how far rounding errors displace what a polygon shows. This bound
-//! is a first-order perturbation: each form has an error of four roundings, and the inverse of the
-//! forms' matrix maps these errors to the picture.
+//! In: three linear forms c0·x + c1·y + c2 from the tracer, which give the board's coordinates at a
+//! point (x, y) of a sub-pixel. Out: points of the floor (the infinite plane of the board) and
+//! their depths; the slopes of the depth; the density of the floor in the picture; and a bound on
+//! how far rounding errors displace what a polygon shows. This bound is a first-order perturbation:
+//! each form has an error of four roundings, and the inverse of the forms' matrix maps these errors
+//! to the picture.
 
 use glam::DVec2;
 
@@ -15,15 +17,15 @@ use crate::math::{Double, Real, two_product};
 pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 
 /// Minimum absolute value of the determinant of the matrix of the board's three linear forms
-/// ([`Homography`]), each scaled so that its largest factor is 1 to 2. Below it, the matrix counts
-/// as singular and gets this determinant, so that the inverse and its products are finite; the
-/// error bound then covers the whole polygon.
+/// ([`Homography`]), each scaled so that its largest factor is 1 to 2. A matrix with a smaller
+/// determinant counts as singular and gets this determinant, so that the inverse and its products
+/// are finite. The error bound then covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
 /// Maximum displacement of the horizon by rounding errors, in pixels, at which
 /// [`Homography::corner`] moves corners onto the horizon that rounding may have kept off it. With a
-/// larger displacement, no corner is moved. The error bound includes the move. A move of this
-/// length costs about a hundredth of the default tolerance.
+/// larger displacement, no corner is moved. The error bound includes the move; a move of this
+/// length adds about a hundredth of the default tolerance to it.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound
@@ -52,27 +54,34 @@ pub(in crate::exact) struct BoundedSum {
 /// pixels, where K = 1/|det M|.
 #[derive(Clone, Debug)]
 pub(in crate::exact) struct Homography {
-    /// The forms N_a and N_b.
+    /// The linear forms N_a and N_b, the numerators of the floor's coordinates a = N_a/L and b =
+    /// N_b/L.
     pub across: [[f64; 3]; 2],
-    /// The form L, scaled by a power of two so that its largest factor is between 1 and 2.
+    /// The linear form L, the denominator of the floor's coordinates; 0 on the horizon. It is
+    /// scaled by a power of two so that its largest factor is between 1 and 2.
     pub below: [f64; 3],
     /// Slopes of the depth m on the floor, ∂m/∂a and ∂m/∂b.
     pub slope: [f64; 2],
-    /// The factor K of the density K/m³.
+    /// Factor K of the floor's density in the picture: a unit of the floor at the depth m covers
+    /// K/m³ square pixels.
     pub density: f64,
-    /// Maximum relative error of `density`, compared with the exact K of the rounded forms.
+    /// Maximum relative error of `density` due to rounding in its computation from the linear
+    /// forms. Rounding errors in the forms' own factors are not included.
     pub density_error: f64,
-    /// Sign of det M, which depends on whether the floor is seen mirrored.
+    /// Sign of the determinant of the matrix of the three forms. It depends on whether the floor is
+    /// seen mirrored.
     pub orientation: f64,
     /// Maximum displacement of a corner of a polygon, or of a line of the board, by rounding
     /// errors: |dx| + |dy|, in pixels.
     displacement: f64,
     /// Unit vector along the horizon.
     horizon: DVec2,
-    /// Maximum displacement of a point perpendicular to the horizon by rounding errors, in pixels:
-    /// its value for a point on the horizon, and its increase per unit of L.
+    /// Maximum displacement of a point perpendicular to the horizon by rounding errors, in pixels,
+    /// as two numbers. The first is the displacement of a point on the horizon. The second is the
+    /// increase when the form `below`, which is 0 on the horizon, increases by 1.
     across_horizon: [f64; 2],
-    /// Maximum L of a point that counts as on the horizon, because only rounding keeps it off.
+    /// Maximum value of the form `below`, which is 0 on the horizon, at which a point counts as on
+    /// the horizon. A value up to this maximum may be only a rounding error.
     horizon_tolerance: f64,
 }
 
@@ -87,8 +96,8 @@ pub(super) struct Corner {
     pub depth: f64,
 }
 
-/// The part of a convex polygon of the picture that shows the floor (L ≥ 0), with the polygon's
-/// segment on the horizon.
+/// The part of a convex polygon of the picture in which the floor is seen, and this part's side on
+/// the horizon, if it has one.
 #[derive(Debug)]
 pub(super) struct VisiblePart {
     pub polygon: Vec<DVec2>,
@@ -148,17 +157,18 @@ fn normalized(form: [f64; 3]) -> ([f64; 3], i32) {
 }
 
 impl Homography {
-    /// Derives the homography from the forms N_a and N_b (`across`) and L (`below`). A common
-    /// positive factor of the three does not matter. The error bounds are smallest if the origin of
-    /// (a, b) is near the part of the floor that the pixel shows.
+    /// Derives the homography from the three linear forms of [`Homography`]: `across` has those of
+    /// the two numerators, `below` that of the common denominator. A common positive factor of the
+    /// three does not matter. The error bounds are smallest if the origin of the floor's
+    /// coordinates is near the part of the floor that the pixel shows.
     pub fn new(across: [[f64; 3]; 2], below: [f64; 3]) -> Self {
         let (below, scale) = normalized(below);
         let across = across.map(|form| form.map(|c| libm::ldexp(c, -scale)));
         // Squares may be of any size. N_a and N_b are therefore scaled like L, each by its own
         // power of two, before the matrix is inverted.
         let [(a, of_a), (b, of_b)] = across.map(normalized);
-        // Each of `columns` is a column of det M·M⁻¹ (`Homography`). Each component is accurate to
-        // two roundings of its own value.
+        // The columns of det M·M⁻¹, where M is the matrix of the three forms. Each component is
+        // accurate to two roundings of its own value.
         let columns = [cross(&b, &below), cross(&below, &a), cross(&a, &b)];
         let det = determinant(&a, &b, &below);
         let is_singular = det.abs() <= MIN_DETERMINANT;
@@ -169,9 +179,10 @@ impl Homography {
                 below[i].abs() * ((a[j] * b[k]).abs() + (a[k] * b[j]).abs())
             })
             .sum();
-        // Returns the maximum relative error of 1/det M. Each of the three factors of a product has
-        // a relative error of one `unit`; the products and their sums, in double-double, have
-        // errors of two `unit`s each. The division adds roundings in `f64`.
+        // Returns the maximum relative error of 1/det M, where M is the matrix of the three forms.
+        // Each of the three factors of a product has a relative error of one `unit`; the products
+        // and their sums, in double-double, have errors of two `unit`s each. The division adds
+        // roundings in `f64`.
         let det_off = |unit: f64| {
             if is_singular {
                 f64::INFINITY
@@ -183,8 +194,8 @@ impl Homography {
         // has one more.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
-        // Errors e of the forms displace a point by v = M⁻¹·e, so that L(v) = e_L. The displacement
-        // starts from the rounding errors of the point's own coordinates.
+        // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
+        // forms. The displacement starts from the rounding errors of the point's own coordinates.
         let volume = det.abs() * (1.0 - det_off(UNIT)).max(0.0);
         let (mut displacement, mut tilt) = (4.0 * UNIT, 0.0);
         for (error, column) in errors.iter().zip(&columns) {
@@ -211,7 +222,8 @@ impl Homography {
         }
     }
 
-    /// Returns the part of a convex polygon that shows the floor, where L ≥ 0.
+    /// Cuts a convex polygon at the horizon and returns the part that shows the floor, where the
+    /// linear form L ([`Self::below`], 0 on the horizon) is not negative.
     pub(super) fn visible(&self, polygon: &[DVec2]) -> VisiblePart {
         let (mut above, mut visible) = (Vec::new(), Vec::with_capacity(polygon.len() + 1));
         let level = |at| form(&self.below, at);
@@ -222,9 +234,10 @@ impl Homography {
         }
     }
 
-    /// Returns the floor and the depth at a point of the visible part. The point counts as on the
-    /// horizon if it is an end of the part's segment on the horizon, if L is within the rounding
-    /// tolerance of 0, or if the floor's coordinates overflow.
+    /// Returns the point of the floor that a point of the picture shows, and its depth. `at` must
+    /// be in the polygon of `visible`. It counts as on the horizon if it is an end of this
+    /// polygon's side on the horizon, if only rounding keeps it off the horizon, or if the floor's
+    /// coordinates overflow.
     pub(super) fn corner(&self, at: DVec2, visible: &VisiblePart) -> Corner {
         let is_on_horizon = |horizon: [DVec2; 2]| horizon.contains(&at);
         let level = if visible.horizon.is_some_and(is_on_horizon) {
@@ -238,7 +251,8 @@ impl Homography {
         } else {
             1.0 / level
         };
-        // If a quotient overflows, the point counts as on the horizon.
+        // The floor's coordinates N/L, as N times the depth 1/L. If one overflows, the point counts
+        // as on the horizon.
         let places = floor.map(|n| n * depth);
         if depth.is_infinite() || !places.iter().all(|place| place.is_finite()) {
             let depth = f64::INFINITY;
@@ -248,31 +262,34 @@ impl Homography {
         Corner { floor, depth }
     }
 
-    /// Returns whether [`Self::corner`] treats the point `at` as on the horizon although L is
-    /// positive there, because only rounding keeps the point off the horizon.
+    /// Returns whether [`Self::corner`] treats the point `at` as on the horizon although it lies
+    /// below. It does so if the distance to the horizon may be only a rounding error.
     pub(super) fn is_set_on_horizon(&self, at: DVec2) -> bool {
         let level = form(&self.below, at);
         level > 0.0 && level <= self.horizon_tolerance
     }
 
-    /// Returns one coordinate of the floor that the point `at` shows, in squares, and its maximum
-    /// rounding error. `axis` is 0 for a and 1 for b; `level` is the value of L at the point and
+    /// Returns one coordinate of the point of the floor that the point `at` shows, in squares, and
+    /// its maximum rounding error. `axis` is 0 for the first coordinate and 1 for the second.
+    /// `level` is the value of the form `below` at `at`, the denominator of the coordinates, and
     /// must be greater than 0.
     pub(in crate::exact) fn place(&self, axis: usize, at: DVec2, level: f64) -> (f64, f64) {
         let place = form(&self.across[axis], at) / level;
         let terms = size(&self.across[axis]) + place.abs() * size(&self.below);
         // The factors of each form have three roundings, its value has four, and the quotient N/L
-        // has one. This sum of 8 is doubled because the error of L may be as large as half of L.
+        // has one. The total of 8 is doubled, because the error of L may be as large as half of L.
         (place, 16.0 * UNIT / level * terms)
     }
 
     /// Returns an upper bound of the change of a polygon's integral by rounding errors of the
-    /// forms, in square pixels: the area that the polygon's boundary sweeps when it is displaced.
-    ///
-    /// Errors e of the forms displace a point by v = M⁻¹·e, with L(v) = e_L. Points near the
-    /// horizon therefore hardly move perpendicular to the horizon, even if they move far along it.
+    /// linear forms, in square pixels. The change is at most the area that the polygon's boundary
+    /// sweeps when the errors displace it.
     pub(in crate::exact) fn displacement_error(&self, polygon: &[DVec2]) -> f64 {
         let (_, perimeter) = measure(polygon);
+        // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three
+        // forms. The displacement changes the form L only by its error, L(v) = e_L. Points near the
+        // horizon therefore hardly move perpendicular to the horizon, even if they move far along
+        // it.
         let levels = polygon.iter().map(|&p| form(&self.below, p));
         let [least, more] = self.across_horizon;
         let across = (least + more * levels.fold(0.0, f64::max)).min(self.displacement);

@@ -37,24 +37,26 @@ pub(super) use self::{
     special::square_wave,
 };
 
-/// Distance of the near squares from the line on the floor where the depth m is 0, in squares:
-/// nearer squares are cut out one by one, and the board beyond is integrated along its boundary by
-/// Green's theorem. Beyond this distance, term n of the series X is at most n/(18π) of the previous
-/// term. The 20 terms therefore reach 20!/(18π)²⁰, about 2e-17.
+/// Distance up to which squares are near, in squares, measured from the line in the board's plane
+/// where the depth is 0. Near squares are cut out one by one; the board beyond is integrated along
+/// its boundary by Green's theorem, as a series. Beyond 18 squares, term n of the series is at most
+/// n/(18π) of the previous term. Its 20 terms therefore fall to 20!/(18π)²⁰, about 2e-17.
 const NEAR_SQUARES: f64 = 18.0;
-/// Number of squares in a polygon up to which all of them are cut out one by one, however far away
-/// they are; with more, only near squares are. Not critical: with 6 or 96, the measured running
-/// time changes by at most about 10 %.
+/// Maximum number of squares in a polygon at which all of them are cut out one by one, at any
+/// distance. With more squares, only those within [`NEAR_SQUARES`] are. Not critical: with 6 or 96,
+/// the measured running time changes by at most about 10 %.
 const MAX_CUT_SQUARES: f64 = 24.0;
-/// Maximum depth m = 1/L ([`Homography`]) at which squares are cut out one by one. The distance to
-/// the horizon in the picture is then only a thousand rounding errors, because the largest factor
-/// of L is about 1. If squares are so large that even farther ones count as near, the colours
-/// beyond are treated as unknown.
+/// Maximum depth at which squares are cut out one by one. The depth is 1 over the form L
+/// ([`Homography`]), which is 0 on the horizon. At this depth, a point of the picture is only a
+/// thousand rounding errors away from the horizon, because the largest factor of L is about 1. If
+/// squares are so large that even farther ones count as near, the colours beyond this depth are
+/// treated as unknown.
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {
-    /// Integrates the board's sign s(a)·s(b) over the part of a convex polygon that shows the
-    /// floor, in square pixels. The result does not depend on the polygon's orientation.
+    /// Integrates the board's sign (1 on squares of one colour, −1 on the others) over the part of
+    /// a convex polygon that shows the floor, in square pixels. The result does not depend on the
+    /// polygon's orientation.
     pub fn over(&self, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
         let visible = self.visible(polygon);
         if visible.polygon.len() < 3 {
@@ -63,8 +65,8 @@ impl Homography {
         if self.squares(&visible.polygon) <= MAX_CUT_SQUARES {
             return near::sum(self, &visible.polygon, budget).within(polygon);
         }
-        // Squares up to the depth m = `depth` count as near. Beyond it, m changes little from
-        // square to square.
+        // Squares up to the depth m = `depth` count as near. At greater depths, m changes little
+        // from square to square.
         let [p, q] = self.slope;
         let depth = NEAR_SQUARES * (p.abs() + q.abs());
         let nearness = |at: DVec2| depth.min(MAX_DEPTH) * form(&self.below, at) - 1.0;
@@ -82,8 +84,9 @@ impl Homography {
             });
         }
         if polygon.iter().any(|&at| self.is_set_on_horizon(at)) {
-            // `Self::corner` moves these corners to the horizon. The move displaces squares at most
-            // as far as rounding does, so that the same bound is added a second time.
+            // `Self::corner` moves corners to the horizon that only rounding keeps off it. The move
+            // displaces squares at most as far as rounding does, so that the same bound is added a
+            // second time.
             sum.bound += self.displacement_error(&visible.polygon);
         }
         sum.within(polygon)

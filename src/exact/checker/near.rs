@@ -1,10 +1,11 @@
 //! The board's integral over near squares: each square is cut out of the picture.
 //!
-//! In: a convex polygon of the picture on which L > 0. Out: the sum of the signed areas of the
-//! squares in it, in square pixels, with an error bound. The lines of one of the board's two
-//! families cut the polygon into rows, and the lines of the other family cut each row into squares
-//! (`clip`). The bound is the sum of each cut's position error times its length, plus the rounding
-//! errors of the areas.
+//! In: a convex polygon of the picture that does not reach the horizon. Out: the sum of the signed
+//! areas of the squares in it, in square pixels, with an error bound. The board has two families of
+//! lines, those between columns and those between rows of squares. The lines of one family cut the
+//! polygon into strips, and the lines of the other family cut each strip into squares (`clip`). The
+//! bound is the sum of each cut's position error times its length, plus the rounding errors of the
+//! areas.
 
 use glam::DVec2;
 
@@ -18,19 +19,22 @@ use super::{
 };
 use crate::math::two_sum;
 
-/// Maximum number of corners that cutting may add to the rest of a polygon, the part from which no
-/// squares are cut yet. Above it, the area of the rest is added to the error bound, and cutting
-/// ends. Exact cuts add at most two corners, both on the last line. Many more show that the lines
-/// are closer to each other than rounding errors.
+/// Maximum number of corners that cutting may add to a polygon. Squares are cut off the polygon one
+/// after another, and each cut changes what is left. If this has more corners, cutting ends, and
+/// its area is added to the error bound. Exact cuts add at most two corners, both on the last line.
+/// Many more show that the lines are closer to each other than rounding errors, so that cutting is
+/// useless.
 const MAX_EXTRA_CORNERS: usize = 32;
 
-/// Maximum board coordinate, in squares, in a polygon that is cut; beyond it, the integral is
-/// unknown. Up to it, the numbers of a square and of its neighbours are exact in `f64`.
+/// Maximum absolute value of a board coordinate, in squares, in a polygon that is cut into squares.
+/// In a polygon with larger coordinates, the integral is unknown. Up to this value, the number of a
+/// square and those of its neighbours are exact in `f64`.
 const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
-/// pixels. Returns 0 with the polygon's area as the bound if the budget does not afford the rows or
-/// the picture is cancelled. A row whose squares the budget does not afford contributes 0 to the
+/// pixels. The polygon is cut into the rows (or columns) of the board, and each row into squares.
+/// Returns 0 with the polygon's area as the bound if the budget does not afford the rows or the
+/// picture is cancelled. If the budget does not afford the squares of a row, the row adds 0 to the
 /// value and its area to the bound.
 pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -> BoundedSum {
     let mut tally = CompensatedSum::default();
@@ -70,8 +74,9 @@ pub(super) fn sum(board: &Homography, polygon: &[DVec2], budget: &PixelBudget) -
     tally.sum()
 }
 
-/// Cuts a convex polygon into the strips between neighbouring lines of one of the board's two
-/// families, one strip after another. `rest` is the part that is not yet cut off.
+/// Cutter of a convex polygon into the strips between neighbouring lines of one of the board's two
+/// families (columns or rows of squares), one strip after another. `rest` is the part that is not
+/// yet cut off.
 struct Cutter {
     across: [f64; 3],
     below: [f64; 3],
@@ -81,7 +86,8 @@ struct Cutter {
     /// Numbers of the next strip and of the last one; `None` if the polygon is empty or a
     /// coordinate is not below [`MAX_SQUARE`].
     strips: Option<(i64, i64)>,
-    /// Maximum number of corners of `rest`; above it, `rest` is not cut any further.
+    /// Maximum number of corners of the part of the polygon that is not yet cut off (`rest`). With
+    /// more corners, the part is not cut any further.
     too_many: usize,
 }
 
@@ -98,7 +104,8 @@ impl Cutter {
         }
     }
 
-    /// Starts cutting `polygon`: copies it to `rest`, and finds its first and last strip.
+    /// Starts cutting `polygon`: copies it to `rest`, the part that is not yet cut off, and finds
+    /// its first and last strip.
     fn start(&mut self, polygon: &[DVec2]) {
         self.rest.clear();
         self.rest.extend(polygon);
@@ -160,8 +167,9 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The factors of the line's form have three roundings of these sizes, and its value has
-        // four. The chord's end points have four more roundings, which are added below.
+        // The factors of the line's form have three roundings of terms of the given size, and its
+        // value has four. The chord's end points have four more roundings, which are added to the
+        // error below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);

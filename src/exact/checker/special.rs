@@ -16,27 +16,28 @@ use std::{f64::consts::FRAC_PI_2, sync::LazyLock};
 
 use crate::math::{Double, ROUND, Real, two_product};
 
-/// Size of a term, divided by the size of the sum, below which a series of an exponential integral
-/// is truncated. It is about a tenth of the unit roundoff.
+/// Ratio of a term to the sum below which a series of an exponential integral is truncated. The
+/// value is about a tenth of the unit roundoff, so that the omitted terms do not change the sum.
 const VANISHING: f64 = 1e-17;
 
 /// A complex number: real and imaginary part.
 pub(super) type Complex = [f64; 2];
 
-/// Returns `x` half turns reduced by whole turns, to between −1 and 1.
+/// Returns an angle of `x` half turns, reduced by whole turns to between −1 and 1 half turns.
 pub(super) fn reduce(x: f64) -> f64 {
     x - 2.0 * (0.5 * x).round_ties_even()
 }
 
-/// Returns a double-double number of half turns reduced by whole turns. The absolute value may
-/// exceed 1 by a rounding, because the two parts are reduced separately.
+/// Returns an angle in half turns, given in double-double, reduced by whole turns. The absolute
+/// value may exceed 1 by a rounding, because the two parts of the double-double are reduced
+/// separately.
 pub(super) fn reduce_double(x: &Double) -> Double {
     Double::from_f64(reduce(x.hi)).plus(&Double::from_f64(reduce(x.lo)))
 }
 
-/// Returns `n`·`angle` in half turns, reduced by whole turns. `angle` must be reduced, and `n` must
-/// be below 2^51. Even a small result has a relative error of only one rounding, except for the
-/// error of the double-double product.
+/// Returns `n`·`angle`, both in half turns, reduced by whole turns. `angle` must already be
+/// reduced, and `n` must be below 2^51. Even a small result has a relative error of only one
+/// rounding, except for the error of the double-double product.
 pub(super) fn reduced_multiple(n: f64, angle: &Double) -> f64 {
     let Double { hi, lo } = two_product(n, angle.hi);
     let turns = (0.5 * hi + ROUND) - ROUND;
@@ -61,7 +62,7 @@ fn size(z: Complex) -> f64 {
 }
 
 /// Number of orders k, 0 to 21, for which the coefficients of the periodic Euler polynomials A_k
-/// ([`waves`]) are stored.
+/// ([`waves`]) are stored. A series of at most 20 terms needs the orders up to 21.
 const ORDERS: usize = 22;
 
 /// Maximum number of coefficients of a periodic Euler polynomial A_k ([`waves`]) on one square of
@@ -119,9 +120,9 @@ pub(in crate::exact) fn square_wave(t: f64) -> f64 {
     if half == half.floor() { 1.0 } else { -1.0 }
 }
 
-/// Returns η, the signed distance of `t` from the middle of its square, and the square wave there.
-/// On the border of two squares, either square may be used, because the periodic Euler polynomials
-/// A_k are continuous from k = 1 on. |`t`| must be below 2^51, the limit of [`ROUND`].
+/// Returns the signed distance of `t` from the middle of its square, and the square wave there. On
+/// the border of two squares, either square may be used, because the periodic Euler polynomials A_k
+/// are continuous from k = 1 on. |`t`| must be below 2^51, the limit of [`ROUND`].
 #[inline(always)]
 fn from_middle(t: f64) -> (f64, f64) {
     let middle = t - 0.5;
@@ -184,37 +185,39 @@ pub(super) fn waves<const TERMS: usize, const ROWS: usize>(t: f64) -> [f64; ROWS
     all
 }
 
-/// Order s of the exponential integral F_s ([`integrals`]) that is computed first; F_4 and F_5
-/// follow from it.
+/// Order s of the exponential integral F_s ([`integrals`]) that is computed first. F_4 and F_5
+/// follow from F_3 by a recurrence. No other orders are needed, because the sums over an edge's
+/// crossings use only the exponents 3, 4 and 5.
 const ORDER: u32 = 3;
 
 /// Value of |y| below which the exponential integral F_3(y) ([`integrals`]) is computed by the
-/// power series. Up to it, no term of that series exceeds 3, so that few digits cancel.
+/// power series. No term of the series exceeds 3 for such y, so that few digits cancel.
 const SMALL: f64 = 3.0;
-/// Value of |y| from which on the exponential integral F_3(y) ([`integrals`]) is computed by the
-/// asymptotic series. From it on, the terms of that series become negligible before they grow
-/// again.
+/// Minimum |y| at which the exponential integral F_3(y) ([`integrals`]) is computed by the
+/// asymptotic series. For smaller |y|, the terms of the series might grow again before they are
+/// negligible.
 const LARGE: f64 = 64.0;
 
-/// Distance in y between the expansion points of the Taylor series of the exponential integral F_3
-/// ([`integrals`]), which are used for |y| from `SMALL` to `LARGE`.
+/// Distance in y between neighbouring expansion points of the Taylor series of the exponential
+/// integral F_3 ([`integrals`]), which are used for |y| from `SMALL` to `LARGE`. A smaller distance
+/// would need fewer terms per series but a larger table, which now has 123 series.
 const STEP: f64 = 0.5;
 /// Number of terms of a Taylor series of the exponential integral F_3 ([`integrals`]). The distance
-/// from the expansion point is at most ¼, and y is at least 3, so that the first omitted term is at
-/// most (¼/3)^16 = 5e-18.
+/// of y from the expansion point is at most ¼, and y is at least 3, so that the first omitted term
+/// is at most (¼/3)^16 = 5e-18.
 const EXPANSION_TERMS: usize = 16;
 type Expansion = [Complex; EXPANSION_TERMS];
 static EXPANSIONS: LazyLock<Vec<Expansion>> = LazyLock::new(expansions);
 
-/// Returns F_3(y), F_4(y) and F_5(y), where F_s(y) = ∫_0^∞ e^(iyv)·(1 + v)^(−s) dv.
+/// Returns the exponential integrals F_3(y), F_4(y) and F_5(y), where F_s(y) = ∫_0^∞ e^(iyv)·(1 +
+/// v)^(−s) dv.
 pub(super) fn integrals(y: f64) -> [Complex; 3] {
     let third = third(y);
     let fourth = next(y, third, 3.0);
     [third, fourth, next(y, fourth, 4.0)]
 }
 
-/// Returns the exponential integral F_3(y) ([`integrals`]), by the series that converges for this
-/// |y|.
+/// Returns the exponential integral F_3(y) ([`integrals`]), by the series that suits |y|.
 fn third(y: f64) -> Complex {
     let size = y.abs();
     let integral = if size >= LARGE {
@@ -231,19 +234,19 @@ fn third(y: f64) -> Complex {
     }
 }
 
-/// Returns F_(s+1)(y) = (1 + iy·F_s(y))/s (DLMF 8.19.12), where `integral` is F_s(y) and `order` is
-/// s.
+/// Returns the exponential integral F_(s+1)(y) = (1 + iy·F_s(y))/s (DLMF 8.19.12), where `integral`
+/// is F_s(y) and `order` is s.
 fn next(y: f64, integral: Complex, order: f64) -> Complex {
     [(1.0 - y * integral[1]) / order, y * integral[0] / order]
 }
 
-/// Evaluates the asymptotic series of F_3(y) for y ≥ `LARGE` until the terms are negligible (DLMF
-/// 8.20.2, with s = 3 and z = −iy):
+/// Evaluates the asymptotic series of the exponential integral F_3(y) for y ≥ `LARGE` until the
+/// terms are negligible (DLMF 8.20.2, with s = 3 and z = −iy):
 ///
-/// (1/z)·Σ (−1)^k·(s)_k·z^−k.
+/// (1/z)·Σ (−1)^k·(s)_k·z^−k, where (s)_k = s·(s + 1)·…·(s + k − 1).
 fn asymptotic(y: f64) -> Complex {
     let u = 1.0 / y;
-    // 1/z = i/y, so that each term is the previous one times −i·(k + s)/y.
+    // Because 1/z = i/y, each term is the previous one times −i·(k + s)/y.
     let (mut term, mut sum) = (u, [0.0; 2]);
     for k in 0..40 {
         match k % 4 {
@@ -260,8 +263,8 @@ fn asymptotic(y: f64) -> Complex {
     sum
 }
 
-/// Evaluates F_3(y) ([`integrals`]) for y from 3 to 64 by the Taylor series about the nearest
-/// expansion point.
+/// Evaluates the exponential integral F_3(y) ([`integrals`]) for y from 3 to 64 by the Taylor
+/// series about the expansion point nearest to y.
 fn expanded(expansions: &[Expansion], y: f64) -> Complex {
     let middle = f64::from((y / STEP + 0.5) as u32);
     let step = y - middle * STEP;
@@ -276,21 +279,22 @@ fn at_step(terms: &Expansion, step: f64) -> Complex {
     })
 }
 
-/// Computes the Taylor series of F_3 about points from 3 to 64, and returns them in ascending
-/// order. They are computed in descending order: the value at each point comes from the series of
-/// the next greater point, a `STEP` above. Errors decay on the way down: F_s is 1/y times a number
-/// near 1, while a solution of the differential equation below without its −1 falls as y^(s−1).
-///
-/// (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) give the differential
-/// equation
-///
-/// y·F_s′ = (s − 1 − iy)·F_s − 1
-///
-/// The coefficients c_k about y therefore satisfy a recurrence, from whose right side 1 is
-/// subtracted if k = 0:
-///
-/// (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1
+/// Computes the Taylor series of the exponential integral F_3 ([`integrals`]) about points from 3
+/// to 64, and returns them in ascending order.
 fn expansions() -> Vec<Expansion> {
+    // The series are computed in descending order: the value at each point comes from the series of
+    // the next greater point, a `STEP` above.
+    //
+    // (s − 1)·F_s = 1 + iy·F_s−1 (DLMF 8.19.12) and F_s′ = i·(F_s−1 − F_s) give the differential
+    // equation
+    //
+    // y·F_s′ = (s − 1 − iy)·F_s − 1.
+    //
+    // Errors satisfy this equation without the −1, so that they are proportional to y^(s−1),
+    // whereas F_s grows about like 1/y. They therefore decay on the way down. The coefficients c_k
+    // about y satisfy a recurrence, from whose right side 1 is subtracted if k = 0:
+    //
+    // (k + 1)·y·c_k+1 = (s − 1 − k − iy)·c_k − i·c_k−1.
     let middles = (SMALL / STEP) as u32..=(LARGE / STEP) as u32;
     let mut value = asymptotic(LARGE);
     let about = |middle: u32| {
@@ -321,13 +325,13 @@ fn expansions() -> Vec<Expansion> {
 /// steps of the recurrence F_s+1 = (1 − z·F_s)/s, where z = −iy.
 fn power_series(y: f64) -> Complex {
     let first = first(y);
-    // F_2 = 1 − z·F_1, with −z = iy.
+    // The recurrence for s = 1 is F_2 = 1 − z·F_1, with −z = iy.
     let second = [1.0 - y * first[1], y * first[0]];
     [0.5 * (1.0 - y * second[1]), 0.5 * y * second[0]]
 }
 
 /// Computes the exponential integral F_1(y) = e^z·E_1(z) with z = −iy, for |y| < `SMALL` (DLMF
-/// 6.6.2) from
+/// 6.6.2) from the following series, where γ is Euler's constant:
 ///
 /// E_1(z) = −γ − ln z − Σ (−z)^k/(k·k!)
 ///

@@ -2,16 +2,17 @@
 //! vectorises.
 //!
 //! In: eight pixels that show only a checkerboard. The board has two families of lines, and the
-//! same number of each family cross every pixel. Out: the integral over each pixel, with a bound on
-//! the rounding errors of areas and on the displacement of lines by rounding.
+//! same number of lines of each family cross every pixel. Out: the integral over each pixel, with a
+//! bound on the rounding errors of areas and on the displacement of lines by rounding.
 //!
-//! The lines of the family with fewer lines cut the pixel into strips; σ_i is the sign of the
-//! squares in strip i. Let H_k be the side of line k of the other family on which squares have
-//! greater numbers, and W_k the signed area of the strips there:
+//! The lines of the family with fewer lines cut the pixel into strips. The sign σ_i = (−1)^i
+//! alternates from strip to strip. Let H_k be the side of line k of the other family on which
+//! squares have greater numbers, and W_k the signed area of the strips there:
 //!
 //! W_k = Σ_i σ_i·|strip i ∩ H_k|.
 //!
-//! W_0 is the signed area of all strips. The sign of squares changes at each line, so that
+//! W_0 is the signed area of all strips, and s_0 the sign of the pixel's first square. The sign of
+//! squares changes at each line, so that
 //!
 //! ∬ s(a)·s(b) dx dy = s_0·(W_0 + 2·Σ_k (−1)^k·W_k).
 //!
@@ -36,12 +37,12 @@ use super::{
 };
 use crate::tracer::{CheckerForms, CheckerPixel, LocalForm};
 
-/// Maximum number of lines that cut a pixel into strips; pixels with more lines in both families
-/// are not computed here. The buffer of 34 sides of 320 bytes each then stays in the first-level
-/// cache.
+/// Maximum number of lines that cut a pixel into strips. A pixel in which both of the board's
+/// families of lines have more lines is computed alone. With 6 lines, the buffer of 34 sides of 320
+/// bytes each stays in the first-level cache.
 pub(super) const MAX_STRIP_LINES: usize = 6;
 
-/// Number of pixels that are computed at once; the widest vectors have as many lanes.
+/// Number of pixels that are computed at once. The widest vectors hold as many `f64`.
 pub(super) const PIXELS: usize = 8;
 
 /// One number per pixel.
@@ -59,11 +60,12 @@ pub(super) struct BoardLanes {
     many: FormRows,
     below: FormRows,
     /// Sign for each pixel: 1 if the pixel's first square has the board's first colour, −1 if it
-    /// has the second. The first square is the one with the smallest number in each family of
-    /// lines.
+    /// has the second. The first square is the one in the first of the pixel's columns of squares
+    /// and in the first of its rows.
     sign: Lanes,
-    /// Number of the square at each corner of the pixel, for each pixel. It is counted in the
-    /// family with fewer lines, from the smallest number in the pixel.
+    /// Numbers of the squares at the four corners of each pixel. Of the board's two families of
+    /// lines (columns and rows), squares are counted in the direction that crosses the family with
+    /// fewer lines in the pixel. The square with the smallest number has the number 0.
     squares: [Lanes; 4],
 }
 
@@ -122,9 +124,10 @@ impl LaneSums {
 }
 
 impl BoardLanes {
-    /// Sets the board of the pixel in lane `place`, of eight. The board has two families of
-    /// parallel lines, 0 and 1; `families` lists both, the one with fewer lines in the pixel first.
-    /// `first[k]` is the smallest number of a square in the pixel, counted across family k.
+    /// Sets the board of the pixel with the index `place`, from 0 to 7. A board has two families of
+    /// parallel lines, between columns (0) and between rows (1). `families` lists the two, the one
+    /// with fewer lines in the pixel first. `first` has the smallest number of a column, and of a
+    /// row, of squares in the pixel.
     pub fn set(
         &mut self,
         place: usize,
@@ -146,8 +149,9 @@ impl BoardLanes {
         self.sign[place] = if *odd { -wave } else { wave };
     }
 
-    /// Computes the integral of the board's sign over each pixel. `lines` has the numbers of lines
-    /// of the two families that cross every pixel, the smaller number first.
+    /// Computes the integral of the board's sign over each pixel. `lines` has the number of lines
+    /// between columns of the board that cross every pixel, and the number of those between rows,
+    /// the smaller number first.
     pub fn sums(&self, lines: [usize; 2], buffer: &mut StripBuffer) -> LaneSums {
         sums_simd(self, lines, buffer)
     }
@@ -197,9 +201,9 @@ impl BoardLanes {
         }
     }
 
-    /// Adds to `out` the maximum distance, in pixels, between the true line `n` of a family and the
-    /// computed line. The error consists of the forms' own errors, three roundings of their
-    /// factors, and four roundings of their values.
+    /// Adds to `out` the maximum distance, in pixels, between the true line number `n` of one
+    /// family of the board's lines and the computed line. The error consists of the forms' own
+    /// errors, three roundings of their factors, and four roundings of their values.
     #[inline(always)]
     fn add_off(&self, across: &FormRows, n: f64, out: &mut Lanes) {
         let below = &self.below;
@@ -319,8 +323,9 @@ impl BoardLanes {
         failed
     }
 
-    /// Returns twice the signed area of the strips that lies beyond the line `line` of the family
-    /// with more lines. `line` is counted from the first square of the pixel.
+    /// Returns twice the signed area of the strips that lies beyond one line of the board's family
+    /// with more lines. `line` is the number of this line, counted from the first square of the
+    /// pixel.
     #[inline(always)]
     fn beyond(&self, line: f64, sides: &[Sides]) -> Lanes {
         let mut area = [0.0; PIXELS];

@@ -130,8 +130,8 @@ fn brute(forms: [[f64; 3]; 3], polygon: &[DVec2]) -> f64 {
         let mut j = first;
         while j <= last {
             let seen = |q: DVec2| inverse * q.extend(1.0);
-            // A square may reach behind the eye, where m is negative. It is clipped well before the
-            // eye.
+            // A square may reach behind the eye, where the depth m is negative. It is clipped well
+            // before the eye.
             let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
                 .map(|(x, y)| DVec2::new(i + x, j + y));
             let before = clip(&corners, |q| seen(q).z - 0.5 * nearest);
@@ -218,7 +218,8 @@ fn wide_views() {
                 foot: DVec2::new(0.3, 0.45),
             };
             let found = view.board().alone(&PIXEL);
-            // The terms of the board's forms are larger than the pixel's side by this factor.
+            // The expected value is computed with coordinates as large as the pixel's distance from
+            // the centre of the horizon, which multiplies its rounding errors.
             let size = view.place.length();
             agree_in_size(found, brute(view.forms(), &PIXEL), size, 1e-10, view);
             assert!(found.bound < 1e-10, "{view:?}: {found:?}");
@@ -300,8 +301,8 @@ fn the_horizon() {
     }
 }
 
-/// Compares two integrals over the part of a pixel on the horizon that is below a line: the direct
-/// one, and the integral over the pixel minus that over the part above the line.
+/// The pixel lies on the horizon, and a line divides it in two. The integral over the pixel minus
+/// that over the upper part must equal the sum over the squares of the lower part.
 #[test]
 fn the_end_is_the_limit() {
     for degrees in [0.0, 45.0, 30.0, 71.565_051_177, 44.999] {
@@ -322,11 +323,12 @@ fn the_end_is_the_limit() {
     }
 }
 
-/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees. Returns the
-/// integral up to q = `most`, and the remaining area beyond. In the limit, a pixel far to the side
-/// sees one straight line on the floor, on which a and b are linear in q = height·x/y. The polygon
-/// is cut at each q at which a or b is an integer.
+/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, in which a
+/// pixel far to the side sees a single straight line on the floor. Returns the integral up to the
+/// distance `most` along this line, and the area of the polygon that shows the rest of it.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
+    // The distance is q = height·x/y at the point (x, y) relative to the middle of the horizon. The
+    // board's coordinates are linear in q. Each q at which one is an integer cuts the polygon.
     let angle = view.degrees.to_radians();
     let factors = [-libm::sin(angle), libm::cos(angle)];
     let q = |p: DVec2| view.height * (p.x + view.place.x) / (p.y + view.place.y);
@@ -370,9 +372,9 @@ fn widest(focal: f64, degrees: f64) -> PixelView {
     }
 }
 
-/// In the widest views, a and b are nearly proportional. Squares are very many, and a pixel sees
-/// such a narrow strip of them that rounding errors displace them visibly. The polygon is below the
-/// horizon, or reaches it.
+/// In the widest views, the board's coordinates a and b are nearly proportional. Squares are very
+/// many, and a pixel sees such a narrow strip of them that rounding errors displace them visibly.
+/// The polygon is below the horizon, or reaches it.
 #[test]
 fn the_widest_views() {
     for degrees in [30.0, 71.565_051_177, 135.0, 224.9] {
@@ -384,7 +386,7 @@ fn the_widest_views() {
                 let found = view.board().alone(&polygon);
                 let (expected, left) = brute_limit(&view, &polygon, most);
                 let error = (found.value - expected).abs();
-                // `brute_limit` is not exact here, because the focal length is finite, which
+                // `brute_limit` is exact only for a focal length of 0. The finite focal length
                 // displaces lines.
                 assert!(
                     error <= found.bound + left + 1e-11 + 1e3 * focal,
@@ -474,7 +476,9 @@ fn nothing_is_computed_beyond_the_budget() {
 /// The integral is known if a single square reaches up to the horizon, whatever the square's size.
 #[test]
 fn a_square_that_goes_to_the_horizon_is_known() {
-    // With an exponent of 90 or more, the forms cannot be distinguished from singular ones.
+    // The eye is 10^−`exponent` squares above the board, and one square fills nearly all of the
+    // floor in the pixel. From 90 on, the board's matrix cannot be distinguished from a singular
+    // one.
     for exponent in 0..90 {
         let view = PixelView {
             height: libm::pow(10.0, -f64::from(exponent)),
@@ -487,7 +491,8 @@ fn a_square_that_goes_to_the_horizon_is_known() {
         let BoundedSum { value, bound } = board.alone(&PIXEL);
         assert!(bound < 1e-9, "{bound} of {view:?}");
         // A little more than half of the pixel, 0.51, shows the floor. Nearly all of this is a
-        // single square, because the other squares are at least 0.3 squares away.
+        // single square, because the eye is above this square, at least 0.3 squares away from all
+        // others.
         let others = view.focal * view.height / 0.3;
         let is_one = (value - 0.51).abs() <= bound + 2.0 * others;
         assert!(is_one, "{value} of {view:?}");

@@ -1,40 +1,41 @@
-//! How a program behaves otherwise than a right one.
+//! How the ray tracer of a wrong program differs from that of a correct one.
 
 use glam::DVec3;
 
-/// Which of the surfaces that a ray crosses is seen.
+/// Rule that says which of the surfaces that a ray crosses is seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SeenSurface {
-    /// The nearest one ahead of the eye, which is correct.
+    /// The nearest surface ahead of the eye, which is correct.
     #[default]
     Nearest,
-    /// That of the last object in the file.
+    /// The surface of the object that comes last in the file.
     Last,
-    /// That of the first object in the file.
+    /// The surface of the object that comes first in the file.
     First,
-    /// The farthest one ahead of the eye.
+    /// The farthest surface ahead of the eye.
     Farthest,
-    /// The farthest one behind the eye, or else the nearest.
+    /// The farthest surface behind the eye. If there is none, the nearest surface ahead of it.
     Behind,
-    /// The nearest one, ahead of the eye or behind it.
+    /// The nearest surface, whether it is ahead of the eye or behind it.
     NearestBothWays,
 }
 
-/// Rule that decides which squares of a checkerboard have the first colour, as a function of a
-/// point's coordinates in squares.
+/// Rule that decides which squares of a checkerboard have the first colour. Its arguments are a
+/// point's coordinates x and z on the board, in units of a square's side.
 #[derive(Clone, Copy, Debug)]
 pub struct SquareRule(pub fn(f64, f64) -> bool);
 
 impl Default for SquareRule {
-    /// The correct rule: floor(x) + floor(z) is even.
+    /// Returns the correct rule: a square has the first colour if floor(x) + floor(z) is even. Here
+    /// x and z are coordinates in units of a square's side.
     fn default() -> Self {
         Self(|x, z| is_even(floor(x), floor(z)))
     }
 }
 
 impl PartialEq for SquareRule {
-    /// Compares two rules by their values at points all around the origin: a function may have
-    /// several addresses, so addresses alone do not distinguish functions.
+    /// Compares two rules by their values at points on all sides of the origin. Comparing the
+    /// functions' addresses is not enough, because a function may have several addresses.
     fn eq(&self, other: &Self) -> bool {
         let coordinates = || (-6..6).map(|i| 0.25 + 0.5 * f64::from(i));
         std::ptr::fn_addr_eq(self.0, other.0)
@@ -42,108 +43,116 @@ impl PartialEq for SquareRule {
     }
 }
 
-/// Rounds down.
+/// Rounds a number down to an integer.
 ///
-/// `f64::floor` is a call on processors without an instruction for it, and each ray that meets a
-/// board needs it. Beyond the range of an i64 squares are not distinguished.
+/// `f64::floor` is a slow call on processors without an instruction for it, and each ray that meets
+/// a checkerboard rounds two numbers. Results beyond the range of an `i64` are wrong; squares so
+/// far away are indistinguishable anyway.
 pub fn floor(x: f64) -> i64 {
     let towards_zero = x as i64;
     towards_zero.wrapping_sub(i64::from(towards_zero as f64 > x))
 }
 
-/// Returns whether the sum of two numbers is even.
+/// Returns whether x + z is even.
 pub fn is_even(x: i64, z: i64) -> bool {
     x.wrapping_add(z) & 1 == 0
 }
 
-/// How rays are made.
+/// How the camera makes rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Rays {
-    /// By the camera's definition.
+    /// Rays follow the definition of the camera, which is correct.
     #[default]
     Correct,
-    /// The up vector is taken for the picture's top.
+    /// The scene's up vector is used as the picture's upward direction, although it need not be
+    /// perpendicular to the view direction.
     UpAsTop,
-    /// The top of a rolled camera is computed from the right vector that is rolled already.
+    /// The roll turns the right vector first, and then computes the new upward direction from the
+    /// turned vector instead of the original one. This skews the picture.
     NewRight,
-    /// Only the right vector is rolled.
+    /// The roll turns the right vector only, not the upward direction. This skews the picture.
     RightAlone,
-    /// Rays are parallel, and leave from a window whose pixels have the size that they have at this
-    /// distance.
+    /// Rays are parallel. They start in a window whose pixels are as large as those of a
+    /// perspective picture at this distance from the eye, in metres.
     Parallel(f64),
-    /// A ray's angle with the view direction grows linearly with the distance from the picture's
-    /// middle.
+    /// The projection is that of a fisheye lens: the angle between a ray and the view direction is
+    /// proportional to the distance from the picture's middle.
     Fisheye,
 }
 
-/// How spheres are hit.
+/// How the intersections of a ray with a sphere are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Spheres {
-    /// By the correct formula.
+    /// Intersections are computed by the correct formula.
     #[default]
     Correct,
-    /// By the formula for rays of length 1, with the view plane at this distance.
+    /// Intersections are computed by the formula for rays of length 1, although the rays reach to
+    /// the view plane. The number is the distance of the view plane from the eye, in metres.
     UnitRays(f64),
-    /// Only in the nearer of the two points.
+    /// Only the nearer of the two intersections counts.
     LesserRoot,
-    /// Only in the farther of the two points.
+    /// Only the farther of the two intersections counts.
     GreaterRoot,
-    /// By roots that are multiplied by a where they should be divided, with the view plane at this
-    /// distance.
+    /// The quadratic formula multiplies its roots by a, the squared length of the ray, instead of
+    /// dividing them. The number is the distance of the view plane from the eye, in metres.
     TimesA(f64),
 }
 
-/// How a colour is shaded.
+/// How the colour of a surface is shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Shading {
-    /// Not at all, which is correct.
+    /// Colours are not shaded, which is correct.
     #[default]
     None,
-    /// By the cosine between the ray and the normal.
+    /// Colours are multiplied by the cosine of the angle between the ray and the surface normal.
     OfRay,
-    /// By the cosine between the normal and a direction to a light.
+    /// Colours are multiplied by the cosine of the angle between the surface normal and this
+    /// direction to a light.
     To(DVec3),
 }
 
-/// A fault in how one object is hit.
+/// A fault in how rays are intersected with one object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HitFault {
-    /// The test of this edge of a triangle is missing.
+    /// A triangle lacks the test against the edge with this index. Edge 0 is opposite the second
+    /// vertex, edge 1 opposite the third, and edge 2 opposite the first.
     WithoutEdge(usize),
-    /// A triangle is taken for the parallelogram of its first two sides.
+    /// A triangle is taken for the parallelogram that two of its sides span.
     Parallelogram,
-    /// A box has no sides across this axis.
+    /// A box lacks the two faces perpendicular to the axis with this index (0 is x), so it has no
+    /// end along that axis.
     WithoutAxis(usize),
 }
 
-/// How a program behaves; correct by default.
+/// How the ray tracer of a program behaves. The default is correct.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Behaviour {
-    /// Which surface is seen.
+    /// Rule that says which of the surfaces that a ray crosses is seen.
     pub visible: SeenSurface,
-    /// Which squares of a checkerboard have the first colour.
+    /// Rule that decides which squares of a checkerboard have the first colour.
     pub square_rule: SquareRule,
-    /// Ratio of a pixel's width to its height.
+    /// Ratio of a pixel's width to its height; 1 is correct.
     pub aspect: f64,
-    /// Distance between the middles of neighbouring pixels' samples, in pixels, per axis.
+    /// Distance between the samples of neighbouring pixels, in pixels, along x and y; 1 is correct.
     pub spread: [f64; 2],
-    /// Shift of the samples from their correct places, in pixels.
+    /// Offset of the samples from their correct places, in pixels, along x and y.
     pub offset: [f64; 2],
-    /// Width of the square in which a pixel's samples lie, in pixels.
+    /// Side of the square over which a pixel's samples are spread, in pixels; 1 is correct.
     pub pixel: f64,
-    /// How rays are made.
+    /// How the camera makes rays.
     pub rays: Rays,
-    /// Whether near and far are compared with distances from the eye, not with depths.
+    /// Whether the near and far planes are compared with distances from the eye, instead of depths.
     pub clips_distances: bool,
-    /// How spheres are hit.
+    /// How the intersections of a ray with a sphere are computed.
     pub spheres: Spheres,
-    /// Distance from the origin, along both axes of a checkerboard, at which it ends, in metres.
+    /// Distance from the origin at which a checkerboard ends, in metres along both of its axes.
+    /// Infinity is correct.
     pub board_reach: f64,
-    /// Index of the axis that is normal to a checkerboard.
+    /// Index of the axis perpendicular to a checkerboard; 1, the y axis, is correct.
     pub board_normal: usize,
-    /// How colours are shaded.
+    /// How the colour of a surface is shaded.
     pub shading: Shading,
-    /// The object that is hit wrongly, and how.
+    /// Index of the one object with which rays are intersected wrongly, and the fault.
     pub hit: Option<(usize, HitFault)>,
 }
 
@@ -173,7 +182,7 @@ impl Behaviour {
         self == Self::default()
     }
 
-    /// Returns whether each object is seen only where a correct program shows it, or not at all.
+    /// Returns whether no object is seen in a place where a correct program does not show it.
     pub fn is_in_place(self) -> bool {
         !self.is_shifted()
             && self.pixel == 1.0
@@ -185,7 +194,7 @@ impl Behaviour {
             && self.hit.is_none()
     }
 
-    /// Returns whether samples are shifted or spread by pixels or parts of them.
+    /// Returns whether samples are offset from their correct places, or their spacing is wrong.
     pub fn is_shifted(self) -> bool {
         self.offset != [0.0; 2] || self.spread != [1.0; 2]
     }

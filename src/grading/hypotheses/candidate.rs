@@ -11,50 +11,55 @@ use super::{
 };
 use crate::scene::{FieldOwner as Part, Scene};
 
-/// A mistake of a program.
+/// One mistake of a program.
 #[derive(Clone, Debug)]
 pub enum Mistake {
-    /// A row of the table, and the index of its object if the row is about one.
+    /// A row of the table of mistakes. If the row is about a single object, the index of the object
+    /// comes with it.
     Row(&'static MistakeRow, Option<usize>),
-    /// Numbers of the scene that have other values.
+    /// A field of the scene has wrong numbers. The values are the field, and the numbers that the
+    /// program uses.
     Numbers(Parameter, Vec<f64>),
-    /// An extra patch: pixels of one colour, in linear light, inside a rectangle given by its least
-    /// and greatest column and row.
+    /// An extra patch in the picture. The fields are its colour, in linear light, and its bounding
+    /// rectangle: the least and the greatest column and row.
     Patch([f64; 3], [[f64; 2]; 2]),
-    /// Two objects of one colour each that have each other's colours.
+    /// Two objects of one colour each, given by their indices, have each other's colours.
     ColorsExchanged(usize, usize),
-    /// A pixel filter whose width is this multiple of a pixel's.
+    /// The pixel filter is too wide or too narrow. The number is its width, in pixels.
     Filter(f64),
 }
 
-/// A row of the table of mistakes (`mistakes`).
+/// A row of the table of mistakes (module `mistakes`).
 #[derive(Debug)]
 pub struct MistakeRow {
-    /// Stable identifier, for programs.
+    /// Stable identifier, for programs. Variants of a mistake share it.
     pub id: &'static str,
-    /// Where the mistake is visible.
+    /// Where in the picture the mistake is visible.
     pub shows: Shows,
-    /// The message; in a row about an object, the text that follows the object's name.
+    /// Message that says what is wrong. In a row about a single object, it lacks the object's name,
+    /// which is put before it.
     pub message: &'static str,
     /// Advice on how to correct the mistake.
     pub help: &'static str,
-    /// Applies the mistake; the second argument is the object's index in a row about an object.
+    /// Function that applies the mistake to a hypothesis. Its second argument is the object's
+    /// index, which is unused unless the row is about an object.
     pub change: fn(&mut Candidate, usize),
 }
 
-/// Where a mistake is visible.
+/// Where in a picture a mistake is visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
-    /// In areas of one colour.
+    /// Inside areas of one colour.
     InAreas,
-    /// Only where colours meet: the mistake moves nothing by a whole pixel.
+    /// Only at edges, where colours meet.
     AtEdges,
-    /// In both, but so weakly that it is tested like a mistake at edges, or if areas are wrong.
+    /// Inside areas and at edges, but weakly. Such a mistake is tested on single pixels, with the
+    /// mistakes at edges, if areas of one colour are wrong.
     Everywhere,
 }
 
 impl Mistake {
-    /// Returns whether two mistakes are of one kind and concern the same thing; numbers may differ.
+    /// Returns whether two mistakes are the same except for their numbers.
     pub fn is_same_kind(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Row(row, object), Self::Row(other, of)) => {
@@ -69,37 +74,39 @@ impl Mistake {
         }
     }
 
-    /// Returns the number of parameters that describe the mistake, for the cost of a candidate.
+    /// Returns the number of parameters that describe the mistake. Each parameter adds to the cost
+    /// of a hypothesis.
     pub fn parameter_count(&self) -> usize {
         match self {
             Self::Row(..) | Self::ColorsExchanged(..) => 1,
-            // One for the choice of the parameter, and its numbers.
+            // One parameter for the choice of the field, and one for each of its numbers.
             Self::Numbers(_, numbers) => 1 + numbers.len(),
-            // The choice of the mistake, a colour and a rectangle.
+            // One parameter for the choice of the mistake, three for a colour, and four for a
+            // rectangle.
             Self::Patch(..) => 8,
             Self::Filter(_) => 2,
         }
     }
 }
 
-/// A program, described by what it does otherwise than a correct one.
+/// A hypothesis about the program that made a picture: its differences from a correct program.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// The scene that it renders.
+    /// Scene that the program renders.
     pub scene: Scene,
-    /// Whether each of the scene's objects is drawn.
+    /// Whether the program draws each of the scene's objects.
     pub is_drawn: Vec<bool>,
-    /// How it traces rays and places samples.
+    /// How the program traces rays and places samples.
     pub behaviour: Behaviour,
     /// Curve by which the program decodes the colours that it averages.
     pub decoding: Curve,
-    /// Curve by which the program encodes the averages.
+    /// Curve by which the program encodes the averaged colours.
     pub curve: Curve,
-    /// How it lays out the pixels.
+    /// How the program arranges pixels in the picture.
     pub layout: Layout,
-    /// Effects on the picture's light, in the order of their application.
+    /// What the program does to the picture's light afterwards, in this order.
     pub effects: Vec<Effect>,
-    /// The mistakes that make it of a correct program.
+    /// Mistakes that turn a correct program into this one.
     pub mistakes: Vec<Mistake>,
 }
 
@@ -118,14 +125,15 @@ impl Candidate {
         }
     }
 
-    /// Returns a program with some mistakes. Returns `None` if they cannot be made, or if one of
-    /// them changes nothing.
+    /// Returns a program with some mistakes. Returns `None` if one of them is impossible in the
+    /// scene or changes nothing.
     pub fn of(scene: &Scene, mistakes: impl IntoIterator<Item = Mistake>) -> Option<Self> {
         let mut mistakes = mistakes.into_iter();
         mistakes.try_fold(Self::correct(scene), |candidate, one| candidate.with(one))
     }
 
-    /// Returns a correct program that renders the candidate's scene and omits the same objects.
+    /// Returns a correct program that renders the hypothesis's scene without the objects that the
+    /// hypothesis omits.
     pub fn drawn_correctly(&self) -> Self {
         Self {
             is_drawn: self.is_drawn.clone(),
@@ -133,7 +141,8 @@ impl Candidate {
         }
     }
 
-    /// Adds a mistake. Returns `None` if it cannot be made, or if it is a row that changes nothing.
+    /// Adds a mistake. Returns `None` if it is impossible in the scene, or if it is a row of the
+    /// table or an exchange of colours that changes nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
@@ -177,7 +186,7 @@ impl Candidate {
         Some(candidate)
     }
 
-    /// Returns the mistakes that are numbers, each with its parameter.
+    /// Iterates over the mistakes that consist in wrong numbers: the field, and its numbers.
     pub fn numeric(&self) -> impl Iterator<Item = (&Parameter, &[f64])> {
         self.mistakes.iter().filter_map(|mistake| match mistake {
             Mistake::Numbers(parameter, numbers) => Some((parameter, &numbers[..])),
@@ -185,20 +194,22 @@ impl Candidate {
         })
     }
 
-    /// Returns all fitted numbers of the numeric mistakes, concatenated.
+    /// Returns the wrong numbers of all mistakes, one after another.
     pub fn numbers(&self) -> Vec<f64> {
         self.numeric()
             .flat_map(|(_, numbers)| numbers.to_vec())
             .collect()
     }
 
-    /// Returns for each fitted number the change that moves the picture by about `pixels` pixels.
+    /// Returns for each wrong number, in the order of [`Self::numbers`], the change that moves the
+    /// picture by about `pixels` pixels.
     pub fn steps(&self, pixels: f64) -> Vec<f64> {
         let steps = |(parameter, _): (&Parameter, _)| parameter.steps(&self.scene, pixels);
         self.numeric().flat_map(steps).collect()
     }
 
-    /// Replaces the fitted numbers, in the order of `numbers`.
+    /// Replaces the wrong numbers of all mistakes, in the order of [`Self::numbers`]. Returns
+    /// `None` if the new ones are impossible.
     pub fn with_numbers(&self, scene: &Scene, mut numbers: &[f64]) -> Option<Self> {
         let mut mistakes = self.mistakes.clone();
         for mistake in &mut mistakes {
@@ -211,8 +222,9 @@ impl Candidate {
         Self::of(scene, mistakes)
     }
 
-    /// Returns whether the effects keep the mean light of an area: they only exchange channels, or
-    /// mix a pixel with its neighbours.
+    /// Returns whether the program keeps the mean light of an area. It does if it encodes light
+    /// correctly and its other effects only mix or exchange channels, or mix a pixel with its
+    /// neighbours.
     pub fn keeps_light(&self) -> bool {
         let mut effects = self.effects.iter();
         let keeps = |effect: &Effect| {
@@ -230,12 +242,13 @@ impl Candidate {
         mistakes.any(|one| matches!(one, Mistake::Filter(_)))
     }
 
-    /// Returns whether the candidate's picture can be computed exactly.
+    /// Returns whether the program's picture can be computed exactly, without samples.
     pub fn is_exact(&self) -> bool {
         self.behaviour.is_correct() && !self.is_filtered()
     }
 
-    /// Returns whether both candidates have mistakes of the same kinds, or are the same program.
+    /// Returns whether both hypotheses have the same mistakes except for numbers, or are the same
+    /// program without effects on light.
     pub fn is_same_kind(&self, other: &Self) -> bool {
         if self.effects.is_empty() && other.effects.is_empty() && self.shows_as(other) {
             return true;
@@ -245,7 +258,7 @@ impl Candidate {
         self.mistakes.len() == other.mistakes.len() && own.all(has)
     }
 
-    /// Returns whether both are the same program apart from their effects on light.
+    /// Returns whether both hypotheses are the same program apart from effects on light.
     pub fn shows_as(&self, other: &Self) -> bool {
         self.traces_as(other)
             && self.behaviour == other.behaviour
@@ -253,8 +266,8 @@ impl Candidate {
             && self.layout == other.layout
     }
 
-    /// Returns whether both trace the same scene with the same decoding; behaviour and what follows
-    /// tracing may differ.
+    /// Returns whether both hypotheses render the same scene and decode colours in the same way.
+    /// They may differ in how they trace rays, and in everything that follows.
     pub fn traces_as(&self, other: &Self) -> bool {
         let (one, two) = (&self.scene, &other.scene);
         one.camera == two.camera

@@ -1,4 +1,4 @@
-//! The changes that rows of the table of mistakes make to a candidate.
+//! The functions by which rows of the table of mistakes change a hypothesis about a program.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::{
     scene::{Cuboid, Lens, Shape, TriangleOutline, View},
 };
 
-/// Makes the picture gray by a weighted mean of encoded values.
+/// Makes the picture gray: each channel becomes the weighted mean of the sRGB-encoded channels.
 pub fn gray_of_encoded(c: &mut Candidate, weights: [f64; 3]) {
     c.effects.extend([
         Effect::PerChannel(linear_to_srgb),
@@ -25,14 +25,16 @@ pub fn gray_of_encoded(c: &mut Candidate, weights: [f64; 3]) {
     ]);
 }
 
-/// Maps the light of each channel, unless another effect is set.
+/// Applies a function to the light of each channel, unless the hypothesis has another effect on
+/// light already.
 pub fn map_channels(c: &mut Candidate, curve: fn(f64) -> f64) {
     if c.effects.is_empty() {
         c.effects.push(Effect::PerChannel(curve));
     }
 }
 
-/// Multiplies each channel by one factor between two functions, unless another effect is set.
+/// Multiplies each channel by a factor that is fitted to the picture. The first function is applied
+/// before it, the second after it. Does nothing if there is another effect on light already.
 pub fn multiply(c: &mut Candidate, functions: [fn(f64) -> f64; 2]) {
     if c.effects.is_empty() {
         c.effects.push(Effect::Gain(functions));
@@ -45,7 +47,7 @@ pub fn has_board(c: &Candidate) -> bool {
     drawn.any(|(object, is_drawn)| *is_drawn && matches!(object.shape, Shape::Checkerboard(_)))
 }
 
-/// Shifts the samples by pixels to the right and down in the file.
+/// Offsets the samples by some pixels to the right and down, as seen in the picture's file.
 pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
 }
@@ -70,7 +72,8 @@ pub fn sides(c: &Candidate) -> [f64; 2] {
     [c.scene.image.width, c.scene.image.height].map(f64::from)
 }
 
-/// Gives the window another aspect ratio than the picture's, unless it has one already.
+/// Sets the ratio of the window's width to its height, unless it is wrong already, or `aspect` is
+/// the correct ratio.
 pub fn set_aspect(c: &mut Candidate, aspect: f64) {
     let [width, height] = sides(c);
     let by = aspect * height / width;
@@ -79,14 +82,15 @@ pub fn set_aspect(c: &mut Candidate, aspect: f64) {
     }
 }
 
-/// Sets a fault in how spheres are hit, if the scene has a sphere.
+/// Sets a fault in how spheres are intersected, if the scene has a sphere.
 pub fn set_sphere_fault(c: &mut Candidate, spheres: Spheres) {
     if shapes(c).any(|shape| matches!(shape, Shape::Sphere(_))) {
         c.behaviour.spheres = spheres;
     }
 }
 
-/// Sets a fault in how an object is hit, if its shape can have that fault.
+/// Sets a fault in how an object is intersected, if its shape can have this fault and no object has
+/// a fault yet.
 pub fn set_hit_fault(c: &mut Candidate, object: usize, hit: HitFault) {
     let is_about = match (hit, c.scene.objects[object].shape) {
         (HitFault::WithoutAxis(_), Shape::Box(_)) => true,
@@ -98,14 +102,15 @@ pub fn set_hit_fault(c: &mut Candidate, object: usize, hit: HitFault) {
     }
 }
 
-/// Sets the curve that encodes light, unless one is set.
+/// Sets the curve by which light is encoded, unless it is wrong already.
 pub fn set_encoding(c: &mut Candidate, curve: Curve) {
     if c.curve == Curve::Correct {
         c.curve = curve;
     }
 }
 
-/// Sets one curve that decodes the colours and encodes their average, unless one is set.
+/// Sets one wrong curve both for decoding colours and for encoding their average, unless the
+/// encoding is wrong already.
 pub fn set_averaging(c: &mut Candidate, curve: Curve) {
     if c.curve == Curve::Correct {
         (c.decoding, c.curve) = (curve, curve);
@@ -118,14 +123,15 @@ pub fn set_order(c: &mut Candidate, visible: SeenSurface) {
     }
 }
 
-/// Sets which surface is seen, unless a row did so already.
+/// Sets the rule that says which surface is seen, unless the rule is wrong already.
 pub fn set_seen_surface(c: &mut Candidate, visible: SeenSurface) {
     if c.behaviour.visible == SeenSurface::Nearest {
         c.behaviour.visible = visible;
     }
 }
 
-/// Sets the rule for a checkerboard's squares, if one is drawn and no rule is set.
+/// Sets the rule for the colours of a checkerboard's squares, if a board is drawn and its rule is
+/// not wrong already.
 pub fn set_square_rule(c: &mut Candidate, is_first: fn(f64, f64) -> bool) {
     if has_board(c) && c.behaviour.square_rule == SquareRule::default() {
         c.behaviour.square_rule = SquareRule(is_first);
@@ -149,7 +155,8 @@ pub fn exchange_sides(c: &mut Candidate) {
     }
 }
 
-/// Multiplies the distance of the view plane; a field of view gets the corresponding angle.
+/// Multiplies the distance of the view plane from the eye. If the scene gives a field of view, its
+/// angle is changed accordingly.
 pub fn lengthen(c: &mut Candidate, by: f64) {
     match &mut c.scene.camera.lens {
         Lens::Distance(d) => *d *= by,
@@ -157,13 +164,14 @@ pub fn lengthen(c: &mut Candidate, by: f64) {
     }
 }
 
-/// Returns the angle the tangent of whose half is multiplied by `by`.
+/// Returns an angle whose half has a tangent `by` times that of half of `angle`.
 fn widened(angle: Angle, by: f64) -> Angle {
     let half = libm::atan(by * libm::tan(angle.in_radians() / 2.0));
     Angle::from_degrees((2.0 * half).to_degrees())
 }
 
-/// Multiplies the distance of the view plane, or divides the angle of the field of view.
+/// Multiplies the distance of the view plane from the eye by a factor, or divides the angle of the
+/// field of view by it.
 pub fn zoom(c: &mut Candidate, by: f64) {
     let is_less = |angle: Angle| angle.in_radians() < std::f64::consts::PI;
     match &mut c.scene.camera.lens {
@@ -184,8 +192,8 @@ pub fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
     }
 }
 
-/// Moves a triangle so that a point of it, computed from its vertices, lies where its centroid
-/// should.
+/// Moves a triangle so that the result of `point`, which is computed from its vertices, lies where
+/// its centroid should.
 pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) {
     if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object) {
         let point = point(vertices(&triangle.outline));
@@ -195,7 +203,7 @@ pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) 
     }
 }
 
-/// Moves a box's corners, each by a multiple of its size.
+/// Moves the least and the greatest corner of a box, each by a multiple of the box's size.
 pub fn stretch(c: &mut Candidate, object: usize, by: [DVec3; 2]) {
     if let Some(Shape::Box(cuboid)) = shapes(c).nth(object) {
         let size = cuboid.max - cuboid.min;

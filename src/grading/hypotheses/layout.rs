@@ -1,22 +1,24 @@
-//! How a program lays out its pixels.
+//! How a program arranges its pixels in the picture.
 
 use crate::area::Area;
 
-/// Wrong order of pixels: a pixel shows what belongs to another place.
+/// An arrangement of pixels in a picture. If it is wrong, a pixel is shown in the place of another
+/// one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Layout {
     /// Whether left and right are exchanged.
     pub is_mirrored: bool,
     /// Whether top and bottom are exchanged.
     pub is_upside_down: bool,
-    /// Whether rows and columns are exchanged after that, in a square picture.
+    /// Whether rows and columns are exchanged, after mirroring. Set only in a square picture.
     pub is_transposed: bool,
-    /// Number of pixels by which a row is read too far behind the one before, at the end.
+    /// Number of pixels by which each row starts too late in the sequence of all pixels, relative
+    /// to the row above it. This is applied last.
     pub stride: i32,
 }
 
 impl Layout {
-    /// Returns the pixel of a picture that is shown in the place of another one.
+    /// Returns the pixel of the correct picture that is shown at a place of the picture.
     pub fn source(self, (x, y): (u32, u32), [width, height]: [u32; 2]) -> (u32, u32) {
         let wide = i64::from(width);
         let all = wide * i64::from(height);
@@ -33,14 +35,15 @@ impl Layout {
         (x, y)
     }
 
-    /// Returns the direction in the source of a direction in the picture, to the right and down.
+    /// Converts a direction in the picture, to the right and down, to a direction in the correct
+    /// picture.
     pub fn source_direction(self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [x, y] = if self.is_transposed { [y, x] } else { [x, y] };
         let sign = |is_turned: bool| if is_turned { -1.0 } else { 1.0 };
         [sign(self.is_mirrored) * x, sign(self.is_upside_down) * y]
     }
 
-    /// Returns the part of a picture that is shown in the place of another part.
+    /// Returns the part of the correct picture that is shown in a part of the picture.
     pub fn sources(self, part: Area, size: [u32; 2]) -> Area {
         if self.stride != 0 {
             return Area::whole(size[0], size[1]);

@@ -1,5 +1,5 @@
-//! The table of mistakes that a class makes: an identifier, a message, advice, and a change of a
-//! candidate.
+//! The table of mistakes that students make. A row has an identifier, a message, advice, and a
+//! function that applies the mistake to a hypothesis about a program.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -64,7 +64,8 @@ const fn row(
     }
 }
 
-/// A row of a family whose rows differ only in a part of the message and in a number or function.
+/// Writes a row of the table of mistakes for one of several similar mistakes, whose rows differ
+/// only in a part of the message and in a number or function.
 #[rustfmt::skip]
 macro_rules! family {
     (window $window:literal, $aspect:expr) => { row("aspect", InAreas, concat!("the picture is stretched: its window is ", $window, ", though the picture is not"), WINDOW, |c, _| set_aspect(c, $aspect)) };
@@ -76,7 +77,8 @@ macro_rules! family {
     (faces $axes:literal, $order:expr) => { row("faces_exchanged", InAreas, concat!("has the colours of its faces across ", $axes, " exchanged"), FACES, |c, object| exchange_faces(c, object, $order)) };
 }
 
-/// The rows about the picture and the camera. In a message {gain} stands for the factor of light.
+/// Rows of the table of mistakes that are not about a single object. `{gain}` in a message stands
+/// for the fitted factor by which light is multiplied.
 #[rustfmt::skip]
 pub const ROWS: &[MistakeRow] = &[
     row("stride", InAreas, "each row lies one pixel further right than the one above it: rows are taken for one pixel shorter where they are read, or longer where they are written", STRIDE, |c, _| c.layout.stride -= 1),
@@ -182,7 +184,7 @@ pub const ROWS: &[MistakeRow] = &[
     row("board_swapped", InAreas, "the checkerboard's colours are exchanged, or it is turned by a quarter or moved by a square", SQUARES, |c, _| exchange_colors(c)),
     row("roll_sign", InAreas, "the roll has the wrong sign", "u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v: a positive roll dips the right side", |c, _| c.scene.camera.roll = -c.scene.camera.roll),
     row("roll_ignored", InAreas, "the roll is ignored", "turn u and v by the roll about the view direction", |c, _| c.scene.camera.roll = Angle::default()),
-    // As a number of degrees again, which is what a scene says.
+    // The angle is converted back to degrees, the unit of angles in a scene.
     row("roll_unit", InAreas, "the roll's degrees are taken for radians", "sin and cos take radians: 180 degrees are π", |c, _| c.scene.camera.roll = Angle::from_degrees(c.scene.camera.roll.degrees.to_degrees() % 360.0)),
     row("roll_new_u", InAreas, "the roll is done with the new u in the place of the old one, so the picture is skewed", "keep u before it is changed: v' = sin ψ u + cos ψ v has the old u, and your v is built from the new one", |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::NewRight }),
     row("roll_u_alone", InAreas, "u alone is turned by the roll, v is not, so the picture is skewed", "a roll turns both: u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v", |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::RightAlone }),
@@ -209,7 +211,7 @@ pub const ROWS: &[MistakeRow] = &[
         }),
     row("eye_not_subtracted", InAreas, "lookat is taken for the view direction: the eye is not subtracted", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = c.scene.camera.view && point != DVec3::ZERO { c.scene.camera.view = View::Direction(point) }),
     row("near_far_distance", InAreas, "near and far are compared with distances from the eye, not with depths", CLIPPED, |c, _| c.behaviour.clips_distances = c.scene.camera.near > 0.0 || c.scene.camera.far.is_some()),
-    // Without −0.
+    // Adding zero turns −0 into 0.
     row("up_negated", InAreas, "up has the wrong sign", UP, |c, _| c.scene.camera.up = -c.scene.camera.up + DVec3::ZERO),
     row("up_ignored", InAreas, "up is ignored: (0, 1, 0) is taken for it", UP, |c, _| c.scene.camera.up = DVec3::Y),
     row("up_ignored", InAreas, "z is taken for up", UP, |c, _| c.scene.camera.up = DVec3::Z),
@@ -233,7 +235,7 @@ pub const ROWS: &[MistakeRow] = &[
     row("view_height_ignored", InAreas, "view_height is ignored: the window is 2 tall", WINDOW, |c, _| c.scene.camera.view_height = 2.0),
 ];
 
-/// The rows about an object.
+/// Rows of the table of mistakes that are about a single object.
 #[rustfmt::skip]
 pub const OBJECT_ROWS: &[MistakeRow] = &[
     row("object_missing", InAreas, "is missing", "ask every object of the scene for its hits", |c, object| c.is_drawn[object] = false),

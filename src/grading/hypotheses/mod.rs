@@ -1,9 +1,10 @@
-//! What may be wrong with the program that made a picture.
+//! Hypotheses about the program that made a picture.
 //!
-//! In: a scene. Out: a `candidate`, which is a program with a set of mistakes: rows of the table in
-//! `mistakes`, made by the functions in `changes`; numbers of the scene (`parameters`); an extra
-//! patch, exchanged colours or another pixel width. They change the candidate's scene, its
-//! `behaviour` as a tracer, the `layout` of its pixels, or their `light`.
+//! In: a scene. Out: a `candidate`, which is a hypothesis about the program, described by its
+//! mistakes. A mistake is a row of the table in `mistakes`, applied by a function of `changes`; or
+//! wrong numbers of the scene (`parameters`), an extra patch, exchanged colours, or a wrong pixel
+//! width. Mistakes change the scene that is rendered, the `behaviour` of the ray tracer, the
+//! `layout` of the pixels, or their `light`.
 
 mod behaviour;
 mod candidate;

@@ -1,7 +1,7 @@
-//! The numbers of a scene that a program may have wrong, and their `--set` arguments.
+//! The numbers of a scene that a program may have wrong, and the `--set` arguments that change
+//! them.
 //!
-//! In: a scene. Out: the fields of the language's table that it uses, their numbers, and scenes
-//! with other numbers.
+//! In: a scene. Out: the fields that the scene uses, their numbers, and scenes with other numbers.
 
 use std::{ops::Range, sync::Arc};
 
@@ -15,35 +15,37 @@ use crate::{
     schema::{self, FieldRow as Field, Value},
 };
 
-/// Owner of a field.
+/// What a field of a scene belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Owner {
-    /// The image.
+    /// The block `image` of the scene.
     Image,
-    /// The camera.
+    /// The block `camera` of the scene.
     Camera,
-    /// An object, which stands for all objects of its block.
+    /// An object, given by its index. It stands for all objects that the same block of the file
+    /// describes.
     Object(usize),
 }
 
-/// A field of a scene, or the camera's `eye` and `lookat` together.
+/// A field of a scene whose numbers may be wrong; or the camera's `eye` and `lookat` together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
-    /// Owner of the fields.
+    /// What the fields belong to.
     pub owner: Owner,
     /// Names of the fields.
     pub fields: Vec<&'static str>,
 }
 
-/// Far plane that stands for none, in metres.
+/// Distance of a far plane that cuts off nothing, in metres. It stands for a missing far plane, so
+/// that a fit has a number to change. Any value far beyond all objects works.
 pub const NO_FAR: f64 = 1e9;
 
-/// Returns the parameters that a picture determines. Without `up`, which turns the picture as
-/// `roll` does, and `view_height`, which scales it as `d` does.
+/// Returns the fields that can be fitted to a picture. `up` is not among them, because it turns the
+/// picture as `roll` does, nor is `view_height`, because it scales the picture as `d` does.
 pub fn fittable(scene: &Scene) -> Vec<Parameter> {
     let mut fitted = all(scene);
     fitted.retain(|parameter| !matches!(parameter.fields[0], "up" | "view_height"));
-    // One corner of a box may be wrong.
+    // A single corner of a box may be wrong, so each corner can be fitted, too.
     let sizes = fitted
         .iter()
         .filter(|parameter| parameter.fields == ["size"]);
@@ -59,7 +61,7 @@ pub fn fittable(scene: &Scene) -> Vec<Parameter> {
     fitted
 }
 
-/// Returns all parameters of a scene.
+/// Returns all fields that a scene uses.
 fn all(scene: &Scene) -> Vec<Parameter> {
     let owners = [Owner::Image, Owner::Camera].into_iter();
     let blocks = scene.objects.chunk_by(Object::is_beside);
@@ -71,7 +73,7 @@ fn all(scene: &Scene) -> Vec<Parameter> {
     let mut found: Vec<Parameter> = owners
         .flat_map(|owner| {
             let fields = schema::block(owner.kind(scene)).map_or(&[][..], |block| block.fields);
-            // A box is described by its center and size, however it is written.
+            // A box is described by its center and size, even if the file gives its corners.
             let is_used = move |field: &&Field| {
                 let is_corner = matches!(field.name, "min" | "max");
                 !is_corner && owner.part(scene).value(field.name).is_some()
@@ -93,18 +95,20 @@ pub fn changed(from: &Scene, to: &Scene) -> Vec<Parameter> {
     changed
 }
 
-/// Returns the `--set` arguments that change one scene into another, as far as they can.
+/// Returns the `--set` arguments that change one scene into another. Changes that no argument can
+/// express are left out.
 pub fn arguments(from: &Scene, to: &Scene) -> Vec<String> {
     let mut changed = changed(from, to);
     for parameter in &mut changed {
-        // Setting only one of them replaces min and max, and leaves the other at its default.
+        // Setting only `center` or only `size` would remove the box's corners and leave the other
+        // field at its default, so both are set.
         if parameter.owner.kind(to) == "box" && matches!(parameter.fields[0], "center" | "size") {
             parameter.fields = vec!["center", "size"];
         }
     }
     changed.dedup();
     let arguments = changed.iter().flat_map(|parameter| parameter.arguments(to));
-    // No value removes the far plane, so it is moved beyond everything.
+    // No argument removes the far plane, so it is moved beyond all objects.
     let is_unlimited = from.camera.far.is_some() && to.camera.far.is_none();
     let far = is_unlimited.then(|| "camera.far=1e9".to_owned());
     arguments.chain(far).collect()
@@ -127,7 +131,7 @@ impl Owner {
         }
     }
 
-    /// Returns the objects of its block that follow it.
+    /// Returns the indices of the objects after this one that the same block describes.
     fn others(self, scene: &Scene) -> Range<usize> {
         let Self::Object(index) = self else {
             return 0..0;
@@ -137,7 +141,7 @@ impl Owner {
         index + 1..index + 1 + others.count()
     }
 
-    /// Returns the owner's description in messages.
+    /// Returns a description of the image, camera or object, for messages.
     pub fn name(self, scene: &Scene) -> String {
         match self {
             Self::Image => "the image".to_owned(),
@@ -151,13 +155,14 @@ impl Owner {
 }
 
 impl Parameter {
-    /// Creates the parameter of some fields of an owner.
+    /// Creates a parameter from some fields of the image, the camera or an object.
     pub fn new(owner: Owner, fields: &[&'static str]) -> Self {
         let fields = fields.to_vec();
         Self { owner, fields }
     }
 
-    /// Returns the owner's description in messages, including the rest of its block.
+    /// Returns a description of what the fields belong to, for messages. It mentions the other
+    /// objects of the same block.
     pub fn owner_name(&self, scene: &Scene) -> String {
         let name = self.owner.name(scene);
         if self.owner.others(scene).is_empty() {
@@ -167,19 +172,20 @@ impl Parameter {
         }
     }
 
-    /// Returns the values of its fields.
+    /// Returns the values of the parameter's fields.
     pub fn values(&self, scene: &Scene) -> Vec<Value> {
         let part = self.owner.part(scene);
         let fields = self.fields.iter();
         fields.filter_map(|field| part.value(field)).collect()
     }
 
-    /// Returns the value of its first field.
+    /// Returns the value of the parameter's first field.
     pub fn value(&self, scene: &Scene) -> Option<Value> {
         self.values(scene).into_iter().next()
     }
 
-    /// Returns its numbers: angles in degrees, colours from 0 to 255.
+    /// Returns the numbers of the parameter's fields. Angles are in degrees, and colour channels
+    /// range from 0 to 255.
     pub fn numbers(&self, scene: &Scene) -> Vec<f64> {
         let numbers = |value: Value| match value {
             Value::Number(number) => vec![number],
@@ -196,8 +202,8 @@ impl Parameter {
         self.values(scene).into_iter().flat_map(numbers).collect()
     }
 
-    /// Returns a scene with other numbers. Returns `None` if they are impossible. Differences to
-    /// the other objects of a block are kept.
+    /// Returns a scene in which the parameter has other numbers. Returns `None` if they are
+    /// impossible. Other objects of the same block are changed by the same amount.
     pub fn put(&self, scene: &Scene, numbers: &[f64]) -> Option<Scene> {
         let mut changed = self.put_one(scene.clone(), numbers)?;
         let before = self.numbers(scene);
@@ -264,8 +270,8 @@ impl Parameter {
         })
     }
 
-    /// Returns the `--set` arguments for its values. Returns none if its object has no name, or if
-    /// the objects of its block have different values.
+    /// Returns the `--set` arguments for the parameter's values. Returns an empty list if the
+    /// object has no name, or if the objects of its block have different values.
     pub fn arguments(&self, scene: &Scene) -> Vec<String> {
         let values = self.values(scene);
         let is_same = |index| {
@@ -296,11 +302,11 @@ impl Parameter {
             .collect()
     }
 
-    /// Returns for each number the change that moves the picture by about `pixels` pixels, or a
-    /// colour by 8 of 255.
+    /// Returns for each number the change that moves the picture by about `pixels` pixels. For a
+    /// channel of a colour it is 8 of 255.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
         let projection = Projection::quick(&scene.camera, &scene.image);
-        // Size of a pixel at a point, in metres.
+        // Width of a pixel at the distance of a point, in metres.
         let pixel_at =
             |point: DVec3| (point - projection.eye).length().max(1e-9) * projection.pitch;
         let pixel_of = |object: &Object| object.shape.center().map(pixel_at);
@@ -309,7 +315,7 @@ impl Parameter {
             Owner::Object(index) => pixel_of(&scene.objects[index]).unwrap_or(0.0),
             _ => match scene.camera.view {
                 View::Lookat(point) => pixel_at(point),
-                // At the nearest object.
+                // Pixels are measured at the nearest object.
                 View::Direction(_) => {
                     let pixels = scene.objects.iter().filter_map(pixel_of);
                     pixels.reduce(f64::min).unwrap_or(projection.pitch)
@@ -339,13 +345,13 @@ impl Parameter {
         steps.map(|step| by * step).collect()
     }
 
-    /// Returns whether it is a colour, which moves nothing.
+    /// Returns whether the parameter is a colour, which moves nothing in the picture.
     pub fn is_color(&self) -> bool {
         matches!(self.fields[0], "color" | "colors" | "background")
     }
 }
 
-/// Returns a step of a channel that stays between 0 and 255.
+/// Returns 8 or −8, whichever keeps a colour channel between 0 and 255 when it is added.
 fn inward(channel: f64) -> f64 {
     if channel < 128.0 { 8.0 } else { -8.0 }
 }

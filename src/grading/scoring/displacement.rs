@@ -1,65 +1,76 @@
-//! Tests whether a picture is displaced against a prediction, or seen through pixels of another
-//! width.
+//! Tests whether edges of a picture are displaced against a prediction, or whether its pixels have
+//! another width.
 //!
-//! To first order, a displaced picture differs by its gradient times the displacement. An affine
-//! field of displacements, as a wrong place, size, turn or camera causes it, is fitted to the
-//! pixels of each object by least squares. Sampling noise has no such field: the sums of the fit
-//! have known variances, so the squared length in these units, which has six degrees of freedom, is
-//! bounded for noise.
+//! To first order, a displaced picture differs from the original by its gradient times the
+//! displacement. The displacement of an object is fitted by least squares, as an affine function of
+//! the place in the picture; this covers a wrong place, size, turn or camera. If there is only
+//! sampling noise, the squared length of the fitted displacement, in standard deviations, has a χ²
+//! distribution with six degrees of freedom. So a large value is not chance.
 
 use glam::DVec3;
 
 use super::{linear_system::solve, prediction::Prediction};
 
-/// Greatest squared length that is taken for chance: 1 in 10^8 of normal sums exceeds this bound.
+/// Greatest squared length of a fitted displacement that counts as chance, in squared standard
+/// deviations. A χ² variable with six degrees of freedom exceeds 50 with a probability below 10⁻⁸.
 const CHANCE: f64 = 50.0;
 
-/// Displacement that few samples at the same places in all pixels cause, in pixels, per share of a
-/// sample's variance in an error. The mean of the n points (i/n, φ₂(i)) lies 1/(2n) off the middle,
-/// and these points make less noise than as many random ones.
+/// Displacement that one sample per pixel may seem to cause, in pixels. With n samples it is an nth
+/// of this. Samples at the same places in all pixels may lie off the pixels' middles together;
+/// those of a Hammersley set do by 1/(2n). The value is greater than 1/2 because n is estimated
+/// from the noise, and the estimate is too large for such samples.
 const OFF_MIDDLE: f64 = 0.75;
-/// Greatest displacement, in pixels, that is attributed to the places of few samples.
+/// Maximum displacement that is attributed to few samples per pixel, in pixels. A larger one counts
+/// as a mistake, however few the samples are. The value is a choice.
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
-/// Number of coefficients of an affine field of displacements.
+/// Number of coefficients of an affine displacement: a constant and the slopes in x and y, for each
+/// of the two directions.
 const TERMS: usize = 6;
 
-/// Standard deviations beyond which another width of pixels is not chance. Chosen by trial.
+/// Number of standard deviations from 0 beyond which an estimated change of the pixel width is not
+/// chance. Chosen by trial.
 const SURE: f64 = 8.0;
 
-/// Greatest squared width that is taken for a pixel's own, without noise.
+/// Greatest squared width of a pixel, in squared pixels, that counts as correct in a picture
+/// without noise. The correct value is 1; the margin is a choice.
 const WIDE: f64 = 1.4;
-/// Addition to `WIDE` per share of a sample's variance in an error: few samples at the same places
-/// in all pixels make a picture less sharp.
+/// Addition to the greatest squared pixel width that counts as correct ([`WIDE`]), for one sample
+/// per pixel, in squared pixels. For n samples per pixel, an nth of it is added. Few samples at the
+/// same places in all pixels make a correct picture less sharp. The value is a choice.
 const WIDER: f64 = 3.0;
-/// Amount below 1 of a squared width that is taken for a pixel's own, without noise.
+/// Difference from 1 by which a squared pixel width may be too small and still count as correct in
+/// a picture without noise, in squared pixels. The value is a choice.
 const NARROW: f64 = 0.25;
-/// Addition to `NARROW` per share of a sample's variance in an error: few samples make a picture
-/// sharper.
+/// Addition to the amount by which a squared pixel width may be too small ([`NARROW`]), for one
+/// sample per pixel, in squared pixels. For n samples per pixel, an nth of it is added. Few samples
+/// make a correct picture sharper. The value is a choice.
 const NARROWER: f64 = 5.0;
 
-/// Greatest squared width that is taken for a pixel's own in a JPEG, whose coding makes edges less
-/// sharp: 80 correct ones of qualities from 75 to 100 have at most 4.7, and one seen through pixels
-/// three times as wide has 7.
+/// Greatest squared width of a pixel, in squared pixels, that counts as correct in a JPEG, whose
+/// coding makes edges less sharp. It was measured: 80 correct JPEGs with qualities from 75 to 100
+/// have at most 4.7, and a picture whose pixels are three times too wide has 7.
 const WIDE_IN_CODED: f64 = 5.5;
 
-/// Least width that is reported, in pixels.
+/// Least pixel width that is reported, in pixels. A smaller estimate, which may be 0, is raised to
+/// it.
 const LEAST_WIDTH: f64 = 0.1;
-/// Greatest width that is reported, in pixels.
+/// Greatest pixel width that is reported, in pixels. A larger estimate is lowered to it. The value
+/// is a choice.
 const MOST_WIDTH: f64 = 6.0;
 
-/// A displacement that is not chance.
+/// A displacement of edges that is too large to be chance.
 #[derive(Clone, Copy, Debug)]
 pub struct Displacement {
-    /// Root mean square of the displacement along the gradient, in pixels.
+    /// Root mean square of the displacement perpendicular to the edges, in pixels.
     pub length: f64,
-    /// Displacement of the group's middle, in pixels to the right and down.
+    /// Displacement in the middle of the group of pixels, in pixels to the right and down.
     pub by: [f64; 2],
-    /// Squared length of the sums in units of their standard deviations.
+    /// Squared length of the fitted displacement, in squared standard deviations.
     pub square: f64,
 }
 
-/// Normal equations of the displacement of a group of pixels.
+/// Normal equations of the least-squares fit of a displacement to a group of pixels.
 #[derive(Clone)]
 struct NormalEquations {
     normal: Vec<Vec<f64>>,
@@ -68,11 +79,11 @@ struct NormalEquations {
 }
 
 impl NormalEquations {
-    /// Solves for the displacement, less what few samples cause. Returns `None` if it may be
-    /// chance.
+    /// Solves for the displacement. `off_middle` is subtracted: the displacement, in pixels, that
+    /// few samples may cause. Returns `None` if the displacement may be chance.
     fn displacement(&self, off_middle: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-        // A small diagonal: components that no edge determines become 0.
+        // Adds a small diagonal, so that a coefficient that no edge determines becomes 0.
         let solved = |matrix: &[Vec<f64>]| {
             let mut matrix = matrix.to_vec();
             let most = (0..TERMS).map(|i| matrix[i][i]).fold(0.0, f64::max);
@@ -87,23 +98,28 @@ impl NormalEquations {
         }
         let product = fitted.iter().zip(&self.normal);
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
-        // Along the gradient.
+        // Only the part of a displacement along the gradient is visible.
         let length = (product / (self.normal[0][0] + self.normal[3][3])).sqrt();
         (square > CHANCE).then_some(Displacement { length, by, square })
     }
 }
 
 impl Prediction<'_> {
-    /// Returns whether the errors in pixels of several colours look like sampling noise. If most of
-    /// them are exact, there is no noise, and inexact pixels show something else.
+    /// Returns whether the errors in pixels that mix several colours look like sampling noise. If
+    /// most of these pixels are exact, there is no noise, so large errors in the others have
+    /// another cause.
     pub fn is_noise_everywhere(&self) -> bool {
-        /// Greatest share of a sample's variance in an error of an exact picture.
+        /// Greatest squared error of a pixel that counts as exact, relative to the variance of one
+        /// sample. The value corresponds to 10 000 samples per pixel; it is a choice.
         const EXACT: f64 = 1e-4;
-        /// Least share of a sample's variance in an error where something else is seen.
+        /// Squared error, relative to the variance of one sample, above which a pixel counts as
+        /// wrong if most pixels are exact. The value is a choice.
         const OTHER: f64 = 0.5;
-        /// Number of such pixels that is not chance.
+        /// Number of wrong pixels among exact ones that is too large to be chance. The value is a
+        /// choice.
         const CHANCE: usize = 4;
-        /// Variance above which rounding is negligible.
+        /// Variance of one sample in a pixel, in squared linear light, below which the pixel is not
+        /// tested. Rounding to bytes would dominate its error.
         const LEAST: f64 = 1e-3;
         let share = |at: usize| {
             let variance = self.moments.variance[at].element_sum();
@@ -115,7 +131,7 @@ impl Prediction<'_> {
         };
         let mut shares: Vec<f64> = (0..self.observed.len()).filter_map(share).collect();
         shares.sort_by(f64::total_cmp);
-        // Three quarters of the pixels are exact.
+        // The picture counts as exact if three quarters of the pixels are.
         let is_exact = shares
             .get(shares.len() * 3 / 4)
             .is_some_and(|most| *most < EXACT);
@@ -123,8 +139,8 @@ impl Prediction<'_> {
         !is_exact || others.count() < CHANCE
     }
 
-    /// Returns the share of a sample's variance that the squared differences are, over the pixels
-    /// of several colours.
+    /// Returns the squared differences in pixels that mix several colours, relative to the variance
+    /// of one sample in each. For n independent samples per pixel this is about 1/n.
     pub fn share(&self) -> f64 {
         let (mut squares, mut variances) = (0.0, 0.0);
         for at in (0..self.observed.len()).filter(|&at| !self.is_flat(at)) {
@@ -134,11 +150,12 @@ impl Prediction<'_> {
         f64::min(squares / f64::max(variances, 1e-12), 1.0)
     }
 
-    /// Estimates the width of the pixel filter, in pixels. Returns `None` if it may be 1, given the
-    /// share of a sample's variance in an error.
+    /// Estimates the width of the pixel filter, in pixels. Returns `None` if it may be 1. `share`
+    /// is the variance of a pixel's error relative to that of one sample: 1/n for n samples per
+    /// pixel.
     ///
-    /// To second order, a mean over a square of the width w differs from one over a pixel by (w² −
-    /// 1)/24 times the Laplacian.
+    /// To second order, the mean over a square of the width w differs from the mean over a pixel by
+    /// (w² − 1)/24 times the Laplacian of the picture.
     pub fn pixel_width(&self, deviations: &[f64], share: f64, is_coded: bool) -> Option<f64> {
         let (width, height) = (self.width, self.observed.len() / self.width);
         let mean = &self.moments.mean;
@@ -173,8 +190,9 @@ impl Prediction<'_> {
         (is_sure && is_other).then(|| square.max(0.0).sqrt().clamp(LEAST_WIDTH, MOST_WIDTH))
     }
 
-    /// Returns the displacement of each group of pixels, or `None` where it may be chance, given
-    /// the share of a sample's variance in an error.
+    /// Returns the displacement of each group of pixels, or `None` if it may be chance. `groups`
+    /// has the group of each pixel. `share` is the variance of a pixel's error relative to that of
+    /// one sample: 1/n for n samples per pixel.
     pub fn displacements(
         &self,
         deviations: &[f64],
@@ -186,7 +204,8 @@ impl Prediction<'_> {
         let height = count / width;
         let mean = &self.moments.mean;
         let all = groups.iter().max().map_or(0, |most| most + 1);
-        // The bounding box of each group.
+        // Bounding box of each group: its least and greatest column, and its least and greatest
+        // row.
         let mut boxes = vec![[f64::INFINITY, -f64::INFINITY, f64::INFINITY, -f64::INFINITY]; all];
         let place = |at: usize| [(at % width) as f64, (at / width) as f64];
         for (at, group) in groups.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! A sampling ray tracer by the formulas of a textbook, whose mistakes can be switched on.
+//! A ray tracer made of textbook formulas that takes samples. Mistakes in it can be switched on.
 //!
-//! In: a scene, the switches, a part of its picture, and a number of samples. Out: for each pixel
-//! of the part the mean and the variance of one sample, estimated from samples at fixed places. The
-//! exact picture decides what is correct; this tracer compares hundreds of scenes with a picture in
-//! a second, and can be wrong in the ways in which a program can.
+//! In: a scene, the mistakes, a part of its picture, and a number of samples per pixel. Out: the
+//! mean and the variance of one sample in each pixel of the part, estimated from samples at fixed
+//! places. The tracer is fast enough to compare hundreds of faulty programs with a picture in a
+//! second. It does not decide what is correct; the exact picture does.
 
 use glam::{DVec2, DVec3};
 
@@ -17,14 +17,17 @@ use crate::{
     scene::{Checkerboard, Cuboid, Scene, Shape, Sphere},
 };
 
-/// Half the extent of a box without sides along an axis, in metres.
+/// Half the extent of a box along an axis in which its sides are missing, in metres. It stands for
+/// infinity, so any value far beyond the scene works.
 const FAR: f64 = 1e9;
 
-/// Stride of the samples of a cell that are tested first; it spreads them over the cell.
+/// Stride between the samples that are tested first, to find out whether a cell has one colour.
+/// Every fourth sample is a choice: more tests take longer, and fewer miss small details.
 const EACH: usize = 4;
 
-/// Places near a cell's corners, in cells. A cell is taken for one colour if these and the strided
-/// samples agree: an edge that passes between them cuts off a thousandth of the cell.
+/// Places near the corners of a cell, in units of its side. A cell counts as having one colour if
+/// these places and every fourth sample (`EACH`) show one colour. An edge that passes between these
+/// places and a corner cuts off only about a thousandth of the cell.
 const CORNERS: [DVec2; 4] = [
     DVec2::new(0.04, 0.04),
     DVec2::new(0.96, 0.96),
@@ -35,11 +38,11 @@ const CORNERS: [DVec2; 4] = [
 /// An object, prepared for tracing.
 struct Traced {
     shape: Shape,
-    /// Fault in how it is hit.
+    /// Fault in how rays are intersected with the object.
     hit: Option<HitFault>,
-    /// Rectangle of the picture outside of which it is not hit.
+    /// Bounding rectangle in the picture, in pixels. No ray outside of it hits the object.
     bounds: [DVec2; 2],
-    /// Its colours, decoded; a shape with fewer colours repeats them.
+    /// Decoded colours of the object. A shape with fewer than three colours repeats them.
     colors: [DVec3; 3],
 }
 
@@ -50,12 +53,13 @@ pub struct FaultyTracer {
     near: f64,
     far: f64,
     objects: Vec<Traced>,
-    /// The background's colour, decoded.
+    /// Decoded colour of the background.
     background: DVec3,
 }
 
 impl FaultyTracer {
-    /// Prepares a scene; `decoding` is the curve that decodes colours.
+    /// Prepares a scene for tracing. `behaviour` has the mistakes of the tracer. `decoding` is the
+    /// curve by which it decodes colours.
     pub fn new(scene: &Scene, behaviour: Behaviour, decoding: Curve) -> Self {
         let mut projection = Projection::quick(&scene.camera, &scene.image);
         let everywhere = [DVec2::NEG_INFINITY, DVec2::INFINITY];
@@ -109,25 +113,26 @@ impl FaultyTracer {
         }
     }
 
-    /// Samples the pixels of a part of the picture.
+    /// Takes samples in each pixel of a part of the picture, and returns their means and variances.
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
-        // Around the pixel's middle.
+        // Scales the places of samples around the middle of the pixel.
         let of_pixel = |place: DVec2| 0.5 + (place - 0.5) * self.behaviour.pixel;
         let places: Vec<DVec2> = lattice(samples).into_iter().map(of_pixel).collect();
         let corners = CORNERS.map(of_pixel);
         let count = places.len() as f64;
-        // Whether the cells of the row above show one colour, and those to the left in this row.
+        // Whether the cell that was sampled last in each column shows one colour. It is in the
+        // current row for columns to the left, and in the row above for the others.
         let mut is_flat = vec![false; part.width as usize];
         let pixel = |(x, y): (u32, u32)| {
             let corner = DVec2::new(f64::from(x), f64::from(y));
-            // Differences from the first sample are summed, so that one colour stays exact and has
-            // no variance.
+            // Differences from the first sample are summed, so that the mean of equal samples is
+            // exact and their variance is 0.
             let first = self.color(corner + places[0]);
             let column = (x - part.x) as usize;
             let is_beside = is_flat[column] || column > 0 && is_flat[column - 1];
-            // Squares of half a cell's size may agree at all of these places, so the test is made
-            // only beside a cell of one colour. Testing the places for every cell is more work than
-            // few samples are.
+            // The squares of a board may be half as large as a cell, and all tested places may then
+            // show one colour by chance. So the test is made only beside a cell of one colour. If
+            // there are few samples, taking all of them costs less than the test.
             let mut probes = corners.iter().chain(places.iter().step_by(EACH));
             let is_first = |probe: &DVec2| self.color(corner + *probe) == first;
             if is_beside && places.len() > 8 && probes.all(is_first) {
@@ -161,7 +166,8 @@ impl FaultyTracer {
         self.color_at(moved).unwrap_or(self.background)
     }
 
-    /// Returns the colour of the object that is seen at a place of the picture.
+    /// Returns the colour that is seen at a place of the picture. Returns `None` for the
+    /// background.
     fn color_at(&self, place: DVec2) -> Option<DVec3> {
         let (mut eye, mut ray) = (self.projection.eye, self.projection.ray(place));
         if let Rays::Parallel(distance) = self.behaviour.rays {
@@ -176,7 +182,7 @@ impl FaultyTracer {
         }
         let length = match (self.behaviour.clips_distances, self.behaviour.rays) {
             (true, _) => ray.length(),
-            // The depth per unit of t, which is not 1 for these rays.
+            // Depth per unit of the ray's parameter t. It is 1 for all other rays.
             (false, Rays::UpAsTop | Rays::Fisheye) => ray.dot(self.projection.ahead),
             (false, _) => 1.0,
         };
@@ -235,7 +241,7 @@ impl FaultyTracer {
         Some(shade.max(0.0) * object.colors[color])
     }
 
-    /// Returns a unit normal of a shape at a point of its surface, to either side.
+    /// Returns a unit normal of a shape at a point of its surface. It may point to either side.
     fn normal(&self, shape: &Shape, point: DVec3) -> DVec3 {
         match shape {
             Shape::Sphere(Sphere { center, .. }) => (point - center).normalize(),
@@ -248,13 +254,14 @@ impl FaultyTracer {
         }
     }
 
-    /// Returns the coordinates of a point along the axes of a checkerboard.
+    /// Returns the two coordinates of a point along the axes of a checkerboard, in metres.
     fn on_board(&self, point: DVec3) -> [f64; 2] {
         let [x, z] = [0, 3 - self.behaviour.board_normal];
         [point[x], point[z]]
     }
 
-    /// Intersects a ray with a sphere.
+    /// Intersects a ray with a sphere by the formula of the faulty program. Returns the ray's
+    /// parameters t at both intersections, the lesser first.
     fn on_sphere(&self, sphere: &Sphere, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
         let roots = || crossings(&Shape::Sphere(*sphere), eye, ray, 0.0);
         match self.behaviour.spheres {
@@ -269,13 +276,14 @@ impl FaultyTracer {
         }
     }
 
-    /// Returns whether a crossing counts; `length` is the depth or distance per unit of t.
+    /// Returns whether a hit at the ray's parameter t can be seen. `length` is the depth or the
+    /// distance per unit of t, whichever is compared with the near and far planes.
     fn counts(&self, t: f64, length: f64) -> bool {
         let is_ahead = t > 0.0 && t * length > self.near && t * length < self.far;
         is_ahead || (self.behaviour.sees_behind() && t < 0.0 && -t < self.far)
     }
 
-    /// Returns the key by which crossings are ordered: the least is seen.
+    /// Returns a sort key for a hit at the ray's parameter t. The hit with the least key is seen.
     fn order(&self, t: f64) -> f64 {
         match self.behaviour.visible {
             SeenSurface::NearestBothWays => t.abs(),
@@ -283,7 +291,8 @@ impl FaultyTracer {
         }
     }
 
-    /// Returns the crossing that is seen, of two ordered ones.
+    /// Returns the parameter t of the hit that is seen, given the two hits of one object, the
+    /// lesser first.
     fn first(&self, crossings: [f64; 2], length: f64) -> Option<f64> {
         let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t, length)));
         match counting {
@@ -293,14 +302,15 @@ impl FaultyTracer {
     }
 }
 
-/// Returns the axis across which a box has the face that is nearest to a point.
+/// Returns the axis perpendicular to the face of a box that is nearest to a point.
 fn face(Cuboid { min, max, .. }: &Cuboid, point: DVec3) -> usize {
     let off = (point - min).abs().min((point - max).abs());
     off.min_position()
 }
 
-/// Intersects a ray with a sphere by −b ± √(b² − c), which assumes length 1; the ray is scaled to
-/// reach the view plane at `distance`.
+/// Intersects a ray with a sphere by −b ± √(b² − c), the roots of t² + 2 b t + c = 0. This formula
+/// is correct only for rays of length 1, but here the ray reaches to the view plane, which is
+/// `distance` from the eye.
 fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let from = eye - sphere.center;
     let b = from.dot(distance * ray);
@@ -310,7 +320,8 @@ fn with_unit_rays(sphere: &Sphere, distance: f64, eye: DVec3, ray: DVec3) -> Opt
         .then(|| [-1.0, 1.0].map(|sign| distance * (sign * discriminant.sqrt() - b)))
 }
 
-/// Intersects a ray with a triangle's plane, within the edges that the fault does not omit.
+/// Intersects a ray with a triangle. The fault says which tests against the triangle's edges are
+/// missing.
 fn on_plane([a, b, c]: &[DVec3; 3], hit: HitFault, eye: DVec3, ray: DVec3) -> Option<[f64; 2]> {
     let (one, other) = (b - a, c - a);
     let normal = one.cross(other);
@@ -329,8 +340,8 @@ fn on_plane([a, b, c]: &[DVec3; 3], hit: HitFault, eye: DVec3, ray: DVec3) -> Op
     is_within.then_some([t; 2])
 }
 
-/// Returns the bounding rectangle of a shape in the picture. Returns `None` if the shape reaches
-/// from ahead of the eye to behind it.
+/// Returns the bounding rectangle of a shape in the picture, in pixels. Returns `None` if the shape
+/// is unbounded, or reaches from ahead of the eye to behind it.
 pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     let [min, max] = shape.bounding_box(|triangle| vertices(&triangle.outline))?;
     let corners = corners(min, max);
@@ -343,12 +354,12 @@ pub fn bounds(shape: &Shape, projection: &Projection) -> Option<[DVec2; 2]> {
     }
     let least = places.into_iter().fold(DVec2::INFINITY, DVec2::min);
     let most = places.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
-    // A margin for roundings.
+    // A margin for rounding errors.
     Some([least - 1e-6, most + 1e-6])
 }
 
-/// Returns a Fibonacci lattice of at least `samples` points in the unit square. Each row and column
-/// has one point, so edges along the grid do no harm.
+/// Returns a Fibonacci lattice of at least `samples` points in the unit square. It has one point in
+/// each of its rows and columns, so it samples edges along rows and columns evenly.
 fn lattice(samples: usize) -> Vec<DVec2> {
     let (mut step, mut count) = (1, 1);
     while count < samples {

@@ -1,8 +1,8 @@
-//! A grid over the part of a picture that is compared, whose cells span several pixels each: coarse
-//! for searching, single pixels for judging.
+//! Divides the compared part of a picture into cells. For the search, which must be fast, a cell
+//! spans several pixels; for the final judgement, it is a single pixel.
 //!
-//! The cells are the pixels of a smaller picture of the scene around the same middle, so whatever
-//! renders pictures renders cells.
+//! The cells are the pixels of a smaller picture of the same scene with the same middle, so they
+//! are rendered like any picture.
 
 use glam::{DVec2, DVec3};
 
@@ -17,18 +17,20 @@ use crate::{
 pub struct Grid {
     /// Number of pixels along a cell's side.
     pub factor: u32,
-    /// The cells inside the part, among those of the whole picture.
+    /// Cells that lie inside the compared part of the picture. Their columns and rows are counted
+    /// from the top left of the whole picture.
     pub cells: Area,
     /// Number of cells in a row and in a column of the whole picture.
     size: [u32; 2],
-    /// Width of the border of the whole picture without cells, on each side, in pixels.
+    /// Width of the border that no cell covers, in pixels of the whole picture. There is an equal
+    /// border at the left and right, and at the top and bottom.
     margin: DVec2,
-    /// The part's upper left corner, in pixels.
+    /// Upper left corner of the compared part, in pixels of the whole picture.
     corner: DVec2,
 }
 
 impl Grid {
-    /// Covers a part of a picture with at most `longest` cells along its longer side.
+    /// Covers a part of a picture with a grid. Its longer side has at most `longest` cells.
     pub fn new(image: &Image, part: Area, longest: u32) -> Self {
         let of = |factor: u32| {
             let size = [image.width / factor, image.height / factor];
@@ -61,12 +63,12 @@ impl Grid {
             .unwrap_or_else(|| of(1))
     }
 
-    /// Returns the number of cells in the part.
+    /// Returns the number of cells in the compared part of the picture.
     pub fn count(&self) -> usize {
         self.cells.pixels() as usize
     }
 
-    /// Returns the number of the part's cells in a row.
+    /// Returns the number of cells in a row of the compared part of the picture.
     pub fn width(&self) -> usize {
         self.cells.width as usize
     }
@@ -76,7 +78,8 @@ impl Grid {
         self.size
     }
 
-    /// Returns the middle of a cell, given by its index, in pixels of the whole picture.
+    /// Returns the middle of a cell, in pixels of the whole picture. `index` counts the cells of
+    /// the part, row by row.
     pub fn middle(&self, index: usize) -> DVec2 {
         let (x, y) = (index % self.width(), index / self.width());
         let cell = DVec2::new(
@@ -86,8 +89,8 @@ impl Grid {
         self.margin + (cell + 0.5) * f64::from(self.factor)
     }
 
-    /// Iterates over the indices of the cells within `reach` columns and rows of a cell, including
-    /// it.
+    /// Iterates over the indices of all cells that are at most `reach` columns and `reach` rows
+    /// away from a cell. The cell itself is among them.
     pub fn around(&self, index: usize, reach: usize) -> impl Iterator<Item = usize> {
         let (width, height) = (self.width(), self.cells.height as usize);
         let near = |at: usize, most: usize| at.saturating_sub(reach)..(at + reach + 1).min(most);
@@ -96,25 +99,27 @@ impl Grid {
         rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
     }
 
-    /// Returns the camera and image whose pixels are the cells.
+    /// Returns the camera and the image of a picture whose pixels are the cells.
     pub fn view(&self, scene: &Scene) -> (Camera, Image) {
         let (mut image, mut camera) = (scene.image, scene.camera);
         if self.factor > 1 {
             let pitch = Projection::quick(&camera, &image).pitch;
             [image.width, image.height] = self.size;
             camera.lens = Lens::Distance(1.0);
-            // Clamped to positive finite numbers, for extreme lenses.
+            // Extreme lenses would give 0 or infinity, so the result is clamped to positive finite
+            // numbers.
             let view_height = f64::from(image.height * self.factor) * pitch;
             camera.view_height = view_height.clamp(f64::MIN_POSITIVE, f64::MAX);
         }
         (camera, image)
     }
 
-    /// Averages the part's pixels, given by column and row in the part, over each cell, ignoring
-    /// NaN.
+    /// Averages the pixels of the part over each cell, ignoring NaN. `pixel` returns the pixel in a
+    /// column and row of the part.
     pub fn reduce(&self, pixel: impl Fn(u32, u32) -> DVec3) -> Vec<DVec3> {
         let factor = f64::from(self.factor);
-        // The columns or rows of a cell's pixels, and the length of each inside the cell.
+        // Iterates over the columns that a cell overlaps, or over the rows, with the length of each
+        // overlap in pixels.
         let shares = |cell: u32, margin: f64, corner: f64| {
             let start = margin + f64::from(cell) * factor - corner;
             let end = start + factor;
@@ -122,7 +127,8 @@ impl Grid {
             (start.floor() as u32..end.ceil() as u32).map(move |at| (at, share(at)))
         };
         let cell = |(x, y): (u32, u32)| {
-            // Differences from the first pixel are summed, so that a constant is not rounded.
+            // Differences from the first pixel are summed, so that the mean of equal pixels is
+            // exact.
             let mut first = None;
             let (mut sum, mut total) = (DVec3::ZERO, 0.0);
             for (row, height) in shares(y, self.margin.y, self.corner.y) {

@@ -1,14 +1,14 @@
-//! What JPEG coding does to a picture.
+//! Predicts what JPEG coding does to a picture.
 //!
-//! In: how a file is coded, and a prediction of the picture. Out: the coded picture, and the
-//! variance that the coding adds to each pixel, in linear light, because a picture with noise is
-//! coded a little otherwise.
+//! In: how a file is coded, and a prediction of the picture. Out: the predicted picture after
+//! coding, and the variance that coding adds to each pixel, in linear light. The variance is needed
+//! because the real picture has noise, which changes how it is coded.
 //!
-//! JPEG (ITU-T T.81) rounds the 64 coefficients of each block of 8 × 8 numbers of luma, and of
-//! chroma, to multiples of the steps in its tables. The transform preserves squares, so the mean
-//! variance of a block's numbers is the mean of the coefficients' variances, a twelfth of a step's
-//! square each. A block of one colour has one coefficient. Chroma is assumed to be kept only for
-//! every second column and row, as it is in most files, so that noise spreads up to two pixels.
+//! JPEG (ITU-T T.81) transforms each block of 8 × 8 values of luma or chroma into 64 coefficients,
+//! and rounds these to multiples of steps in a table. Rounding to a step s adds the variance s²/12.
+//! The transform preserves sums of squares, so the mean variance of a block's values is the mean
+//! variance of its coefficients. A block of one colour has a single coefficient. Chroma is assumed
+//! to have half the picture's resolution, as in most files, so its errors spread up to two pixels.
 
 use glam::DVec3;
 
@@ -20,13 +20,16 @@ use crate::{
     grading::hypotheses::STEP,
 };
 
-/// Side of a block, in pixels, if chroma is kept for every second column and row.
+/// Side of a block of chroma, in pixels: it has 8 values, each of which spans 2 pixels if chroma
+/// has half the picture's resolution.
 const BLOCK: usize = 16;
 
-/// Distance over which colours mix, in pixels.
+/// Distance over which the colours of neighbouring pixels mix, in pixels, if chroma has half the
+/// picture's resolution.
 const MIXED: usize = 2;
 
-/// Codes a prediction as the file is coded. Returns `None` if it cannot be coded.
+/// Encodes the predicted picture as the file is encoded, and returns the light after decoding.
+/// Returns `None` if it cannot be encoded in this way.
 pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<DVec3>> {
     let byte = |light: f64| {
         let encoded = prediction.encoded(light);
@@ -46,12 +49,13 @@ pub fn coded(jpeg: &Jpeg, prediction: &Prediction, part: Area) -> Option<Vec<DVe
     Some(pixels.iter().map(light).collect())
 }
 
-/// Returns the variances that the coding adds to the cells of a prediction, which span `factor`
-/// pixels each way.
+/// Returns the variances that JPEG coding adds to the cells of a prediction. A cell is `factor`
+/// pixels wide and tall.
 pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVec3> {
     let (mean, width) = (&prediction.moments.mean, prediction.width);
     let height = mean.len() / width;
-    // Weights of the blue-yellow and red-green differences in each channel.
+    // Weights of chroma in the red, green and blue channels, by JPEG's conversion from YCbCr. Green
+    // has both kinds of chroma, whose weights are added.
     const SHARES: [f64; 3] = [1.402, 0.344 + 0.714, 1.772];
     let side = (BLOCK / factor).max(1);
     let reach = MIXED.div_ceil(factor);
@@ -64,7 +68,8 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
         let first = *blocks[block(at)].get_or_insert(mean[at]);
         are_flat[block(at)] &= first == mean[at];
     }
-    // Most pixels equal the one before, and curves are slow to evaluate.
+    // Last argument and result for each channel, cached because most pixels equal the one before
+    // and curves are slow.
     let mut known = [([f64::NAN; 2], f64::NAN); 3];
     let pixel = |at: usize| {
         let is_flat = are_flat[block(at)];
@@ -75,16 +80,16 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
                 table.mean / count
             }
         };
-        // Colours of neighbouring blocks mix, too.
+        // The colours of neighbouring blocks mix, too.
         let [least, most] = range(mean, width, at, reach);
         let mixed = most - least;
         DVec3::from([0, 1, 2].map(|i| {
-            // Numbers are rounded or truncated before and after the transform, which quadruples the
-            // variance.
+            // Values are rounded or truncated to whole numbers before and after the transform.
+            // Truncation has a mean squared error of 1/3, which is four times that of rounding.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
-            // A step is larger in brighter light, so the variance is measured at several
-            // deviations.
+            // An 8-bit step is worth more light in bright areas. So light is measured several
+            // deviations farther up, and the difference is divided by their number.
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
             let own = [mean[at][i], by];
             if known[i].0 != own {

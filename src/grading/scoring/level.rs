@@ -1,5 +1,5 @@
-//! A picture at one resolution: what the cells of a grid show, and what candidates should show
-//! there.
+//! A picture at one resolution: what the cells of a grid show, and what they would show if a
+//! hypothesis about the program were correct.
 
 use std::{
     cell::{OnceCell, RefCell},
@@ -22,25 +22,29 @@ use crate::{
     grading::hypotheses::{Candidate, Curve},
 };
 
-/// A part of a picture at one resolution.
+/// A part of a picture at one resolution. Hypotheses about the program are compared with it.
 pub struct Level<'a> {
     pub grid: Grid,
     film: &'a Film,
-    /// The part's upper left corner in the film.
+    /// Upper left corner of the compared part, in pixels of the film.
     corner: [u32; 2],
-    /// Observed light of the cells, by the curve that encoded it; computed on demand.
+    /// Observed light of the cells for each curve that may have encoded it. Computed on demand.
     observed: [OnceCell<Vec<DVec3>>; Curve::COUNT],
-    /// Number of samples in a cell; `None` if cells are computed exactly.
+    /// Number of samples per cell with which hypotheses are rendered; `None` if they are rendered
+    /// exactly.
     samples: Option<usize>,
     pub jpeg: Option<Jpeg>,
-    /// Base of comparisons: candidates are rendered only where they differ from it.
+    /// Rendering of an earlier hypothesis. A new hypothesis is rendered only where its picture
+    /// differs from this one.
     base: RefCell<Option<Arc<Rendering>>>,
-    /// The last rendering, reused in the same way.
+    /// Rendering of the last hypothesis. The next hypothesis is rendered only where its picture
+    /// differs from this one or from `base`.
     last: RefCell<Option<Arc<Rendering>>>,
 }
 
 impl<'a> Level<'a> {
-    /// Creates the level of a grid over the part of a film that starts at `corner`.
+    /// Creates a picture at the resolution of a grid. `corner` is the upper left corner of the
+    /// compared part, in pixels of the film.
     pub fn new(
         grid: Grid,
         film: &'a Film,
@@ -60,7 +64,9 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Adds the difference of a sampled from an exact prediction to the observed light.
+    /// Returns a copy of the level with the sampling error added to the observed light. The error
+    /// is the difference between a sampled and an exact prediction, so it cancels in comparisons
+    /// with other sampled predictions.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
         level.base = self.base.clone();
@@ -73,8 +79,8 @@ impl<'a> Level<'a> {
         level
     }
 
-    /// Renders a candidate on the level's grid. Returns `None` if it is cancelled or exceeds the
-    /// budget.
+    /// Renders a hypothesis about the program in the cells of the level's grid. Returns `None` if
+    /// it is cancelled or exceeds the budget of work.
     pub fn render(&self, candidate: &Candidate, work: &Work) -> Option<Arc<Rendering>> {
         let known = [&self.base, &self.last].map(|one| one.borrow().clone());
         let known: Vec<_> = known.into_iter().flatten().collect();
@@ -90,12 +96,14 @@ impl<'a> Level<'a> {
         Some(rendering)
     }
 
-    /// Sets the base of comparisons.
+    /// Sets the rendering that later hypotheses reuse. They are rendered only where their pictures
+    /// differ from it.
     pub fn compare_with(&self, rendering: Arc<Rendering>) {
         self.base.replace(Some(rendering));
     }
 
-    /// Returns the observed light of the cells, if it was encoded by `curve`.
+    /// Returns the light of the cells that the picture shows, assuming that the program encoded it
+    /// by `curve`.
     pub fn observed(&self, curve: Curve) -> &[DVec3] {
         self.observed[curve as usize].get_or_init(|| {
             let [left, top] = self.corner;
@@ -103,7 +111,7 @@ impl<'a> Level<'a> {
             if curve == Curve::Correct {
                 return self.grid.reduce(pixel);
             }
-            // Most pixels have one of a few bytes.
+            // Most pixels have one of few values, so results are cached.
             let lights: RefCell<HashMap<u64, f64>> = RefCell::default();
             let light = |seen: f64| {
                 let mut lights = lights.borrow_mut();
@@ -114,7 +122,7 @@ impl<'a> Level<'a> {
         })
     }
 
-    /// Averages a rendering of all pixels of a part over the cells.
+    /// Averages a rendering of all pixels of a part over the cells of the level's grid.
     pub fn reduced(&self, rendering: &Arc<Rendering>) -> Arc<Rendering> {
         let (pixels, part) = (&rendering.correct, rendering.part);
         if part == self.grid.cells {
@@ -134,7 +142,8 @@ impl<'a> Level<'a> {
         Arc::new(Rendering::new(candidate, self.grid.cells, moments))
     }
 
-    /// Predicts what the level shows if a rendering's candidate is correct.
+    /// Predicts what the level's cells show if the rendered hypothesis about the program is
+    /// correct.
     pub fn predict(&self, rendering: &Rendering) -> Prediction<'_> {
         let candidate = &rendering.candidate;
         let (seen, moments) = (

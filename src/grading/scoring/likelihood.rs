@@ -1,45 +1,49 @@
-//! How likely a picture is, given a prediction.
+//! Computes how likely a picture is, given a prediction.
 //!
-//! A pixel shows the mean of n samples, rounded: its error has the variance v/n + r², where v is
-//! the variance of one sample in the pixel, and r² that of rounding, a twelfth of a step's square.
-//! n is fitted. Only random sampling has just this variance everywhere, and some pixels may be
-//! wrong for other reasons, so errors are modelled by Student's distribution with two degrees of
+//! A pixel shows the mean of n samples, rounded. Its error has the variance v/n + s²/12, where v is
+//! the variance of one sample in the pixel, and s is the step to which values are rounded. n is
+//! fitted. Only random sampling has exactly this variance everywhere, and some pixels may be wrong
+//! for other reasons. So errors are modelled by Student's t distribution with two degrees of
 //! freedom (Lange, Little and Taylor, Robust statistical modeling using the t distribution, 1989).
-//! Of two candidates the one is chosen that has the greater likelihood, less half a logarithm of
-//! the number of pixels for each fitted number (Schwarz, Estimating the dimension of a model,
-//! 1978).
+//!
+//! Of two hypotheses about the program, the one with the greater likelihood is chosen, after a
+//! penalty for each fitted number: half the logarithm of the number of pixels (Schwarz, Estimating
+//! the dimension of a model, 1978).
 
 use glam::DVec3;
 
 use super::prediction::{FLAT, Prediction};
 use crate::grading::hypotheses::Curve;
 
-/// Degrees of freedom of the errors' distribution.
+/// Number of degrees of freedom of Student's t distribution, by which errors are modelled. It is
+/// small, so that a few large errors hardly change a fit. The value is a choice.
 const FREEDOM: f64 = 2.0;
 
-/// Rounds of fitting 1/n; each more than halves the remaining error.
+/// Number of rounds of fitting 1/n, where n is the number of samples per pixel. Each round more
+/// than halves the remaining error, so 8 rounds leave less than 1/256 of it.
 const ROUNDS: usize = 8;
 
 /// How well a prediction fits a picture.
 #[derive(Clone, Debug)]
 pub struct Score {
-    /// Logarithm of the likelihood.
+    /// Logarithm of the picture's likelihood, up to a constant.
     pub likelihood: f64,
-    /// Number of independent samples in a pixel that cause as much noise; `None` if there is no
-    /// noise.
+    /// Number of independent samples per pixel that would cause as much noise; `None` if there is
+    /// no noise.
     pub samples: Option<f64>,
-    /// Squared error of each pixel in standard deviations, summed over its channels.
+    /// Squared error of each pixel relative to its variance, summed over the channels.
     pub chi_squares: Vec<f64>,
-    /// Sum of the squared differences.
+    /// Sum of the squared differences between the picture and the prediction.
     pub squares: f64,
-    /// Part of the squared differences that noise explains.
+    /// Part of the sum `squares` that noise and rounding explain.
     pub noise: f64,
-    /// Share of a sample's variance that a pixel's error has: 1/n.
+    /// Variance of a pixel's error relative to the variance of one sample: 1/n for n samples per
+    /// pixel.
     pub share: f64,
 }
 
-/// The difference of a pixel, with the variances of one sample and of everything else: rounding and
-/// the uncertainty of the expected mean.
+/// Difference between a pixel and its prediction, with two variances: that of one sample, and that
+/// of rounding and of the predicted mean's uncertainty.
 struct PixelError {
     difference: DVec3,
     variance: DVec3,
@@ -49,7 +53,7 @@ struct PixelError {
 impl PixelError {
     fn of(prediction: &Prediction, at: usize) -> Self {
         let variance = prediction.moments.variance[at];
-        // An empty pixel has no information.
+        // A pixel that is NaN gives no information.
         let is_empty = prediction.observed[at].x.is_nan();
         Self {
             difference: prediction.difference(at),
@@ -58,18 +62,19 @@ impl PixelError {
         }
     }
 
-    /// Returns the variance of the error, given its share of a sample's variance.
+    /// Returns the variance of the error. `share` is 1/n for n samples per pixel.
     fn total(&self, share: f64) -> DVec3 {
         self.variance * share + self.rounding
     }
 
-    /// Returns the sum of the squares in standard deviations, given the share of a sample's
-    /// variance.
+    /// Returns the squared error relative to its variance, summed over the channels. `share` is 1/n
+    /// for n samples per pixel.
     fn chi_square(&self, share: f64) -> f64 {
         (self.difference * self.difference / self.total(share)).element_sum()
     }
 
-    /// Returns the logarithm of the density, up to a constant.
+    /// Returns the logarithm of the error's probability density, up to a constant. `share` is 1/n
+    /// for n samples per pixel.
     fn density(&self, share: f64) -> f64 {
         let volume = self.total(share).element_product();
         -0.5 * libm::log(volume)
@@ -77,18 +82,20 @@ impl PixelError {
     }
 }
 
-/// Returns the variances of rounding and of the expected mean.
+/// Returns the variance of a pixel's error that does not come from sampling: that of rounding, and
+/// of the predicted mean's uncertainty.
 fn rounding(prediction: &Prediction, at: usize) -> DVec3 {
     let steps = prediction.steps(at);
     steps * steps / 12.0 + prediction.moments.mean_variance[at]
 }
 
 impl Prediction<'_> {
-    /// Scores the prediction.
+    /// Scores how well the prediction fits the picture.
     pub fn score(&self) -> Score {
         let errors = (0..self.observed.len()).map(|at| PixelError::of(self, at));
         let errors: Vec<PixelError> = errors.collect();
-        // 1/n, which is at most 1.
+        // Variance of errors relative to that of one sample: 1/n for n samples per pixel. At most
+        // 1.
         let mut share: f64 = 1.0;
         for _ in 0..ROUNDS {
             let (mut above, mut below) = (0.0, 0.0);
@@ -103,7 +110,8 @@ impl Prediction<'_> {
                 share = (share + above / below).clamp(1e-6, 1.0);
             }
         }
-        // Densities refer to the light of the picture itself.
+        // Probability densities are converted to the light that viewers see. So predictions for
+        // different encodings are comparable.
         let stretch = |light: &f64| {
             let own = Curve::Correct.step(self.curve.seen(*light));
             libm::log(own / self.curve.step(*light))
@@ -114,8 +122,8 @@ impl Prediction<'_> {
             _ => -stretches.sum::<f64>(),
         };
         let (mut squares, mut expected) = (0.0, 0.0);
-        // Over pixels of several colours: variances of a sample, and squared differences beyond
-        // rounding.
+        // Sums over the pixels that mix several colours: the variances of one sample, and the
+        // squared differences less the variance of rounding.
         let (mut of_samples, mut beyond) = (0.0, 0.0);
         for one in &errors {
             likelihood += one.density(share);
@@ -126,7 +134,7 @@ impl Prediction<'_> {
             let has_several = one.variance.cmpgt(DVec3::ZERO);
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
-        // Less noise than of 100 000 samples is rounding.
+        // Noise that is less than that of 100 000 samples cannot be distinguished from rounding.
         let is_known = beyond > 1e-5 * of_samples;
         Score {
             likelihood,
@@ -138,12 +146,13 @@ impl Prediction<'_> {
         }
     }
 
-    /// Returns the observed share of the change from this prediction, whose score is given, to
-    /// another one, and that share in standard deviations, with the greater of the two predictions'
-    /// variances.
+    /// Tests whether the picture shows the change from this prediction to another one. The first
+    /// number is the observed fraction of the change: 0 if the picture fits this prediction, 1 if
+    /// it fits the other. The second is this fraction in standard deviations, for which the greater
+    /// variance of both predictions is used. `score` belongs to this prediction.
     pub fn observed_share(&self, score: &Score, other: &Self) -> [f64; 2] {
         let mut deviations = self.deviations();
-        // Light that is encoded by another curve has variances of its own.
+        // The variances of light that is encoded by another curve are not comparable.
         let is_alike = self.curve == other.curve;
         if is_alike {
             let others = deviations.iter_mut().zip(other.deviations());
@@ -173,7 +182,8 @@ impl Prediction<'_> {
         [seen / all.max(1e-300), seen / variance.max(1e-300).sqrt()]
     }
 
-    /// Returns the variances of a pixel's error, given its share of a sample's variance.
+    /// Returns the variances of a pixel's error, for each channel. `share` is 1/n for n samples per
+    /// pixel.
     pub fn error(&self, at: usize, share: f64) -> DVec3 {
         PixelError::of(self, at).total(share)
     }

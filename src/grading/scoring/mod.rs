@@ -1,11 +1,16 @@
-//! How well a candidate explains a picture.
+//! Scores how well a hypothesis about the program explains a picture.
 //!
-//! In: a candidate, and a picture on a `level`, whose cells form a `grid`. Out: a `prediction`.
-//! It starts as a `rendering` of the candidate's scene: exact `moments` of the cells, or moments
-//! sampled by the `faulty_tracer` if the behaviour cannot be expressed as a scene, and on the tiny
-//! grid. Layout, effects on light and `jpeg` coding follow. A prediction tells how likely the
-//! picture is (`likelihood`), which pixels no sampling explains (`strays`), and whether edges are
-//! displaced (`displacement`). `work` counts what all this costs.
+//! In: a hypothesis, and a picture at one resolution (`level`), which is divided into cells
+//! (`grid`). Out: a `prediction` of what the cells show.
+//!
+//! First, a `rendering` of the hypothesis gives the mean and the variance of each cell (`moments`).
+//! It is exact, unless the grid is the coarsest one or the program traces rays in a wrong way that
+//! no other scene can express; then the `faulty_tracer` takes samples. Next, pixels are rearranged,
+//! and effects on light and `jpeg` coding are applied.
+//!
+//! A prediction says how likely the picture is (`likelihood`), which pixels are wrong however they
+//! were sampled (`strays`), and whether edges are displaced (`displacement`). `work` counts the
+//! cost.
 
 mod displacement;
 mod faulty_tracer;

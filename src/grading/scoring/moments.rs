@@ -1,17 +1,18 @@
-//! Means and variances of cells.
+//! Means and variances of the light in cells of a picture.
 
 use glam::DVec3;
 
 use crate::{area::Area, color::Color, exact::ExactPixel, grading::hypotheses::Curve};
 
-/// Means and variances of cells, in linear light.
+/// Means and variances of cells of a picture, in linear light.
 #[derive(Clone, Debug, Default)]
 pub struct Moments {
-    /// Mean of each cell.
+    /// Mean light of each cell.
     pub mean: Vec<DVec3>,
     /// Variance of one sample in each cell.
     pub variance: Vec<DVec3>,
-    /// Variance of the mean itself, if it is an estimate or was coded.
+    /// Variance of the mean itself. It is 0 unless the mean is estimated from samples or changed by
+    /// JPEG coding.
     pub mean_variance: Vec<DVec3>,
 }
 
@@ -21,7 +22,8 @@ impl Moments {
         Self::exact((0..cells).map(|_| Default::default()))
     }
 
-    /// Collects means and variances of exact pixels.
+    /// Collects the means and variances of exact pixels. The variances of the means themselves are
+    /// 0.
     pub fn exact(pixels: impl Iterator<Item = (DVec3, DVec3)>) -> Self {
         let (mean, variance): (Vec<_>, Vec<_>) = pixels.unzip();
         let mean_variance = vec![DVec3::ZERO; mean.len()];
@@ -32,7 +34,8 @@ impl Moments {
         }
     }
 
-    /// Replaces the moments of an area; the cells are those of `part`.
+    /// Replaces the means and variances in an area. `self` has those of the cells of `part`, row by
+    /// row, and `own` has the new ones of the cells of `area`.
     pub fn put(&mut self, part: Area, area: Area, own: &Self) {
         for (from, (x, y)) in area.iter().enumerate() {
             let at = part.index(x, y);
@@ -41,7 +44,7 @@ impl Moments {
         }
     }
 
-    /// Selects cells by their indices.
+    /// Returns the cells with these indices, in this order.
     pub fn select(&self, indices: &[usize]) -> Self {
         let select = |all: &[DVec3]| indices.iter().map(|&at| all[at]).collect();
         Self {
@@ -51,7 +54,7 @@ impl Moments {
         }
     }
 
-    /// Adds to the variances of the means.
+    /// Adds `more` to the variances of the means.
     pub fn add_mean_variance(&mut self, more: &[DVec3]) {
         for (own, more) in self.mean_variance.iter_mut().zip(more) {
             *own += more;
@@ -59,8 +62,8 @@ impl Moments {
     }
 }
 
-/// Returns the least and the greatest value within `around` columns and rows of a cell, channel by
-/// channel, in rows of `width` cells.
+/// Returns the least and the greatest value, for each channel, of all cells at most `around`
+/// columns and rows away from a cell. `values` has rows of `width` cells.
 pub fn range(values: &[DVec3], width: usize, at: usize, around: usize) -> [DVec3; 2] {
     let (x, y) = (at % width, at / width);
     let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -73,8 +76,8 @@ pub fn range(values: &[DVec3], width: usize, at: usize, around: usize) -> [DVec3
     [least, most]
 }
 
-/// Returns the function of a colour whose means give mean and variance: each channel, decoded by a
-/// curve, and its square.
+/// Returns a function of a colour: each of its channels, decoded by a curve, and the squares of
+/// these. The means of both over a pixel give the mean and the variance of a sample.
 pub fn numbers(decoding: Curve) -> impl Fn(Color) -> [f64; 6] {
     move |color| {
         let [r, g, b] = color.to_linear().map(|light| decoding.light(light));
@@ -82,7 +85,7 @@ pub fn numbers(decoding: Curve) -> impl Fn(Color) -> [f64; 6] {
     }
 }
 
-/// Returns the mean and the variance of an exact pixel.
+/// Returns the mean and the variance of one sample in an exact pixel.
 pub fn moments(pixel: &ExactPixel<6>) -> (DVec3, DVec3) {
     let [mean, square] = [0, 3].map(|at| DVec3::from_slice(&pixel.mean[at..]));
     let variance = (square - mean * mean).max(DVec3::ZERO) + pixel.bound * pixel.bound;

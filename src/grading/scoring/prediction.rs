@@ -1,4 +1,5 @@
-//! What the cells of a level should show if a candidate is correct, and what they show.
+//! What the cells of a picture should show if a hypothesis about the program is correct, and what
+//! they do show.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -13,42 +14,50 @@ use crate::{
     grading::hypotheses::{Curve, Effect, STEP, Tabulated, encoded_quickly, is_near},
 };
 
-/// Variance below which a pixel has one colour: at most about 1e-9 of it may have another.
+/// Variance of one sample, in squared linear light, below which a pixel counts as having one
+/// colour. With this value, a black pixel may be white in at most about a billionth of its area.
 pub const FLAT: f64 = 1e-9;
 
-/// Light from which on a channel counts as full, which may be less than the program computed.
+/// Light of a channel, from 0 to 1, above which the channel counts as full. The program may have
+/// computed more light, which was clipped. Only the two greatest bytes are above 0.99.
 const FULL: f64 = 0.99;
-/// Light of a channel whose byte is too small to tell a factor.
+/// Light of a channel, from 0 to 1, below which it is not used to estimate a factor. Rounding
+/// changes small bytes too much. The value is a choice.
 const EMPTY: f64 = 0.01;
-/// Relative difference within which factors count as the same.
+/// Relative difference below which two factors count as equal. Rounding to bytes changes the light
+/// of a channel above `EMPTY` by at most about as much.
 const ALIKE: f64 = 0.03;
 
-/// Mean change of a truncated byte, in steps.
+/// Mean change of a value that is truncated to 8 bits, in steps: truncation loses between 0 and 1
+/// step.
 const CUT_OFF: f64 = -0.5;
 
-/// Expected and observed light of cells.
+/// Predicted and observed light of the cells of a picture.
 #[derive(Clone, Debug)]
 pub struct Prediction<'a> {
-    /// Observed light, decoded by the curve; NaN where it is not known.
+    /// Observed light of the cells, decoded by `curve`; NaN if it is unknown.
     pub observed: &'a [DVec3],
     /// Number of cells in a row.
     pub width: usize,
-    /// Moments of the expected light.
+    /// Means and variances of the predicted light.
     pub moments: Arc<Moments>,
-    /// Curve by which light is encoded.
+    /// Curve by which the program encodes light.
     pub curve: Curve,
-    /// Whether bytes are truncated, not rounded.
+    /// Whether the program truncates values to bytes instead of rounding them.
     pub is_cut_off: bool,
-    /// Factor of `Effect::Gain`.
+    /// Fitted factor by which the program multiplies light; 1 unless it has the effect
+    /// `Effect::Gain`.
     pub gain: f64,
-    /// Differences of truncated bytes, cached because they take long to compute.
+    /// Differences between observed and predicted light if bytes are truncated, cached because they
+    /// take long to compute.
     of_cut_off: OnceCell<Vec<DVec3>>,
 }
 
-/// Blurs cells in rows of `width` by a variance, in cells squared.
+/// Blurs cells by a Gaussian of the given variance, in squared cells. There are `width` cells in a
+/// row.
 ///
-/// Weights a, 1 − 2a, a have the variance 2a. They are applied repeatedly, with a ≤ 1/16, which
-/// approximates a Gaussian.
+/// The weights a, 1 − 2a and a, of a cell's neighbour, the cell itself and the other neighbour,
+/// have the variance 2a. Applying them repeatedly, with a ≤ 1/16, approximates a Gaussian.
 fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
     let height = cells.len() / width;
     let rounds = (8.0 * variance).ceil();
@@ -70,7 +79,8 @@ fn blurred(mut cells: Vec<DVec3>, width: usize, variance: f64) -> Vec<DVec3> {
     cells
 }
 
-/// Maps each channel by a curve; `quick` is an approximation of it.
+/// Applies a curve to the mean of each channel, and multiplies the variance by the squared slope.
+/// `quick` is a fast approximation of the curve, from which the slope is computed.
 fn map_channels(
     mean: &mut [DVec3],
     variance: &mut [DVec3],
@@ -79,8 +89,9 @@ fn map_channels(
 ) {
     let slope_of = |mean: f64, variance: f64| {
         let mean = mean.clamp(0.0, 1.0);
-        // Slope over the range of noise: a quarter or all of a step or of one sample's deviation,
-        // whichever is greater. A clipped curve is flat on one side, so the steeper slope counts.
+        // Slope of the curve over the range of noise. Noise is the deviation of one sample, or an
+        // 8-bit step if that is greater. The slope over a quarter of the range is tried, too, and
+        // the steeper one counts, because a clipped curve is flat on one side.
         let slope = |part: f64| {
             let by = variance.sqrt().max(STEP) * part;
             let (low, high) = ((mean - by).max(0.0), (mean + by).min(1.0));
@@ -88,8 +99,8 @@ fn map_channels(
         };
         slope(0.25).abs().max(slope(1.0).abs())
     };
-    // The last argument and value of `curve` for each channel. Most cells equal the one before, and
-    // a curve may be slow to evaluate.
+    // Last argument and result of `curve` for each channel, cached because most cells equal the one
+    // before and the curve may be slow.
     let mut known = [[f64::NAN; 2]; 3];
     for (mean, variance) in mean.iter_mut().zip(variance) {
         for i in 0..3 {
@@ -103,14 +114,14 @@ fn map_channels(
     }
 }
 
-/// Maximum relative deviation of an estimated factor from a power of 2 that counts as that power.
-/// The rounding of bytes to 1/255 shifts a factor by less.
+/// Maximum relative deviation of an estimated factor from a power of 2 for it to count as that
+/// power. Rounding to bytes changes the estimate by less.
 const POWER: f64 = 0.005;
 
-/// Returns the factor between the observed and the expected light of cells of one colour, after a
-/// function: the median, refined by the channels that have nearly that factor. If all of them are
-/// full, it is the least that fills them. A factor near 1 is 1, and so is one that fewer than half
-/// of the channels have.
+/// Estimates the factor between observed and predicted light, after `function` is applied to both,
+/// from cells of one colour. The estimate is the median over all channels, refined by the channels
+/// with nearly this factor. It is 1 if the median is nearly 1, or if fewer than half of the
+/// channels agree with it. If all channels are full, it is the least factor that makes them full.
 fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabulated) -> f64 {
     let flat = (0..mean.len()).filter(|&at| variance[at].max_element() < FLAT);
     let pairs = flat.flat_map(|at| [0, 1, 2].map(|i| [observed[at][i], mean[at][i]]));
@@ -136,7 +147,7 @@ fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabul
         .iter()
         .fold([0.0; 2], |sums, pair| [0, 1].map(|i| sums[i] + pair[i]));
     let gain = seen / mean;
-    // A wrong count of samples is mostly a power of 2 times the right one.
+    // Programs that divide by a wrong number of samples are mostly wrong by a power of 2.
     let power = libm::exp2(libm::log2(gain).round());
     let is_power = (gain / power - 1.0).abs() < POWER;
     match gain {
@@ -147,7 +158,7 @@ fn gain(observed: &[DVec3], mean: &[DVec3], variance: &[DVec3], function: &Tabul
 }
 
 impl<'a> Prediction<'a> {
-    /// Creates a prediction of light that is encoded by a curve.
+    /// Creates a prediction for a program that encodes light by `curve`.
     pub fn new(observed: &'a [DVec3], width: usize, moments: Arc<Moments>, curve: Curve) -> Self {
         Self {
             observed,
@@ -160,7 +171,7 @@ impl<'a> Prediction<'a> {
         }
     }
 
-    /// Applies effects to the expected light.
+    /// Applies a program's effects on light to the prediction.
     pub fn apply(&mut self, effects: &[Effect], grid: &Grid) {
         if effects.is_empty() {
             return;
@@ -218,7 +229,8 @@ impl<'a> Prediction<'a> {
                     }
                 }
                 Effect::Blur(width) => {
-                    // A square of the width w has the variance w²/12 along each axis.
+                    // A square of the width w has the variance w²/12 along each axis. A correct
+                    // pixel has the width 1.
                     let cell = f64::from(grid.factor);
                     let spread = (width * width - 1.0) / (12.0 * cell * cell);
                     let squares = variance.iter().zip(mean.iter());
@@ -240,7 +252,7 @@ impl<'a> Prediction<'a> {
                         is_within && is_near(observed[at].into(), light)
                     };
                     for at in (0..observed.len()).filter(|&at| is_part(at)) {
-                        // Its border mixes with the neighbours.
+                        // The border of the patch mixes with its neighbours.
                         for near in grid.around(at, 1) {
                             (mean[near], variance[near]) = (observed[near], DVec3::ZERO);
                         }
@@ -250,17 +262,18 @@ impl<'a> Prediction<'a> {
         }
     }
 
-    /// Returns whether a cell should have one colour.
+    /// Returns whether a cell should show one colour.
     pub fn is_flat(&self, at: usize) -> bool {
         self.moments.variance[at].max_element() < FLAT
     }
 
-    /// Returns the light of a step of the encoding in a cell.
+    /// Returns how much light an 8-bit step is worth in a cell, for each channel.
     pub fn steps(&self, at: usize) -> DVec3 {
         self.moments.mean[at].map(|light| self.curve.step(light))
     }
 
-    /// Returns the observed less the expected light of a cell.
+    /// Returns the observed light of a cell minus the predicted light. Returns 0 if the observed
+    /// light is unknown.
     pub fn difference(&self, at: usize) -> DVec3 {
         if !self.is_cut_off {
             let seen = self.observed[at];
@@ -277,7 +290,7 @@ impl<'a> Prediction<'a> {
         all[at]
     }
 
-    /// Encodes light as the picture's file does: sRGB from 0 to 1.
+    /// Encodes light as the picture's file does, from 0 to 1.
     pub fn encoded(&self, light: f64) -> f64 {
         match self.curve {
             Curve::Correct => encoded_quickly(light),
@@ -285,8 +298,9 @@ impl<'a> Prediction<'a> {
         }
     }
 
-    /// Returns the difference of a cell whose bytes are truncated. A flat colour changes or not, by
-    /// the fraction of its byte; mixtures lose half a step on average.
+    /// Returns the difference between the observed and the predicted light of a cell, if the
+    /// program truncates bytes. In a cell of one colour, truncation drops the fractional part of
+    /// the byte; in other cells, it loses half a step on average.
     fn difference_of_cut_off(&self, at: usize) -> DVec3 {
         let (seen, mean) = (self.observed[at], self.moments.mean[at]);
         if seen.x.is_nan() {
@@ -305,8 +319,8 @@ impl<'a> Prediction<'a> {
         }))
     }
 
-    /// Returns the differences of all cells, channel by channel, in the light that the picture
-    /// shows.
+    /// Returns the differences of all cells, channel by channel, in the light that viewers of the
+    /// file see.
     pub fn differences(&self) -> Vec<f64> {
         let own = |at: usize| match self.curve {
             Curve::Correct => self.difference(at),
@@ -321,8 +335,8 @@ impl<'a> Prediction<'a> {
             .collect()
     }
 
-    /// Returns the standard deviations that the differences may have with one sample in each cell,
-    /// if edges are displaced by up to a cell.
+    /// Returns standard deviations of the differences of all cells, channel by channel. They hold
+    /// for one sample per cell and edges that are displaced by up to a cell.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.observed.len();
         let deviations = cells.flat_map(|at| {

@@ -1,5 +1,7 @@
-//! Renders a candidate in the cells of a grid, before layout and effects on light: exactly, or by
-//! the faulty tracer, which serves the tiny grid and behaviour that no scene can express.
+//! Renders a hypothesis about the program in the cells of a grid, before pixels are rearranged and
+//! light is changed. The result is exact, unless the grid is the coarsest one or the program traces
+//! rays in a wrong way that no other scene can express. In these cases, the faulty tracer takes
+//! samples.
 
 use std::{cell::OnceCell, sync::Arc};
 
@@ -18,28 +20,34 @@ use crate::{
     scene::Scene,
 };
 
-/// Samples in a cell for behaviour that no scene can express.
+/// Number of samples per cell if the program traces rays in a wrong way that no other scene can
+/// express. It is a Fibonacci number, because the samples form a Fibonacci lattice. The value is a
+/// choice between noise and time.
 const SAMPLES: usize = 34;
 
-/// Share of a cell that the faulty tracer may miss where it takes the cell for one colour.
+/// Fraction of a cell's area in which the faulty tracer may overlook another colour. It tests
+/// places near the corners of a cell; an edge that passes between such a place and the corner cuts
+/// off about this much.
 const MISSED: f64 = 1e-3;
 
-/// The rendering of a candidate.
+/// The mean and the variance of each cell that a hypothesis about the program renders.
 #[derive(Clone)]
 pub struct Rendering {
     pub candidate: Candidate,
     pub part: Area,
-    /// Moments of a correct program with the candidate's scene; on the tiny grid, of the
-    /// candidate's behaviour.
+    /// Means and variances if the scene of the hypothesis is traced correctly. On the coarsest
+    /// grid, it is traced with the faults of the hypothesis.
     pub correct: Arc<Moments>,
-    /// Moments with the candidate's behaviour, if that is faulty.
+    /// Means and variances if the scene is traced with the faults of the hypothesis; `None` if
+    /// there are no faults, or on the coarsest grid.
     behaved: Option<Arc<Moments>>,
-    /// Moments of a correct program, estimated from as many samples as `behaved`, if needed.
+    /// Means and variances if the scene is traced correctly, estimated from as many samples as
+    /// `behaved`. Where both agree, the faults make no difference. `None` if not needed.
     sampled: Option<Arc<Moments>>,
 }
 
 impl Rendering {
-    /// Creates the rendering of a candidate with correct behaviour in a part of the picture.
+    /// Creates the rendering of a hypothesis that traces rays correctly, in a part of the picture.
     pub fn new(candidate: Candidate, part: Area, moments: Arc<Moments>) -> Self {
         Self {
             candidate,
@@ -50,7 +58,8 @@ impl Rendering {
         }
     }
 
-    /// Returns the moments as they are laid out in the cells of a grid.
+    /// Returns the means and variances in the cells of a grid, after the hypothesis has rearranged
+    /// its pixels.
     pub fn laid_out(&self, grid: &Grid) -> Arc<Moments> {
         let moments = self.behaved.as_ref().unwrap_or(&self.correct);
         let layout = self.candidate.layout;
@@ -67,7 +76,8 @@ impl Rendering {
 }
 
 impl Candidate {
-    /// Returns the scene whose pixels are a grid's cells, without objects that are not drawn.
+    /// Returns a scene whose pixels are the cells of a grid, without the objects that the
+    /// hypothesis omits.
     pub fn drawn(&self, grid: &Grid) -> Scene {
         let (camera, image) = grid.view(&self.scene);
         let mut scene = Scene {
@@ -82,9 +92,9 @@ impl Candidate {
         scene
     }
 
-    /// Renders the candidate in the cells of a grid: exactly, or with a number of samples per cell.
-    /// Of `known`, the rendering that shares most of the picture is reused. Returns `None` if it is
-    /// cancelled or exceeds the budget.
+    /// Renders the hypothesis in the cells of a grid: exactly, or with `samples` samples per cell.
+    /// Reuses the rendering of `known` that agrees with most of the picture. Returns `None` if it
+    /// is cancelled or exceeds the budget of work.
     pub fn render(
         &self,
         grid: &Grid,
@@ -107,7 +117,8 @@ impl Candidate {
         let scene = || scene.get_or_init(|| self.drawn(grid));
         let sampled = |behaviour: Behaviour, area: Area, samples: usize| {
             work.pay_for_samples(self.scene.objects.len(), samples, area)?;
-            // Objects are indexed among those that are drawn.
+            // The scene has only the objects that are drawn, so the index of the faulty one counts
+            // only these.
             let drawn = |at: usize| self.is_drawn[..at].iter().filter(|is| **is).count();
             let hit = behaviour.hit.filter(|(at, _)| self.is_drawn[*at]);
             let behaviour = Behaviour {
@@ -156,8 +167,8 @@ impl Candidate {
         })
     }
 
-    /// Returns an area of a part of the picture, before layout, outside of which another candidate
-    /// is known to look the same.
+    /// Returns the area in which the pictures of two hypotheses may differ, before pixels are
+    /// rearranged. The rest of `part` is the same in both.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Area {
         let nothing = Area {
             width: 0,
@@ -168,7 +179,8 @@ impl Candidate {
             return nothing;
         }
         let (one, two) = (&self.scene, &other.scene);
-        // Objects are visible only where they are.
+        // Changed objects make a difference only where they are seen, if rays are traced without
+        // displacing objects.
         let is_in_place = self.behaviour.is_in_place();
         let is_same_view = one.camera == two.camera && one.image == two.image;
         if !is_in_place || !is_same_view || self.decoding != other.decoding {
@@ -203,7 +215,8 @@ impl Candidate {
     }
 }
 
-/// Completes known moments of a part by those of the area in which they are not known.
+/// Completes the known means and variances of a part. `make` computes those in the area that is not
+/// known.
 fn completed(
     known: Option<(&Arc<Moments>, Area)>,
     part: Area,
@@ -220,8 +233,8 @@ fn completed(
     }
 }
 
-/// Replaces exact moments by sampled ones of faulty behaviour, except where samples of correct
-/// behaviour are equal to those.
+/// Replaces exact means and variances by those that the faulty tracer sampled (`other`), in all
+/// cells in which samples of a correct tracer (`own`) differ from them.
 fn replaced_where_they_differ(mut correct: Moments, own: &Moments, other: &Moments) -> Moments {
     for at in 0..other.mean.len() {
         let variance = other.variance[at];

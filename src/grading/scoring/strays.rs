@@ -1,32 +1,32 @@
-//! Finds what is certainly wrong in a picture, however it was sampled.
+//! Finds errors in a picture that no sampling can explain.
 
 use glam::DVec3;
 
 use super::{moments::range, prediction::Prediction};
 
-/// Greatest error that counts as random, in standard deviations: of a million normal errors one is
-/// greater.
+/// Greatest error that counts as random, in standard deviations. Less than one in a million
+/// normally distributed errors is greater.
 pub const DEVIATIONS: f64 = 5.0;
 
-/// Greatest difference of a pixel of one colour that is ignored, in steps: half for rounding, and a
-/// quarter for another way to decode.
+/// Greatest difference that is ignored in a pixel that should show one colour, in 8-bit steps: half
+/// a step for rounding, and a quarter for another way to decode colours.
 pub const WRONG: f64 = 0.75;
 
-/// The errors of pixels that no sampling of a candidate explains.
+/// Errors of a picture that no sampling can explain, if a hypothesis about the program is correct.
 #[derive(Debug, Default)]
 pub struct Strays {
-    /// Indices of the pixels of one colour that show another, by more than a displacement of an
-    /// edge by half a pixel could cause.
+    /// Indices of the pixels that should show one colour and show another one. Their difference is
+    /// greater than an edge could cause that moves by half a pixel.
     pub pixels: Vec<usize>,
-    /// Sum of their squared differences.
+    /// Sum of the squared differences of the pixels in `pixels`.
     square: f64,
-    /// For each pixel of several colours its index, its squared difference, and the variance of
-    /// one sample.
+    /// The pixels that mix several colours: index, squared difference, and variance of one sample.
     edges: Vec<(usize, f64, f64)>,
 }
 
 impl Strays {
-    /// Returns the squared difference of the pixels of one colour, plus what the others have beyond
+    /// Returns the squared differences that sampling cannot explain. These are the differences of
+    /// pixels that should show one colour, plus what pixels that mix several colours have beyond
     /// the variance of one sample each.
     pub fn square(&self) -> f64 {
         let beyond = |(_, square, variance): &(usize, f64, f64)| square - variance;
@@ -34,8 +34,8 @@ impl Strays {
         self.square + beyond.max(0.0)
     }
 
-    /// Returns whether at most `missed` pixels of one colour are wrong, and those of several
-    /// colours may be noise.
+    /// Returns whether at most `missed` of the pixels that should show one colour are wrong, and
+    /// the errors of pixels that mix several colours may be noise.
     pub fn are_no_more(&self, missed: usize) -> bool {
         let are_few = self.pixels.len() <= missed;
         let of_edges = Self {
@@ -45,7 +45,8 @@ impl Strays {
         are_few && of_edges.are_empty(1, |_| Some(0)) == [true]
     }
 
-    /// Returns for each group of pixels whether it has no stray.
+    /// Returns for each group of pixels whether sampling may explain its errors. `group` returns
+    /// the group of a pixel, or `None` if the pixel is ignored.
     pub fn are_empty(&self, groups: usize, group: impl Fn(usize) -> Option<usize>) -> Vec<bool> {
         let mut is_right = vec![true; groups];
         for group in self.pixels.iter().filter_map(|at| group(*at)) {
@@ -58,8 +59,8 @@ impl Strays {
                 (*squares, *expected) = (*squares + square, *expected + variance);
             }
         }
-        // Light is at most 1, so the expected square of a pixel's sum over three channels is at
-        // most three times the sum, and its variance no more than that.
+        // Light is at most 1, so the squared error of a pixel, summed over three channels, is at
+        // most 3. So the variance of the squared error is at most three times its expected value.
         let is_noise = |(squares, expected): (f64, f64)| {
             squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
         };
@@ -71,7 +72,7 @@ impl Strays {
 }
 
 impl Prediction<'_> {
-    /// Finds the strays of the prediction.
+    /// Finds the errors that no sampling can explain.
     pub fn strays(&self) -> Strays {
         let mut strays = Strays::default();
         for at in 0..self.observed.len() {
@@ -92,16 +93,18 @@ impl Prediction<'_> {
         strays
     }
 
-    /// Returns the change of a pixel's light if edges move by half a pixel: half the range of its
-    /// neighbours, or the standard deviation of a sample in one of them, which for half of each of
-    /// two colours is half of their difference.
+    /// Returns how much the light of a pixel may change if edges move by half a pixel, for each
+    /// channel. This is half the range of its neighbours' means, or the standard deviation of one
+    /// sample in a neighbour, if that is greater. Where two colours cover half of a pixel each,
+    /// this deviation is half of their difference.
     fn reach(&self, at: usize) -> DVec3 {
         let [least, most] = range(&self.moments.mean, self.width, at, 1);
         let [_, variance] = range(&self.moments.variance, self.width, at, 1);
         ((most - least) / 2.0).max(variance.map(f64::sqrt))
     }
 
-    /// Returns the difference of a pixel that rounding and the uncertainty of its mean explain.
+    /// Returns the difference of a pixel that rounding and the uncertainty of its predicted mean
+    /// can explain, for each channel.
     fn allowed(&self, at: usize) -> DVec3 {
         WRONG * self.steps(at) + DEVIATIONS * self.moments.mean_variance[at].map(f64::sqrt)
     }

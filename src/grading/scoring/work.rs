@@ -1,7 +1,7 @@
-//! The budget of work for a picture.
+//! The budget of work for judging a picture.
 //!
-//! Work is counted, not timed, so that a picture always gets the same verdict. A unit is that of
-//! the exact picture, about 30 ns.
+//! Work is counted, not timed, so that a picture always gets the same verdict. The unit is the one
+//! by which the exact renderer counts its work, about 30 ns.
 
 use std::{cell::Cell, sync::atomic::AtomicBool};
 
@@ -10,48 +10,54 @@ use crate::{
     area::Area, exact::Integrator, grading::hypotheses::Curve, scene::Scene, tracer::World,
 };
 
-/// Units for a picture. With `PIXEL` they take about 3 s for 320 × 180 pixels, in which two
-/// mistakes in four objects are found, and 4 s for 1280 × 720.
+/// Units of work (about 30 ns each) that are allowed for a picture, in addition to those for each
+/// pixel (`PIXEL`). By measurement, both together take about 3 s for 320 × 180 pixels, which is
+/// enough to find two mistakes in four objects, and 4 s for 1280 × 720.
 const PICTURE: f64 = 8e7;
-/// Units for each pixel of a picture, in addition to `PICTURE`.
+/// Units of work (about 30 ns each) that are allowed for each pixel of a picture. Large pictures
+/// take longer to compare.
 const PIXEL: f64 = 41.0;
 
-/// Work of preparing an object for an exact picture, in units of about 30 ns.
+/// Approximate cost of preparing an object for an exact picture, in units of about 30 ns.
 const WORLD_OBJECT: f64 = 20.0;
-/// Units of preparing an object for a sampled picture.
+/// Approximate cost of preparing an object for a sampled picture, in units of about 30 ns.
 const OBJECT: f64 = 6.0;
-/// Units of making a ray.
+/// Approximate cost of making a ray, in units of about 30 ns.
 const RAY: f64 = 0.6;
-/// Units of intersecting a ray with a shape.
+/// Approximate cost of intersecting a ray with a shape, in units of about 30 ns.
 const TEST: f64 = 0.2;
-/// Units of storing and comparing a cell.
+/// Approximate cost of storing and comparing a cell of a picture, in units of about 30 ns.
 const CELL: f64 = 2.0;
 
-/// Units of comparing a cell of a prediction with the observed light.
+/// Approximate cost of comparing a predicted with an observed cell of a picture, in units of about
+/// 30 ns.
 pub const COMPARISON: f64 = 1.0;
-/// Units per pixel of finding where edges lie and how sharp they are.
+/// Approximate cost per pixel of testing where edges lie and how sharp they are, in units of about
+/// 30 ns.
 pub const RESIDUAL: f64 = 8.0;
 
-/// Tolerance of exact pictures that judge bytes, in light from 0 to 1: a three hundredth of the
-/// smallest step of sRGB.
+/// Tolerance of the exact pictures that 8-bit pictures are compared to, in light from 0 to 1. It is
+/// about a three hundredth of the smallest step of 8-bit sRGB, so it does not change a verdict.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// Work that was spent on a picture, and its limit.
+/// Work spent on judging a picture, and its limit.
 pub struct Work<'a> {
     spent: Cell<f64>,
     limit: Cell<f64>,
-    /// Whether something was left out because the limit was reached.
+    /// Whether something was left undone because the limit was reached.
     is_cut: Cell<bool>,
     pub cancel: &'a AtomicBool,
 }
 
-/// Returns the work of an exact picture, given the integrator's units.
+/// Returns the work of an exact picture. `units` is the work that the exact renderer counted
+/// itself.
 pub fn of_exact(units: u64, objects: usize, pixels: usize) -> f64 {
     units as f64 + WORLD_OBJECT * objects as f64 + CELL * pixels as f64
 }
 
 impl<'a> Work<'a> {
-    /// Creates the budget of a picture; `effort` multiplies it, and `spent` was spent before.
+    /// Creates the budget for judging a picture. `effort` multiplies its limit, and `spent` is the
+    /// work that was spent before.
     pub fn new(pixels: u64, spent: f64, effort: f64, cancel: &'a AtomicBool) -> Self {
         Self {
             spent: Cell::new(spent),
@@ -61,29 +67,29 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Spends some work.
+    /// Adds to the work that was spent.
     pub fn spend(&self, work: f64) {
         self.spent.set(self.spent.get() + work);
     }
 
-    /// Returns whether work is left. If not, remembers that something is left out.
+    /// Returns whether work is left. If not, records that something was left undone.
     pub fn may_go_on(&self) -> bool {
         let may = self.remaining() > 0.0;
         self.is_cut.set(self.is_cut.get() || !may);
         may
     }
 
-    /// Returns `None` if no work is left; see [`Self::may_go_on`].
+    /// Returns `None` if no work is left, and records that something was left undone.
     pub fn check(&self) -> Option<()> {
         self.may_go_on().then_some(())
     }
 
-    /// Returns whether something was left out.
+    /// Returns whether something was left undone because the limit was reached.
     pub fn is_cut(&self) -> bool {
         self.is_cut.get()
     }
 
-    /// Runs something that must not be cut short, without a limit.
+    /// Runs a function without a limit on work, because its result must be complete.
     pub fn without_limit<T>(&self, run: impl FnOnce() -> T) -> T {
         let before = self.limit.replace(f64::INFINITY);
         let result = run();
@@ -95,8 +101,8 @@ impl<'a> Work<'a> {
         (self.limit.get() - self.spent.get()).max(0.0)
     }
 
-    /// Computes the exact moments of a part of a scene's picture. Returns `None` if they exceed the
-    /// limit.
+    /// Computes the exact means and variances of a part of a scene's picture. Returns `None` if it
+    /// is cancelled or exceeds the limit on work.
     pub fn exact_moments(&self, scene: &Scene, decoding: Curve, part: Area) -> Option<Moments> {
         let world = World::new_unless(scene, self.cancel).ok()?;
         let integrator = Integrator::for_values(&world, numbers(decoding))
@@ -111,8 +117,8 @@ impl<'a> Work<'a> {
         Some(Moments::exact(pixels?.iter().map(moments)))
     }
 
-    /// Spends the work of sampling a part of a picture. Returns `None` if it exceeds what is left,
-    /// which is spent then.
+    /// Spends the work of sampling a part of a picture. Returns `None` if less work is left, and
+    /// spends what is left.
     pub fn pay_for_samples(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
         let (objects, cells) = (objects as f64, part.pixels() as f64);
         let rays = samples as f64 * cells;

@@ -1,8 +1,9 @@
-//! Completes a set of mistakes by one that is visible only at edges.
+//! Adds to a set of mistakes one that is visible only at edges.
 //!
-//! In: a candidate that is near the picture. Out: the candidate, maybe with a row about edges or
-//! another pixel width, if it explains the picture then. A row is judged on the pixels, by the
-//! share of its change that is observed.
+//! In: a hypothesis about the program that is close to the picture. Out: the hypothesis, perhaps
+//! with one more mistake, if it explains the picture. The mistake may be a row of the table that is
+//! visible only at edges, or a wrong pixel width. A row predicts a change of the picture; the test
+//! measures on single pixels which fraction of the change is observed.
 
 use std::sync::Arc;
 
@@ -16,48 +17,64 @@ use crate::grading::{
     scoring::Level,
 };
 
-/// Rounds of fitting numbers to the middle grid. Each is preceded by rounds on a coarser grid, so
-/// few suffice.
+/// Maximum number of rounds of fitting numbers to the middle grid. Few are enough, because a fit to
+/// a coarser grid comes before.
 pub const ROUNDS: usize = 4;
 
-/// Greatest deviation from 1 of the observed share of a row's change, for the row to be named.
+/// Maximum error of the observed fraction of a predicted change. A mistake at edges predicts how
+/// the picture changes, and it is named if the observed fraction of this change is 1, except for at
+/// most this error. The value is a choice.
 const SHARE_TOLERANCE: f64 = 0.3;
-/// Standard deviations from 0 that the observed share must have, for a row about edges to be named.
+/// Minimum significance of the observed fraction of a predicted change, in standard deviations. A
+/// mistake at edges predicts how the picture changes, and it is named if the observed fraction of
+/// this change is at least this far from 0. The value is a choice, at which chance is negligible.
 const SURE: f64 = 7.0;
-/// Greatest share of the squared difference that a row may leave in a JPEG, to be named.
+/// Maximum fraction of the squared difference from a JPEG that a mistake at edges may leave. If it
+/// leaves more, it is not named. The value is a choice.
 const LEFT_IN_CODED: f64 = 0.25;
 
-/// Ids of the rows that shift samples by pixels or parts of them.
+/// Identifiers of the mistakes that move samples by a few pixels at most.
 const SHIFT_IDS: [&str; 2] = ["half_pixel", "window_one_less"];
 
-/// Id of the only row about edges that can be recognised in a JPEG.
+/// Identifier of the only mistake at edges that can be recognised in a JPEG: samples are averaged
+/// after encoding.
 const CODED_ID: &str = "averaged_encoded";
 
-/// Factors that are tried on the estimated width of a wide pixel; the likeliest is taken.
+/// Factors by which the estimated width of pixels that are too wide is multiplied. The most likely
+/// of the results is taken. The values are a choice.
 const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
-/// Least width of a pixel that is reported as wide.
+/// Least width of pixels that are reported as too wide, in pixels. A smaller estimate is raised to
+/// it, because 1 is the correct width. The value is a choice.
 const LEAST_WIDE: f64 = 1.1;
-/// Widths that are tried for a narrow pixel; the likeliest is taken, because edges determine it
-/// less well.
+/// Widths, in pixels, that are tried for pixels that are too narrow. The most likely one is taken.
+/// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// Number of pixels of which more than one must be wrong for a picture to count as much wrong.
+/// Number of pixels per wrong pixel, below which a picture counts as wrong in large parts. The
+/// value 50 stands for 2 % of the pixels; it is a choice.
 const MUCH_WRONG: usize = 50;
 
-/// Greatest difference between the estimated shift and that of a row, in pixels, and relative to a
-/// shift of more than a pixel.
+/// Maximum difference between the estimated shift of all edges in the picture and the shift that a
+/// mistake causes. Beyond it, the mistake is not tried. The unit is a pixel; for a shift of more
+/// than a pixel, the difference is relative to the shift. The value is a choice.
 const MAX_SHIFT_ERROR: f64 = 0.5;
 
-/// Maximum number of shifting rows that are tried, nearest to the estimated displacement first.
+/// Maximum number of mistakes that are tried to explain a shift of all edges, those with the most
+/// similar shift first. The value is a choice.
 const SHIFTS: usize = 4;
 
-/// Standard deviations from 0 that a row's observed share must have on the tiny grid, for the row
-/// to be tried on a picture that is explained without it.
+/// Minimum significance of the observed fraction of a predicted change on the coarsest grid, in
+/// standard deviations. If a mistake reaches it, the mistake is tested on single pixels, although a
+/// correct program explains the picture. The value is low because of this second test; it is a
+/// choice.
 const HINTED: f64 = 3.0;
-/// Least observed share of such a row on the tiny grid.
+/// Minimum observed fraction of a predicted change on the coarsest grid. If a mistake reaches it,
+/// the mistake is tested on single pixels, although a correct program explains the picture. The
+/// value is a choice.
 const HINTED_SHARE: f64 = 0.3;
 
-/// Fits all of a candidate's numbers to a level. Returns `None` if it has none.
+/// Fits all numbers of a hypothesis's mistakes to a picture at one resolution. Returns `None` if
+/// there are none, or if the budget of work is used up.
 pub fn refitted(
     judge: &Judge,
     candidate: &Candidate,
@@ -72,29 +89,32 @@ pub fn refitted(
     Some(fitted)
 }
 
-/// Completes a candidate by what explains the picture: nothing, a row about edges, or another pixel
-/// width. Returns `None` if none of these does.
+/// Adds to a hypothesis what makes it explain the picture: nothing, a mistake at edges, or a wrong
+/// pixel width. Returns `None` if none of these does.
 pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let edges = judge.central_crop();
-    // What is found so far is judged even if the budget is used up.
+    // What is found so far is tested even if the budget of work is used up.
     let (residual, null) = judge.work.without_limit(|| {
         let residual = Residual::of_candidate(judge, candidate);
         residual.zip(judge.judged(candidate, edges))
     })?;
-    // Truncated bytes and another curve are visible in whole areas.
+    // Truncated bytes and wrong encodings are visible in whole areas, so they are tried even if the
+    // wrong pixels do not lie at edges.
     let is_much_wrong = residual.strays * MUCH_WRONG > judge.fine.grid.count();
     if !residual.is_at_edges && !is_much_wrong {
         return None;
     }
     let predicted = edges.predict(&null.rendering);
     edges.compare_with(Arc::clone(&null.rendering));
-    // Effects on light and a JPEG's coding change the noise at edges.
+    // Effects on light and JPEG coding change the noise at edges, so most mistakes at edges cannot
+    // be tested.
     let is_coded = judge.fine.jpeg.is_some();
     let may = candidate.keeps_light() && !is_coded;
     let rows = ROWS.iter().filter(|row| match row.shows {
         Shows::InAreas => false,
         Shows::AtEdges if SHIFT_IDS.contains(&row.id) => false,
-        // The faulty tracer does not know edges well enough where it moves them.
+        // The pictures of programs that move edges are only sampled, which is too inexact for a
+        // test at edges.
         Shows::AtEdges => {
             let may = may || candidate.keeps_light() && row.id == CODED_ID;
             may && residual.is_at_edges && candidate.behaviour.is_in_place()
@@ -116,7 +136,8 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
         let rendering = edges.render(&with, &judge.work)?;
         let [part, deviations] = predicted.observed_share(&null.score, &edges.predict(&rendering));
         let is_clear = if is_coded {
-            // The coding blurs and weakens the change.
+            // JPEG coding blurs and weakens the predicted change, so only the remaining difference
+            // is tested.
             let with = judge.judged(&with, edges)?;
             with.score.squares < LEFT_IN_CODED * null.score.squares
         } else {
@@ -151,7 +172,8 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
         .or_else(|| residual.is_noise().then(|| candidate.clone()))
 }
 
-/// Returns the rows that shift samples by about `by` pixels, the nearest first.
+/// Returns the mistakes that shift samples by about `by` pixels to the right and down, the nearest
+/// first.
 fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     let rows = ROWS.iter().filter(|row| SHIFT_IDS.contains(&row.id));
     let by = candidate.layout.source_direction(by);
@@ -166,8 +188,8 @@ fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     near.map(|(_, mistake)| mistake).collect()
 }
 
-/// Returns a candidate if it explains the picture, with its numbers as they were before its last
-/// mistake or fitted anew.
+/// Returns a hypothesis if it explains the picture, either with its present numbers or after these
+/// are fitted again.
 fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     if judge.explains(&with) {
         return Some(with);
@@ -180,8 +202,8 @@ fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     judge.explains(&short).then_some(short)
 }
 
-/// Returns the rows that a tiny grid hints at although the picture is explained without them: where
-/// most pixels show mixtures, what is wrong may pass for noise.
+/// Returns the mistakes that the coarsest grid hints at, although a correct program explains the
+/// picture. If most pixels are mixtures of colours, a mistake may look like noise.
 fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
     let hinted = || {
         let tiny = judge.tiny(candidate)?;
@@ -201,7 +223,8 @@ fn hinted(judge: &Judge, candidate: &Candidate) -> Vec<Mistake> {
     hinted().unwrap_or_default()
 }
 
-/// Iterates over the rows that are visible in areas; those about an object once for each of
+/// Iterates over the rows of the table of mistakes that are visible in areas of one colour, and
+/// over exchanges of two objects' colours. A row about a single object is repeated for each of
 /// `objects`.
 pub fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
     let rows = ROWS.iter().filter(|row| row.shows == Shows::InAreas);

@@ -1,9 +1,9 @@
 //! Forward selection with a beam: extends the few best sets of mistakes by one mistake at a time,
-//! until one of them explains the picture.
+//! until a set explains the picture.
 //!
-//! The tiny grid selects the sets that are worth examining. Their numbers are fitted to a coarse
-//! grid, and to the middle one if little remains, on which they are judged. Mistakes that are
-//! visible only at edges are judged on the pixels.
+//! The tiny grid, which is the coarsest, selects the sets that are worth examining. Their numbers
+//! are fitted to the coarse grid, and also to the middle grid if little error remains. Sets are
+//! judged on the middle grid. Mistakes that are visible only at edges are judged on single pixels.
 
 use std::collections::BTreeSet;
 
@@ -25,45 +25,50 @@ use crate::{
     },
 };
 
-/// Maximum number of mistakes in a set, besides those that are visible only at edges.
+/// Maximum number of mistakes in a set, not counting those that are visible only at edges. The
+/// value is a choice; each further mistake takes another round of the search.
 const MAX_MISTAKES: usize = 3;
 
-/// Maximum number of sets of each size that are examined and extended. A wider beam finds more at
-/// proportionally more work.
+/// Maximum number of sets of each size that are examined and extended. A wider beam finds more
+/// mistakes, at proportionally more work. The value is a choice.
 const BEAM_WIDTH: usize = 6;
 
-/// Factor by which a set's difference on the tiny grid is multiplied for each mistake, so that a
-/// larger set must explain more.
+/// Factor by which a set's difference from the picture is multiplied for each of its mistakes, so
+/// that a larger set must explain more. The value is a choice.
 const MISTAKE_PENALTY: f64 = 1.05;
-/// Factor by which a set's difference on the tiny grid is multiplied for each fitted number.
+/// Factor by which a set's difference from the picture is multiplied for each parameter of its
+/// mistakes, so that a set with more parameters must explain more. The value is a choice.
 const NUMBER_PENALTY: f64 = 1.03;
 
-/// Number of rows that are compared on an exact picture, with the least difference on the tiny grid
-/// first. Comparing all of them takes as long as finding a single mistake does otherwise.
+/// Maximum number of mistakes that are compared on an exact picture, those with the least
+/// difference on the coarsest grid first. Comparing all of them would double the time in which a
+/// single mistake is found.
 const EXACT_ROWS: usize = 32;
 
-/// Maximum number of combinations of mistakes that are examined because they may explain the
-/// picture only together (see `joint_rows`); those with the least difference come first.
+/// Maximum number of combinations from `joint_rows` that are examined, those with the least
+/// difference from the picture first. Their mistakes may explain the picture only together. The
+/// value is a choice.
 const JOINT_SETS: usize = 2;
 
-/// Ratio of a set's difference to that of the set it extends, below which it is examined at once,
-/// before other kinds of mistakes are tried.
+/// Ratio of a set's difference from the picture to that of the set it extends. Below it, the set is
+/// examined at once, because the other kinds of mistakes need not be tried if it explains the
+/// picture. The value is a choice.
 const PROMISING: f64 = 0.5;
 
-/// Share of a correct program's certain error, in squares, below which a candidate is near the
-/// picture.
+/// Fraction of a correct program's squared error below which a hypothesis counts as close to the
+/// picture. Only errors that sampling cannot explain count. The value is a choice.
 const NEAR_RATIO: f64 = 0.1;
 
-/// Maximum number of objects that are suspected, those with the largest error in and beside them
-/// first. The work of a search grows with this number.
+/// Maximum number of objects that are suspected to be wrong, those with the largest error in and
+/// beside them first. The work of a search grows with this number. The value is a choice.
 const MAX_SUSPECTS: usize = 12;
 
-/// Share of the largest error at an object below which an object is not suspected: smaller errors
-/// are mostly noise.
+/// Fraction of the largest error at an object below which other objects are not suspected to be
+/// wrong. Smaller errors are mostly noise. The value is a choice.
 const SUSPECT_RATIO: f64 = 0.03;
 
-/// Searches for the mistakes that explain a picture best. Returns the best candidate, and whether
-/// it explains the picture.
+/// Searches for the mistakes that explain a picture best. Returns the best hypothesis, i.e. set of
+/// mistakes, and whether it explains the picture.
 pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
     let mut search = Search {
         judge,
@@ -72,7 +77,7 @@ pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
         explained: None,
     };
     search.run();
-    // The budget may have run out before the last set's numbers were fitted.
+    // The budget of work may have run out before the numbers of the last set were fitted.
     if search.explained.is_none() && judge.work.is_cut() {
         let nearest = search.nearest.clone();
         judge
@@ -87,7 +92,8 @@ pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
         None => nearest,
         Some(right) if right.mistakes.is_empty() => right,
         Some(explained) => {
-            // A candidate that explains the picture is simplified even if the budget is used up.
+            // A hypothesis that explains the picture is simplified even if the budget of work is
+            // used up.
             judge.work.without_limit(|| {
                 let fewest = fewest(judge, &explained);
                 let plainest = plain(judge, &fewest);
@@ -106,15 +112,15 @@ pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
     cancel::unless_set(judge.work.cancel, found)
 }
 
-/// State of a search.
+/// State of a search for mistakes.
 struct Search<'a> {
     judge: &'a Judge<'a>,
-    /// The candidates that were examined.
+    /// Hypotheses, i.e. sets of mistakes, that were examined so far.
     examined: Vec<Candidate>,
-    /// The candidate of least cost, and its cost.
+    /// Hypothesis with the least cost so far, and its cost.
     nearest: Option<(f64, Candidate)>,
-    /// The candidate that explains the picture with the fewest parameters, then at the least cost,
-    /// and its cost.
+    /// Hypothesis that explains the picture, and its cost. Of several, the one with the fewest
+    /// parameters is kept; of these, the one with the least cost.
     explained: Option<(f64, Candidate)>,
 }
 
@@ -154,8 +160,8 @@ impl Search<'_> {
             if let Some(best) = beam.first() {
                 self.refine(best, &mut examined);
             }
-            // An extra patch can explain anything, so it is tried only where no other mistake
-            // completes a set.
+            // An extra patch can explain anything, so it is tried last, and only if no other
+            // mistake explained the picture.
             for from in beam {
                 if self.explained.is_none() {
                     let patched = patched(judge, &from);
@@ -171,8 +177,8 @@ impl Search<'_> {
         }
     }
 
-    /// Extends the best set of mistakes, unless the picture is explained, by numbers that are
-    /// slightly wrong, examines the new sets, and adds them to `examined`.
+    /// Extends the best set of mistakes by numbers of the scene that are slightly wrong, examines
+    /// the results, and adds them to `examined`. Does nothing if the picture is explained already.
     fn refine(&mut self, best: &Judged, examined: &mut Vec<Judged>) {
         let judge = self.judge;
         if self.explained.is_some() || !judge.work.may_go_on() {
@@ -180,13 +186,14 @@ impl Search<'_> {
         }
         judge.compare_with(best.candidate());
         for one in slightly_wrong(judge, best.candidate(), &suspects(judge, best)) {
-            // An examined set of the same kind has numbers that were fitted to a few samples.
+            // The extended set is examined even if one of the same kind was, because the numbers of
+            // that one were fitted to few samples.
             examined.extend(self.examine(&one));
         }
     }
 
-    /// Returns whether another candidate explains the picture with fewer parameters, or with as
-    /// many at no more cost.
+    /// Returns whether a hypothesis was found that explains the picture with fewer parameters, or
+    /// with as many and at no greater cost.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(least, explained)| {
@@ -194,8 +201,9 @@ impl Search<'_> {
         })
     }
 
-    /// Fits and judges a candidate on the middle grid. Keeps it if it is the best so far, or
-    /// explains the picture.
+    /// Fits a hypothesis's numbers, and judges it on the middle grid. Remembers it if it has the
+    /// least cost so far, or explains the picture. Returns `None` if a better one explains the
+    /// picture.
     fn examine(&mut self, candidate: &Candidate) -> Option<Judged> {
         let judge = self.judge;
         if self.has_better(candidate, f64::NEG_INFINITY) {
@@ -204,15 +212,15 @@ impl Search<'_> {
         self.examined.push(candidate.clone());
         let fitted = refitted(judge, candidate, &judge.coarse, [2, 1]);
         let mut judged = judge.judged(fitted.as_ref().unwrap_or(candidate), &judge.middle)?;
-        // Far from the picture nothing more can be concluded.
+        // A hypothesis far from the picture is not fitted further.
         if is_near(judge, judged.candidate()) {
             let level = judge.fitting(judged.candidate());
             let fitted = refitted(judge, judged.candidate(), level, [0, ROUNDS]);
             if let Some(fitted) = fitted {
                 judged = judge.judged(&fitted, &judge.middle)?;
             }
-            // Slightly wrong numbers leave a residual at edges, which rows about edges would seem
-            // to explain.
+            // Slightly wrong numbers leave errors at edges, which a mistake at edges would seem to
+            // explain.
             let has_numbers = judged.candidate().numeric().next().is_some();
             let residual = || Residual::of_candidate(judge, judged.candidate());
             if has_numbers && residual().is_some_and(|residual| residual.is_at_edges) {
@@ -233,7 +241,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns a candidate with an extra patch, if it explains the picture.
+/// Adds an extra patch to a hypothesis. Returns `None` if the result does not explain the picture.
 fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     if !is_near(judge, from.candidate()) {
         return None;
@@ -242,7 +250,8 @@ fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     explained_with(judge, &patched)
 }
 
-/// Returns whether a candidate leaves little of a correct program's certain error.
+/// Returns whether a hypothesis leaves little of a correct program's error. Only errors that
+/// sampling cannot explain count.
 fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
     let square = |candidate: &Candidate| {
         let predicted = judge.predicted(candidate, &judge.middle);
@@ -252,7 +261,7 @@ fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
     candidate.mistakes.is_empty() || squares.is_some_and(|(own, all)| own <= NEAR_RATIO * all)
 }
 
-/// Removes mistakes as long as the rest explains the picture.
+/// Removes mistakes as long as the remaining ones explain the picture.
 fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
     let without = |candidate: &Candidate, at: usize| {
         let mut mistakes = candidate.mistakes.clone();
@@ -261,8 +270,9 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
     };
     let mut fewest = all.clone();
     for left_out in (0..fewest.mistakes.len()).rev() {
-        // A mistake at edges was added only with certainty, and so was a hinted row of a picture
-        // that a correct program would explain.
+        // A mistake at edges was added only with certainty, so it is kept. A sole mistake is kept
+        // even if a correct program would explain the picture, because it was found by a more
+        // sensitive test.
         let is_sole = fewest.mistakes.len() == 1;
         if is_sole || fewest.mistakes.get(left_out).is_none_or(shows_at_edges) {
             continue;
@@ -270,7 +280,7 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
         let Some(fewer) = without(&fewest, left_out) else {
             continue;
         };
-        // The mistake may have compensated for wrong numbers, or for a row about edges.
+        // The removed mistake may have compensated for wrong numbers, or for a mistake at edges.
         let fitted = || {
             let fitted = refitted(judge, &fewer, judge.fitting(&fewer), [0, ROUNDS])?;
             if !is_near(judge, &fitted) {
@@ -296,25 +306,26 @@ fn shows_at_edges(mistake: &Mistake) -> bool {
     }
 }
 
-/// Candidates, each with its difference on the tiny grid.
+/// Hypotheses, each with its difference from the picture on the coarsest grid.
 type Rated = Vec<(f64, Candidate)>;
 
-/// The extension of a set by one mistake.
+/// Extension of a set of mistakes by one more.
 struct Extension<'a> {
     judge: &'a Judge<'a>,
     from: &'a Judged,
     tiny: Level<'a>,
     suspects: Vec<usize>,
-    /// The set's difference on the tiny grid.
+    /// Difference of the set from the picture on the coarsest grid.
     difference: f64,
 }
 
 impl<'a> Extension<'a> {
-    /// The kinds of extensions, cheapest first. Each returns candidates with their differences on
-    /// the tiny grid.
+    /// Functions that extend a set, each by another kind of mistakes, cheapest first. Each returns
+    /// hypotheses with their differences from the picture on the coarsest grid.
     const KINDS: [fn(&Self) -> Rated; 3] = [Self::rows, Self::numbers, Self::joint];
 
-    /// Prepares the extension of a set. Returns `None` if the budget is used up.
+    /// Prepares the extension of a set of mistakes. Returns `None` if the budget of work is used
+    /// up.
     fn from(judge: &'a Judge, from: &'a Judged) -> Option<Self> {
         judge.compare_with(from.candidate());
         let tiny = judge.tiny(from.candidate())?;
@@ -328,8 +339,8 @@ impl<'a> Extension<'a> {
         })
     }
 
-    /// Returns the extensions of one kind that reduce the set's difference, with their penalised
-    /// differences, least first.
+    /// Returns the extensions of one kind that reduce the set's difference from the picture. Each
+    /// has its difference, multiplied by the penalties for its size; the least comes first.
     fn improvements(&self, kind: fn(&Self) -> Rated) -> Rated {
         let less = kind(self).into_iter().filter(|one| one.0 < self.difference);
         least(
@@ -346,8 +357,9 @@ impl<'a> Extension<'a> {
         if !candidate.mistakes.is_empty() {
             return best_of_each_id(rows);
         }
-        // Few samples cannot distinguish how far squares are visible, so a single mistake is
-        // compared on an exact picture; its difference there is scaled to the tiny grid's.
+        // The few samples of the coarsest grid cannot show where a checkerboard with small squares
+        // ends. So single mistakes are compared on an exact picture, too, and the differences are
+        // scaled to those of the coarsest grid.
         let Some((exactly, _)) = judge.with_difference(candidate.clone(), &judge.coarse) else {
             return best_of_each_id(rows);
         };
@@ -372,8 +384,8 @@ impl<'a> Extension<'a> {
     }
 }
 
-/// Keeps of the rows with one identifier and object the one with the least difference. Variants of
-/// one row would fill the beam otherwise.
+/// Keeps, of all rows with the same identifier and object, the one with the least difference.
+/// Otherwise, variants of one mistake would fill the beam.
 fn best_of_each_id(rows: Rated) -> Rated {
     let mut known = BTreeSet::new();
     let mut best = least(rows.into_iter(), usize::MAX);
@@ -384,20 +396,22 @@ fn best_of_each_id(rows: Rated) -> Rated {
     best
 }
 
-/// Multiplies a difference by the penalties for a candidate's mistakes and parameters.
+/// Multiplies a hypothesis's difference from the picture by the penalties for its mistakes and
+/// parameters.
 fn penalised(difference: f64, candidate: &Candidate) -> f64 {
     let [mistakes, numbers] =
         [candidate.mistakes.len(), candidate.parameter_count()].map(|count| count as f64);
     difference * libm::pow(MISTAKE_PENALTY, mistakes) * libm::pow(NUMBER_PENALTY, numbers)
 }
 
-/// Returns the objects that may be wrong, the largest error first.
+/// Returns the indices of the objects that may be wrong, the one with the largest error first.
 fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     let grid = &judge.middle.grid;
     let labels = labels(judge, from.candidate(), from.candidate().layout, grid);
     let mut wrong = vec![0.0; judge.scene.objects.len()];
     for (at, off) in from.score.chi_squares.iter().enumerate() {
-        // An object that grew is wrong beside the cells where it was seen.
+        // An object that is larger than in the hypothesis's scene causes errors beside the cells in
+        // which the hypothesis shows it.
         let near: BTreeSet<usize> = grid.around(at, 2).filter_map(|at| labels[at]).collect();
         near.into_iter()
             .for_each(|object| wrong[object] += libm::log1p(*off));

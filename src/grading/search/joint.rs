@@ -1,9 +1,9 @@
-//! Rows of the table that only explain something together: layout, visible surfaces, order of
-//! channels, and encoding of light.
+//! Mistakes that explain something only together: in the arrangement of pixels, the visible
+//! surfaces, the order of channels, and the encoding of light.
 //!
-//! One of them alone may explain nothing: truncated squares of a board are not recognised in a
-//! picture that is upside down. On the tiny grid all combinations are tried, before any number is
-//! fitted.
+//! One of them alone may explain nothing. For example, truncated squares of a checkerboard are not
+//! recognised in a picture that is upside down. So all combinations are tried on the coarsest grid,
+//! before any number is fitted.
 
 use super::{
     judge::{Judge, least},
@@ -14,19 +14,21 @@ use crate::grading::{
     scoring::{Level, Prediction},
 };
 
-/// Number of combinations that are kept, least difference first, and combined with a second effect
-/// on light.
+/// Number of combinations of mistakes that are kept and combined with a second effect on light,
+/// those with the least difference from the picture first. The value is a choice.
 const BEST: usize = 8;
 
-/// Number of combinations of layout and visible surfaces that are combined with effects on light,
-/// highest correlation with the picture first.
+/// Number of combinations of pixel arrangements and visible surfaces that are combined with effects
+/// on light, those with the highest correlation with the picture first. Combining all of them took
+/// most of the time of judging a wrong picture.
 const CORRELATED: usize = 32;
 
-/// Ratio by which each further row has to reduce the difference.
+/// Ratio by which each further mistake has to reduce the difference from the picture. It prevents
+/// mistakes that explain almost nothing. The value is a choice.
 const ROW_RATIO: f64 = 0.95;
 
-/// Returns the absolute correlation of the observed and the expected sums of the channels, which
-/// effects on light mostly preserve, even an inversion.
+/// Returns the absolute correlation of observed and predicted light, summed over the channels of
+/// each pixel. Effects on light hardly change it, not even an inversion.
 fn correlation(prediction: &Prediction) -> f64 {
     let (mut count, mut sums, mut products) = (0.0, [0.0; 2], [0.0; 3]);
     for (seen, mean) in prediction.observed.iter().zip(&prediction.moments.mean) {
@@ -46,11 +48,11 @@ fn correlation(prediction: &Prediction) -> f64 {
     ab.abs() / (aa * bb).sqrt().max(1e-12)
 }
 
-/// Returns combinations of several rows with little difference on the tiny grid, each with its
-/// difference.
+/// Returns combinations of several mistakes with small differences from the picture on the coarsest
+/// grid. Each comes with its difference.
 pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter();
-    // A JPEG's coding hides weak mistakes.
+    // JPEG coding hides weak mistakes.
     let is_coded = judge.fine.jpeg.is_some();
     let rows = rows.filter(|row| match row.shows {
         Shows::InAreas => true,
@@ -66,7 +68,7 @@ pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, C
     let (layout, seen): (Vec<_>, Vec<_>) = others
         .into_iter()
         .partition(|(one, _)| one.layout != right.layout);
-    // The candidate itself, and with each row.
+    // Returns the hypothesis itself, and the hypothesis with each of the mistakes.
     let with = |candidate: &Candidate, rows: &[(Candidate, Mistake)]| {
         let changed = rows
             .iter()
@@ -77,7 +79,8 @@ pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, C
     let left = |candidate: Candidate| {
         judge.work.check()?;
         let prediction = judge.predicted(&candidate, tiny)?;
-        // A picture of one colour was handled before.
+        // A prediction of one colour is skipped: pictures of one colour were handled before the
+        // search.
         let mean = &prediction.moments.mean;
         if mean.iter().all(|one| *one == mean[0]) {
             return None;
@@ -85,7 +88,7 @@ pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, C
         let penalty = libm::pow(ROW_RATIO, candidate.mistakes.len() as f64);
         Some((absolute(&prediction.differences()) / penalty, candidate))
     };
-    // Visible surfaces come first, so that each scene is rendered only once.
+    // Visible surfaces are combined first, so that each scene is rendered only once.
     let seen = with(right, &seen).into_iter();
     let laid_out = seen.flat_map(|candidate| with(&candidate, &layout));
     let correlated = laid_out.filter_map(|candidate| {

@@ -1,4 +1,4 @@
-//! A picture under judgement: its levels, its budget of work, and the operations of the search.
+//! A picture that is judged: its resolutions, its budget of work, and the operations of the search.
 
 use std::sync::Arc;
 
@@ -13,53 +13,60 @@ use crate::{
     scene::Scene,
 };
 
-/// Longest side of the grid on which mistakes are selected, in cells.
+/// Number of cells along the longer side of the coarsest grid, on which mistakes are selected. A
+/// finer grid takes longer for each of hundreds of mistakes. The value is a choice.
 const TINY: u32 = 32;
-/// Longest side of the grid on which numbers are first fitted, in cells.
+/// Number of cells along the longer side of the grid on which numbers are fitted first. The value
+/// is a choice.
 const COARSE: u32 = 48;
-/// Longest side of the grid on which candidates are judged, in cells.
+/// Number of cells along the longer side of the grid on which sets of mistakes are judged. The
+/// value is a choice; single pixels decide in the end.
 const MIDDLE: u32 = 96;
 
-/// Change of the picture, in cells, by which numbers are varied to find their derivatives.
+/// Change of the picture, in cells, by which a number is varied to find its derivative. The value
+/// is a choice: a smaller change is less visible, and a larger one is less linear.
 pub const CELL_STEP: f64 = 0.25;
 
-/// Number of samples in each cell of the tiny grid (`TINY`), on which mistakes are selected.
+/// Number of samples per cell of the coarsest grid, on which mistakes are selected. It is a
+/// Fibonacci number, because the samples form a Fibonacci lattice. The value is a choice: more
+/// samples are less noisy, but take longer.
 const SAMPLES: usize = 5;
 
-/// Number of pixels in the central crop of a picture on which edges are judged. More pixels
-/// determine edges better, at proportionally more work.
+/// Number of pixels in the central crop of a picture, on which edges are judged. More pixels
+/// determine edges better, at proportionally more work. The value is a choice.
 const CENTRAL_PIXELS: u64 = 20_000;
 
-/// A picture that is compared with a scene.
+/// A picture at several resolutions, to which hypotheses about the program are compared.
 pub struct Judge<'a> {
     pub scene: &'a Scene,
     tiny: Level<'a>,
     pub coarse: Level<'a>,
     pub middle: Level<'a>,
     pub fine: Level<'a>,
-    /// The central crop at full resolution, if it is not the whole picture.
+    /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
     central: Option<Level<'a>>,
     pub work: Work<'a>,
 }
 
-/// A candidate that was judged on a level.
+/// A hypothesis about the program that was judged at one resolution.
 pub struct Judged {
-    /// Its rendering on that level.
+    /// Rendering of the hypothesis at this resolution.
     pub rendering: Arc<Rendering>,
     pub score: Score,
-    /// Cost: `price` of the candidate's parameters, less the logarithm of the likelihood.
+    /// Cost of the hypothesis: the price of its parameters minus the logarithm of the picture's
+    /// likelihood. The hypothesis with the least cost is the best.
     pub cost: f64,
 }
 
 impl Judged {
-    /// Returns the candidate.
     pub fn candidate(&self) -> &Candidate {
         &self.rendering.candidate
     }
 }
 
 impl<'a> Judge<'a> {
-    /// Prepares a picture for judging; `exact` is what a correct program renders of its part.
+    /// Prepares a picture for judging. `exact` is the rendering of a correct program, in the same
+    /// part.
     pub fn new(
         scene: &'a Scene,
         exact: &Arc<Rendering>,
@@ -89,8 +96,8 @@ impl<'a> Judge<'a> {
         judge
     }
 
-    /// Returns the level on which numbers are fitted: the middle one, or pixels if a curve is
-    /// applied to light, because a curve of a mean is not the mean of the curve.
+    /// Returns the resolution at which numbers are fitted. It is the middle grid, or single pixels
+    /// if a curve is applied to light, because a curve of a mean is not the mean of the curve.
     pub fn fitting(&self, candidate: &Candidate) -> &Level<'a> {
         let is_curve = |effect: &Effect| {
             matches!(
@@ -105,13 +112,13 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Returns the level on which edges are judged.
+    /// Returns the central crop at full resolution, on which edges are judged.
     pub fn central_crop(&self) -> &Level<'a> {
         self.central.as_ref().unwrap_or(&self.fine)
     }
 
-    /// Makes a candidate the base of the levels, so that later ones are rendered only where they
-    /// differ.
+    /// Makes a hypothesis the base of comparisons: later hypotheses are rendered only where they
+    /// differ from it.
     pub fn compare_with(&self, candidate: &Candidate) {
         for level in [&self.coarse, &self.middle, &self.fine] {
             if let Some(rendering) = level.render(candidate, &self.work) {
@@ -120,8 +127,9 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Returns the tiny level for comparisons with a candidate. If the candidate's exact picture is
-    /// known, the error of its samples is added to the observed light, so that it cancels.
+    /// Returns the coarsest level for comparisons with a hypothesis. If the exact picture of the
+    /// hypothesis is known, the error of sampling it is added to the observed light, so that the
+    /// error cancels.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
@@ -136,8 +144,8 @@ impl<'a> Judge<'a> {
         Some(level.with_error(&level.predict(&sampled), &level.predict(&exact)))
     }
 
-    /// Predicts what a level shows if a candidate is correct. Returns `None` if the budget is used
-    /// up.
+    /// Predicts what the picture shows at one resolution if a hypothesis is correct. Returns `None`
+    /// if the budget of work is used up.
     pub fn predicted<'b>(&self, candidate: &Candidate, level: &'b Level) -> Option<Prediction<'b>> {
         let rendering = level.render(candidate, &self.work)?;
         self.work
@@ -145,20 +153,21 @@ impl<'a> Judge<'a> {
         Some(level.predict(&rendering))
     }
 
-    /// Returns the differences of a level from a candidate's prediction, channel by channel.
-    /// Returns `None` if the budget is used up.
+    /// Returns the differences between the picture and a hypothesis's prediction at one resolution,
+    /// channel by channel. Returns `None` if the budget of work is used up.
     pub fn differences(&self, candidate: &Candidate, level: &Level) -> Option<Vec<f64>> {
         self.work.check()?;
         Some(self.predicted(candidate, level)?.differences())
     }
 
-    /// Returns a candidate with the sum of its absolute differences on a level.
+    /// Returns a hypothesis with its difference from the picture at one resolution: the sum of the
+    /// absolute differences of all cells.
     pub fn with_difference(&self, candidate: Candidate, level: &Level) -> Option<(f64, Candidate)> {
         let differences = self.differences(&candidate, level)?;
         Some((absolute(&differences), candidate))
     }
 
-    /// Judges a candidate on a level.
+    /// Computes the score and the cost of a hypothesis at one resolution.
     pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<Judged> {
         let rendering = level.render(candidate, &self.work)?;
         let score = level.predict(&rendering).score();
@@ -170,8 +179,9 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Fits the numbers of a candidate at the indices `free`. Each is varied so that the picture
-    /// moves by about `cells` cells.
+    /// Fits the numbers of a hypothesis's mistakes whose indices are `free`. To find derivatives,
+    /// each number is varied so that the picture moves by about `cells` cells. `rounds` are the
+    /// maximum numbers of rounds by least squares, and by a robust loss.
     pub fn fit(
         &self,
         candidate: &Candidate,
@@ -198,14 +208,15 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Returns the cost of `fitted` parameters: half a logarithm of the number of cells each. A part of
-/// a picture is judged like the whole, because anything can be fitted to a few pixels.
+/// Returns the cost of `fitted` parameters: half the logarithm of the number of cells for each. The
+/// cells of the whole picture count even if a part is judged, because almost anything could be
+/// fitted to a few pixels.
 pub fn price(level: &Level, fitted: usize) -> f64 {
     let [width, height] = level.grid.size().map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)
 }
 
-/// Returns at most `most` items, least first.
+/// Returns at most `most` items, those with the least keys first.
 pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
     let mut all: Vec<_> = all.collect();
     all.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -213,8 +224,8 @@ pub fn least<T>(all: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T
     all
 }
 
-/// Returns the central crop of a part, with its aspect ratio. Returns `None` if the part has no
-/// more pixels than the crop.
+/// Returns the central crop of a part, which has the same aspect ratio. Returns `None` if the part
+/// has no more pixels than the crop.
 fn central(part: Area) -> Option<Area> {
     if part.pixels() <= CENTRAL_PIXELS {
         return None;
@@ -222,7 +233,7 @@ fn central(part: Area) -> Option<Area> {
     let by = (CENTRAL_PIXELS as f64 / part.pixels() as f64).sqrt();
     let [width, height] =
         [part.width, part.height].map(|length| ((f64::from(length) * by) as u32).max(1));
-    // A multiple of the side of a JPEG's blocks.
+    // The crop starts at a multiple of 16 pixels, as the blocks of a JPEG do.
     let aligned = |left: u32| left / 2 / 16 * 16;
     Some(Area {
         x: part.x + aligned(part.width - width),

@@ -1,4 +1,4 @@
-//! Which object each cell of a picture shows.
+//! Finds which object each cell of a picture shows.
 
 use super::judge::Judge;
 use crate::{
@@ -9,8 +9,9 @@ use crate::{
     tracer::World,
 };
 
-/// Returns the index of the object in the middle of each cell of a grid, as a correct program with
-/// a layout would show it; `None` for the background, and if it is cancelled.
+/// Returns the index of the object that is seen in the middle of each cell of a grid. A correct
+/// program renders the hypothesis's scene, and its pixels are arranged by `layout`. `None` stands
+/// for the background. If it is cancelled, all are `None`.
 pub fn labels(
     judge: &Judge,
     candidate: &Candidate,

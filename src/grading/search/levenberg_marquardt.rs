@@ -1,14 +1,15 @@
-//! Fits the numbers of a model to a picture: by least squares, then by a robust loss.
+//! Fits the numbers of a model to a picture, first by least squares, then by a robust loss.
 //!
-//! Levenberg and Marquardt's method (Marquardt, An algorithm for least-squares estimation of
-//! nonlinear parameters, 1963), with weights that turn squares into absolute values (Schlossmacher,
-//! 1973), so that what the numbers cannot explain does not distort them. Derivatives are found by
-//! varying each number once, and then updated by the effect of each move (Broyden, A class of
-//! methods for solving nonlinear simultaneous equations, 1965).
+//! The method is that of Levenberg and Marquardt (Marquardt, An algorithm for least-squares
+//! estimation of nonlinear parameters, 1963). Weights turn squares into absolute values
+//! (Schlossmacher, 1973), so that errors that the model cannot explain do not distort the fit.
+//! Derivatives are found by varying each number once. Each move of the numbers then updates them
+//! (Broyden, A class of methods for solving nonlinear simultaneous equations, 1965).
 
 use crate::grading::scoring::solve;
 
-/// Largest move of a number, in steps, at which the fit counts as converged.
+/// Largest move of a number at which the fit counts as converged, relative to the change by which
+/// the number's derivative is found. The value is a choice.
 const CLOSE: f64 = 0.05;
 
 /// The result of a fit.
@@ -18,17 +19,18 @@ pub struct Fitted {
     pub numbers: Vec<f64>,
     /// Sum of the absolute differences that remain.
     pub left: f64,
-    /// Standard deviation of each number, if errors are those of rounding.
+    /// Standard deviation of each number, if the picture's errors are those of rounding.
     pub errors: Vec<f64>,
 }
 
-/// Sums absolute differences.
+/// Returns the sum of absolute differences.
 pub fn absolute(differences: &[f64]) -> f64 {
     differences.iter().map(|d| d.abs()).sum()
 }
 
-/// The function to minimise: the sum of squares; or, with standard deviations, Huber's loss, which
-/// is linear beyond one deviation (Huber, Robust estimation of a location parameter, 1964).
+/// The function to minimise. It is the sum of squared differences; or, if standard deviations are
+/// given, Huber's loss, which is linear beyond one deviation (Huber, Robust estimation of a
+/// location parameter, 1964).
 struct Loss(Option<Vec<f64>>);
 
 impl Loss {
@@ -37,7 +39,7 @@ impl Loss {
         weights.map(|(at, d)| self.weight(at, *d) * d * d).sum()
     }
 
-    /// Returns the weight of a squared difference.
+    /// Returns the weight by which the loss multiplies a squared difference.
     fn weight(&self, at: usize, difference: f64) -> f64 {
         match &self.0 {
             None => 1.0,
@@ -46,13 +48,13 @@ impl Loss {
     }
 }
 
-/// Fits numbers from a start. `steps` are the changes by which derivatives are found. `trial`
-/// returns the differences from a picture; it returns `None` for impossible numbers, and if the
-/// budget is used up.
+/// Fits numbers to a picture. `steps` are the changes of the numbers by which derivatives are
+/// found. `trial` returns the differences of a model from the picture, given the model's numbers.
+/// It returns `None` for impossible numbers, and if the budget of work is used up.
 ///
-/// Squares come first, because they have a single minimum; then Huber's loss in standard
-/// deviations, so that what the numbers cannot explain does not distort them. `rounds` are the
-/// maximum numbers of rounds of both.
+/// First, squared differences are minimised, because they have a single minimum. Then Huber's loss
+/// is minimised, in units of the standard deviations, so that errors that no numbers explain do not
+/// distort the fit. `rounds` are the maximum numbers of rounds of both.
 pub fn fit(
     start: Vec<f64>,
     steps: &[f64],
@@ -83,7 +85,7 @@ pub fn fit(
                 let Some((by, other)) = varied(steps[i]).or_else(|| varied(-steps[i])) else {
                     break 'fitting;
                 };
-                // Per step, so that all numbers have one scale.
+                // Derivatives are per step, so that all numbers have the same scale.
                 let sign = steps[i] / by;
                 let slope = other.iter().zip(&now).map(|(b, a)| sign * (b - a));
                 slopes.push(slope.collect());
@@ -102,8 +104,8 @@ pub fn fit(
             }
             let gradient: Vec<f64> = slopes.iter().map(|slope| -product(slope, &now)).collect();
             let (mut has_improved, mut is_far) = (false, None);
-            // If a move with updated derivatives fails, they are computed anew before the damping
-            // grows.
+            // Updated derivatives are inexact. If a move fails with them, they are computed anew
+            // before the damping grows.
             let attempts = if are_new { 4 } else { 1 };
             for _ in 0..attempts {
                 let mut damped = normal.clone();
@@ -151,8 +153,8 @@ pub fn fit(
     })
 }
 
-/// Updates derivatives by the effect of a move (Broyden's method); varying each number again would
-/// take most of the time.
+/// Updates derivatives by the effect of a move, by Broyden's method. Varying each number again
+/// would take most of the time.
 fn update(slopes: &mut [Vec<f64>], moves: &[f64], before: &[f64], after: &[f64]) {
     let square: f64 = moves.iter().map(|by| by * by).sum();
     for at in 0..before.len() {

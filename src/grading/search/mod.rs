@@ -1,11 +1,14 @@
 //! Finds the set of mistakes that explains a picture.
 //!
-//! In: a picture and its scene, as a `judge`, which has a level for each grid and a budget of work.
-//! Out: the best candidate, and whether it explains the picture, that is, whether its `residual` is
-//! sampling noise. `forward_selection` extends a few best sets by one mistake at a time: rows of
-//! the table, rows that only explain something together (`joint`), numbers (`numeric_mistakes`,
-//! fitted by `levenberg_marquardt` and simplified by `plain_numbers`), or an extra `patch`.
-//! `edge_rows` adds what is visible only at edges. `labels` tell which object a cell shows.
+//! In: a picture and its scene, as a `judge`, which has the picture at several resolutions and a
+//! budget of work. Out: the best hypothesis about the program and whether it explains the picture.
+//! It does if its `residual`, which is what it leaves unexplained, is sampling noise.
+//!
+//! `forward_selection` extends the few best sets of mistakes by one mistake at a time. A mistake is
+//! a row of the table, or several rows that only explain something together (`joint`); wrong
+//! numbers of the scene (`numeric_mistakes`); or an extra `patch`. Numbers are fitted by
+//! `levenberg_marquardt`, and simplified by `plain_numbers`. `edge_rows` adds mistakes that are
+//! visible only at edges. `labels` finds which object a cell shows.
 
 mod edge_rows;
 pub mod forward_selection;

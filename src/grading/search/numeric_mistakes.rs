@@ -1,6 +1,6 @@
 //! Finds the numbers of a scene whose change explains a picture best.
 //!
-//! Starts are compared on the tiny grid, and the best are fitted to it.
+//! Many starting values are compared on the coarsest grid, and the best of them are fitted to it.
 
 use glam::DVec3;
 
@@ -14,13 +14,16 @@ use crate::{
     scene::View,
 };
 
-/// Number of starts from which a parameter is fitted on the tiny grid, best first.
+/// Number of starting values from which a field of the scene is fitted on the coarsest grid, the
+/// best first. The value is a choice between work and the risk of a wrong minimum.
 const STARTS: usize = 2;
 
-/// Number of parameters that are fitted on the tiny grid, those with the best start first.
+/// Number of fields of the scene that are fitted on the coarsest grid, those with the best starting
+/// value first. The value is a choice; the work grows with it.
 const STARTED: usize = 12;
 
-/// Fits parameters of the scene to the tiny grid. Returns candidates with their differences on it.
+/// Fits the fields of the scene that may be wrong to the coarsest grid. Returns hypotheses, i.e.
+/// sets of mistakes, with their differences from the picture on this grid.
 pub fn numeric_mistakes(
     judge: &Judge,
     from: &Judged,
@@ -52,7 +55,7 @@ pub fn numeric_mistakes(
     let started = least(started, STARTED).into_iter();
     let fitted = started.filter_map(|(_, (parameter, tried))| {
         let fit = |(left, start): (f64, Candidate)| {
-            // The picture's colours are used as they are, unless an effect changes them.
+            // A colour is taken from the picture unchanged, unless the program changes light.
             if parameter.is_color() && candidate.effects.is_empty() {
                 return Some((left, start));
             }
@@ -66,16 +69,18 @@ pub fn numeric_mistakes(
     fitted.collect()
 }
 
-/// Number of parameters that are fitted on the coarse grid from the scene's own numbers: those with
-/// the least difference after one round.
+/// Number of fields of the scene that are fitted on the coarse grid, starting from the scene's own
+/// numbers: those with the least difference from the picture after one round. The value is a
+/// choice.
 const NEAR_OWN: usize = 3;
 
-/// Fits each parameter of the camera and of boards that may be wrong to the coarse grid from its
-/// present numbers. Returns the best few candidates that differ less from the picture than
-/// `candidate`.
+/// Fits each field of the camera and of checkerboards that may be wrong to the coarse grid,
+/// starting from its present numbers. Returns the few best hypotheses that are closer to the
+/// picture than `candidate`.
 ///
-/// The samples of the tiny grid cannot tell that these numbers are slightly wrong if most of the
-/// picture is a board with small squares: there, any move changes what the samples see.
+/// This finds numbers that are slightly wrong if most of the picture is a checkerboard with small
+/// squares. The samples of the coarsest grid cannot find them, because any move of such a board
+/// changes what the samples see.
 pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) -> Vec<Candidate> {
     let level = &judge.coarse;
     let Some((difference, _)) = judge.with_difference(candidate.clone(), level) else {
@@ -108,15 +113,15 @@ fn is_board(candidate: &Candidate, object: usize) -> bool {
     candidate.scene.objects[object].shape.center().is_none()
 }
 
-/// Returns the parameters of a candidate's scene that may be wrong and are not named yet.
+/// Returns the fields of a hypothesis's scene that may be wrong and are not among its mistakes yet.
 fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
     let is_suspect = |parameter: &Parameter| match parameter.owner {
         Owner::Object(object) => suspects.iter().any(|&suspect| {
             let [own, other] = [object, suspect].map(|index| &candidate.scene.objects[index]);
             object == suspect || own.is_beside(other)
         }),
-        // A wrong camera moves all objects. It is not suspected if only one bounded object is
-        // wrong; a board alone may outweigh all other objects.
+        // A wrong camera moves all objects. So the camera is not suspected if a single object is,
+        // unless this object is a checkerboard, which may fill most of the picture.
         Owner::Camera if !matches!(parameter.fields[0], "near" | "far") => match suspects {
             [sole] if candidate.scene.objects.len() > 1 => is_board(candidate, *sole),
             _ => true,
@@ -129,8 +134,8 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
     all
 }
 
-/// Returns the median colours of the picture where the prediction shows one of the given colours
-/// alone.
+/// Returns the median colour of the picture in the pixels in which the prediction shows only one of
+/// the given colours, for each of these.
 fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     let color = |own: &[f64; 3]| {
         let light = DVec3::from(Color { srgb: *own }.to_linear());
@@ -144,8 +149,8 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
         let mut median = |i: usize| {
             seen.sort_by(|one, other| one[i].total_cmp(&other[i]));
             let middle = seen.get(seen.len() / 2)?;
-            // Rounded to 1/1024 of a byte's step, so that the bytes of a picture with bytes are
-            // exact.
+            // Rounding to 1/1024 of a byte removes the rounding errors of conversions, so that
+            // whole bytes are exact.
             Some((255.0 * linear_to_srgb(middle[i]) * 1024.0).round() / 1024.0)
         };
         [0, 1, 2].map(|i| median(i).unwrap_or(own[i]))
@@ -154,8 +159,8 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     colors.iter().flat_map(color).collect()
 }
 
-/// Returns starts for a clipping plane: depths around that of the point looked at. Each is a fifth
-/// farther than the one before.
+/// Returns starting values for the depth of a clipping plane: its own, and depths around that of
+/// the point that the camera looks at. Each is a fifth farther than the one before.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     const FROM: i32 = -12;
     const TO: i32 = 24;
@@ -168,11 +173,11 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     std::iter::once(numbers).chain(depths).collect()
 }
 
-/// Returns starts for numbers: their own, neighbours, and what slips make of them: a wrong sign,
-/// two exchanged numbers, a double or a half.
+/// Returns starting values for a field's numbers: its own numbers, others near them, and the
+/// results of slips, such as a wrong sign, two exchanged numbers, a double or a half.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
-    // A single number costs little, so a wider range is tried.
+    // A single number takes few trials, so a wider range is tried.
     let far = match numbers.len() {
         1 => 10,
         _ => 3,
@@ -195,7 +200,7 @@ fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>
         (1..12).for_each(|i| with(&|other| other[0] += 30.0 * f64::from(i)));
     }
     for i in 0..numbers.len() {
-        // A slip affects one field.
+        // A slip changes a single field, not `eye` and `lookat` together.
         if parameter.fields.len() == 1 {
             with(&|other| other[i] = -other[i]);
             with(&|other| other[i] = 0.0);

@@ -1,21 +1,22 @@
-//! Finds an extra patch of one colour in a picture, which no object of the scene explains.
+//! Finds an extra patch in a picture: an area of one colour that no object of the scene explains.
 
 use glam::DVec2;
 
 use super::judge::{Judge, Judged};
 use crate::grading::hypotheses::{Mistake, is_near};
 
-/// Least number of pixels in a patch. Smaller ones may be noise.
+/// Least number of pixels in a patch. Fewer may be noise. The value is a choice.
 const SMALLEST: usize = 4;
 
-/// Least share of its rectangle that a patch fills: it is compact.
+/// Least fraction of its bounding rectangle that a patch must fill, so that it is compact. The
+/// value is a choice.
 const FILLED: f64 = 0.25;
-/// Greatest share of the picture that a patch's rectangle may cover: a larger one would explain
-/// anything.
+/// Greatest fraction of the picture that a patch's bounding rectangle may cover. A larger one would
+/// explain almost anything. The value is a choice.
 const MOST: f64 = 0.2;
 
-/// Finds the largest connected piece of one colour that the candidate does not explain. Returns
-/// `None` if there is none, or if the candidate has a patch already.
+/// Finds the largest connected area of one colour that a hypothesis does not explain. Returns
+/// `None` if there is none that may be a patch, or if the hypothesis has a patch already.
 pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
     let mut others = from.candidate().mistakes.iter();
     if others.any(|one| matches!(one, Mistake::Patch(..))) {
@@ -50,7 +51,7 @@ pub fn patch(judge: &Judge, from: &Judged) -> Option<Mistake> {
         }
     }
     let light = seen[*largest.first()?].to_array();
-    // A piece of a colour of the scene is more likely an object in a wrong place.
+    // An area with a colour of the scene is more likely an object in a wrong place.
     let scene = &from.candidate().scene;
     let objects = scene.objects.iter();
     let colors = objects.flat_map(|object| object.shape.colors());

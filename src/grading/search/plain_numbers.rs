@@ -1,9 +1,9 @@
-//! Simplifies fitted numbers: the scene's own where they explain the picture as well, and short
-//! ones elsewhere.
+//! Simplifies fitted numbers. They become the scene's own numbers if these explain the picture as
+//! well, and otherwise get fewer digits.
 //!
-//! Whoever mistypes a scene changes one number of a vector, and to a short one. Among equally good
-//! fits the one is chosen that keeps most of the scene's own numbers, and then has the fewest
-//! digits.
+//! Somebody who mistypes a scene usually changes one number of a vector, and writes a short number.
+//! So the fit with the most numbers of the scene is chosen among equally good ones, and then the
+//! one with the fewest digits.
 
 use super::judge::{CELL_STEP, Judge, price};
 use crate::{
@@ -12,25 +12,29 @@ use crate::{
     scene::Scene,
 };
 
-/// Greatest displacement of an edge by rounding a number, in pixels, in the first round.
+/// Greatest displacement of an edge that rounding a number may cause in the first round, in pixels.
+/// The value is a choice.
 const TENTH: f64 = 0.1;
-/// Number of rounds, each of which allows a quarter of the displacement of the one before.
+/// Maximum number of rounds of rounding. Each allows a quarter of the displacement of the round
+/// before, so the fifth allows 0.0004 pixels. The value is a choice.
 const QUARTERS: i32 = 5;
 
-/// Standard deviations of a number within which it may be rounded.
+/// Number of standard deviations of a fitted number by which rounding may change it. The value is a
+/// choice; a test of the rounded numbers follows.
 const DEVIATIONS: f64 = 8.0;
 
-/// Rounds of fitting the other numbers after one is replaced by the scene's own.
+/// Maximum number of rounds of fitting the other numbers, after one was replaced by the scene's
+/// own. The value is a choice.
 const ROUNDS: usize = 8;
 
-/// Returns a candidate with the simplest numbers.
+/// Returns a hypothesis with simplified numbers.
 pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
     let found = judge.judged(candidate, judge.fitting(candidate));
     let own = found.map(|found| with_own(judge, candidate, found.cost));
     shortened(judge, own.as_ref().unwrap_or(candidate))
 }
 
-/// Replaces numbers by the scene's own while the picture is explained as well.
+/// Replaces fitted numbers by the scene's own as long as the picture is explained as well.
 fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     let (level, scene) = (judge.fitting(candidate), judge.scene);
     let is_explained = judge.explains(candidate);
@@ -58,7 +62,8 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
             };
             let other = judged.candidate();
             if judged.cost - gain <= cost || is_explained && judge.explains(other) {
-                // The better numbers may be a start for replacements that failed before.
+                // Replacements that failed before may succeed from the new numbers, so all are
+                // tried again.
                 return with_own(judge, other, cost.max(judged.cost));
             }
         }
@@ -67,9 +72,9 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     candidate.clone()
 }
 
-/// Returns variants of a numeric mistake with more of the scene's own numbers, each with the
-/// indices of its free numbers, fewest free first: all but one or two coordinates of a vector are
-/// the scene's own, or one of the points `eye` and `lookat`.
+/// Returns variants of wrong numbers in which more numbers are the scene's own, those with the
+/// fewest free numbers first. Of a vector, one or two coordinates remain free; of `eye` and
+/// `lookat` together, one of both points. Each variant comes with the indices of its free numbers.
 fn plainer(
     scene: &Scene,
     parameter: &Parameter,
@@ -77,8 +82,8 @@ fn plainer(
 ) -> Vec<(Parameter, Vec<f64>, Vec<usize>)> {
     let own = parameter.numbers(scene);
     match (&parameter.fields[..], own.len()) {
-        // A picture does not determine a direction's length: it is scaled so that one coordinate is
-        // the scene's.
+        // A picture does not determine the length of a direction, so the direction is scaled until
+        // one coordinate is the scene's own.
         (["normal" | "direction"], _) => {
             let is_scaled = (0..3).any(|i| numbers[i].abs() == own[i].abs() && own[i] != 0.0);
             let nonzero = (0..3).filter(|&i| !is_scaled && numbers[i] * own[i] != 0.0);
@@ -113,7 +118,7 @@ fn plainer(
     }
 }
 
-/// Rounds a candidate's numbers to as few digits as possible.
+/// Rounds a hypothesis's numbers to as few digits as possible.
 pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let level = judge.fitting(candidate);
     let free: Vec<usize> = (0..candidate.numbers().len()).collect();
@@ -126,11 +131,13 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let Some(long) = judge.judged(candidate, level) else {
         return candidate.clone();
     };
-    // A short number counts as not fitted, so it may increase the other costs by its own.
+    // A short number counts as not fitted, which saves its cost. In return, the rest of the cost
+    // may grow by as much.
     let most = long.cost + price(level, free.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {
-        // A vector's length may be arbitrarily uncertain, so errors are limited to a step.
+        // The length of a vector may be arbitrarily uncertain, so the error of a number is limited
+        // to the change that moves the picture by a pixel.
         let errors = fitted.errors.iter().zip(&steps);
         let errors = errors
             .map(|(error, step)| (part * step.abs()).max((DEVIATIONS * error).min(step.abs())));
@@ -140,7 +147,8 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     };
     let is_as_good = |short: &Candidate| {
         let judged = judge.judged(short, level);
-        // Structured noise, as of a regular grid, may be fitted only by long numbers.
+        // Noise with a structure, such as that of a regular grid of samples, may be fitted only by
+        // long numbers. So short numbers are also good if they explain the picture.
         judged.is_some_and(|judged| judged.cost <= most) || judge.explains(short)
     };
     let mut shorter =

@@ -1,4 +1,4 @@
-//! What a candidate leaves unexplained on the pixels.
+//! What a hypothesis about the program leaves unexplained in the pixels of a picture.
 
 use super::{judge::Judge, labels::labels};
 use crate::grading::{
@@ -6,48 +6,50 @@ use crate::grading::{
     scoring::{Displacement, Prediction, Strays, work},
 };
 
-/// Number of pixels of which one may show something that samples of a faulty program, or a JPEG, do
-/// not. Chosen by trial on pictures with known mistakes.
+/// Number n such that one in n pixels may be wrong if the prediction is not exact, i.e. if it was
+/// sampled or the picture is a JPEG. Chosen by trial on pictures with known mistakes.
 const PIXELS_PER_MISS: usize = 4000;
 
-/// Distance from an edge, in pixels, within which a displacement by two pixels, or pixels up to
-/// five times as wide, show another colour.
+/// Distance from an edge, in pixels, within which a wrong pixel is attributed to the edge. It
+/// covers edges that are displaced by two pixels, and pixels up to five times too wide.
 const EDGE_REACH: usize = 3;
-/// Distance from an edge, in pixels, within which a JPEG shows another colour: the side of its
-/// blocks.
+/// Distance from an edge, in pixels, within which a wrong pixel of a JPEG is attributed to the
+/// edge. It is the side of a JPEG's blocks.
 const CODED_EDGE_REACH: usize = 8;
-/// Number of wrong pixels of which one may lie farther from edges: the wider the pixel filter, the
-/// weaker its trace far from an edge. Chosen by trial.
+/// Number n such that one in n wrong pixels may lie far from all edges, while the others are still
+/// attributed to edges. A wide pixel filter leaves weak traces far from an edge. Chosen by trial.
 const PIXELS_PER_INSIDE: usize = 10;
 
-/// Greatest displacement of all edges, in pixels, that is ignored: rounded numbers cause as much.
+/// Greatest displacement of all edges together that is ignored, in pixels. Rounded numbers in a
+/// scene cause as much.
 const IGNORED: f64 = 0.06;
 
-/// Additional displacement, in pixels, that is ignored with one sample in the middle of each pixel;
-/// with n samples it is an nth. Chosen by trial.
+/// Addition to the greatest displacement of all edges that is ignored ([`IGNORED`]), in pixels, if
+/// each pixel has one sample in its middle. For n samples per pixel, an nth of it is added. Chosen
+/// by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
-/// Greatest displacement of a single object's edges that is ignored, in pixels: without noise, and
-/// the addition with one sample in a pixel, of a plain picture and of a JPEG, most of whose noise
-/// is from its coding. Samples of a regular grid move an edge that is parallel to the grid by up to
-/// half of their distance.
+/// Greatest displacement of the edges of a single object that is ignored, in pixels. The first
+/// number holds without noise. The second is added with one sample per pixel; with n samples, it is
+/// divided by √n. The third takes its place in a JPEG, most of whose noise is from coding. Samples
+/// on a regular grid move an edge parallel to the grid by up to half of their distance.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
-/// Displacement of all edges of a JPEG, in pixels to the right or down, beyond which it is reported
-/// if it is significant, too (`SURELY_MOVED`). Coding hides most of a displacement, and three
-/// samples at the same places in all pixels lie less than this off the middle.
+/// Displacement of all edges of a JPEG, in pixels to the right or down, above which it is reported,
+/// provided that it is significant (see `SURELY_MOVED`). JPEG coding hides most of a displacement.
+/// Three samples at the same places in all pixels lie less than this off the middle.
 const MOVED: f64 = 0.2;
-/// Significance (`Displacement::square`, in squared standard deviations of the fit) above which a
-/// displacement of a JPEG's edges by more than `MOVED` is reported. Chosen by trial.
+/// Squared length of a displacement of a JPEG's edges, in squared standard deviations, above which
+/// it is significant enough to be reported. Chosen by trial.
 const SURELY_MOVED: f64 = 150.0;
 
 impl Judge<'_> {
-    /// Returns whether a candidate explains the picture: no pixel of one colour shows another, and
-    /// edges lie where they should and are as sharp.
+    /// Returns whether a hypothesis explains the picture: no pixel that should have one colour
+    /// shows another one, and edges lie in their places and are as sharp as they should be.
     ///
-    /// The middle grid is tested first because it costs less: what is certainly wrong in one of its
-    /// cells is wrong in a pixel, if the prediction is exact. Pixels of one colour follow, and
-    /// edges come last.
+    /// The middle grid is tested first because this costs less: if the prediction is exact, a cell
+    /// that is certainly wrong contains a wrong pixel. Pixels of one colour follow, and edges come
+    /// last.
     pub fn explains(&self, candidate: &Candidate) -> bool {
         let is_possible = !self.is_exact(candidate)
             || self
@@ -62,8 +64,8 @@ impl Judge<'_> {
         is_possible && is_explained() == Some(true)
     }
 
-    /// Returns the number of pixels of one colour that may show another: samples miss a square's
-    /// corner here and there, and a JPEG is coded otherwise.
+    /// Returns how many pixels that should have one colour may show another one. Samples may miss
+    /// the corner of an object, and JPEG coding may change a pixel more than predicted.
     fn missed(&self, candidate: &Candidate) -> usize {
         if self.is_exact(candidate) {
             0
@@ -72,34 +74,36 @@ impl Judge<'_> {
         }
     }
 
-    /// Returns whether the prediction is exact, which it is neither for sampled behaviour nor for a
-    /// JPEG.
+    /// Returns whether the prediction of a hypothesis is exact: it is not sampled, and the picture
+    /// is no JPEG.
     fn is_exact(&self, candidate: &Candidate) -> bool {
         candidate.is_exact() && self.fine.jpeg.is_none()
     }
 }
 
-/// What a candidate leaves unexplained on the pixels.
+/// What a hypothesis leaves unexplained in the pixels of a picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual {
-    /// Number of pixels of one colour that show another.
+    /// Number of pixels that should show one colour and show another one.
     pub strays: usize,
-    /// Whether the wrong pixels are no more than samples miss, and pixels of several colours look
-    /// like noise.
+    /// Whether areas of one colour are right, except for a few pixels that samples may miss, and
+    /// errors in pixels that mix several colours look like noise.
     pub are_areas_right: bool,
-    /// Whether the wrong pixels lie near edges.
+    /// Whether almost all wrong pixels lie near edges.
     pub is_at_edges: bool,
-    /// Whether errors in pixels of several colours look like sampling noise.
+    /// Whether errors in pixels that mix several colours look like sampling noise.
     pub is_noise_everywhere: bool,
-    /// Displacement of edges, if it is not chance; tested only if the wrong pixels lie near edges.
-    pub displacement: Option<Displacement>,
-    /// Width of the pixel filter, if it is not a pixel's; tested only if the wrong pixels lie near
+    /// Displacement of edges; `None` if it may be chance. Tested only if the wrong pixels lie near
     /// edges.
+    pub displacement: Option<Displacement>,
+    /// Width of the pixel filter, in pixels; `None` if it may be 1. Tested only if the wrong pixels
+    /// lie near edges.
     pub width: Option<f64>,
 }
 
 impl Residual {
-    /// Computes the residual of a candidate. Returns `None` if its prediction is not known.
+    /// Computes what a hypothesis leaves unexplained. Returns `None` if the budget of work is used
+    /// up.
     pub fn of_candidate(judge: &Judge, candidate: &Candidate) -> Option<Self> {
         let prediction = judge.predicted(candidate, &judge.fine)?;
         Some(Self::of(
@@ -110,7 +114,8 @@ impl Residual {
         ))
     }
 
-    /// Computes the residual of a prediction with these strays.
+    /// Computes what a prediction leaves unexplained. `strays` are the errors that no sampling can
+    /// explain.
     fn of(judge: &Judge, candidate: &Candidate, prediction: &Prediction, strays: &Strays) -> Self {
         let level = &judge.fine;
         judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
@@ -139,7 +144,7 @@ impl Residual {
         }
     }
 
-    /// Returns whether the residual is sampling noise.
+    /// Returns whether sampling noise explains all errors.
     pub fn is_noise(&self) -> bool {
         self.are_areas_right
             && self.displacement.is_none()
@@ -148,8 +153,8 @@ impl Residual {
     }
 }
 
-/// Returns the displacement of the picture, or of the object that is displaced most, unless chance
-/// or few samples explain it; and the width of the pixel filter, unless it is a pixel's.
+/// Returns the displacement of the picture, or of the object that is displaced most, and the width
+/// of the pixel filter. Each is `None` if chance or few samples may explain it.
 fn displacement_and_width(
     judge: &Judge,
     candidate: &Candidate,
@@ -160,7 +165,7 @@ fn displacement_and_width(
     let background = judge.scene.objects.len();
     let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
     let share = match level.jpeg {
-        // The coding's effect on an edge would be attributed to few samples.
+        // In a JPEG, the effect of coding on edges would otherwise be attributed to few samples.
         Some(_) => prediction.share(),
         None => {
             let score = prediction.score();
@@ -186,7 +191,8 @@ fn displacement_and_width(
     let [none, of_one, of_coded] = IGNORED_OF_OBJECT;
     let more = level.jpeg.map_or(of_one, |_| of_coded);
     let of_object = none + more * share.sqrt();
-    // A width is reported once; and after an effect on light a pixel is no mean of light.
+    // A wrong width is reported only once. After an effect on light, a pixel is no longer a mean of
+    // light, so its width is unknown.
     let is_width_explained = candidate.is_filtered() || !candidate.keeps_light();
     let width = (!is_width_explained)
         .then(|| prediction.pixel_width(&deviations, share, level.jpeg.is_some()));

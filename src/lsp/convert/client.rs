@@ -1,24 +1,24 @@
-//! Reads the capabilities of the client, and declares those of the server.
+//! Reads the capabilities of the client (the editor), and declares the capabilities of the server.
 
 use serde_json::{Value, json};
 
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
 
-/// Protocol name for code actions that fix one mistake.
+/// Name in the protocol for code actions that fix one mistake.
 pub const QUICK_FIX: &str = "quickfix";
-/// Protocol name for the code action that fixes all mistakes.
+/// Name in the protocol for the code action that fixes all mistakes of a text.
 pub const FIX_ALL: &str = "source.fixAll";
 
-/// Capabilities of the client, i.e. of the editor.
+/// The features of the language server protocol that the client, i.e. the editor, supports.
 #[derive(Clone, Copy, Debug)]
 pub struct Client {
-    /// Unit in which columns are counted.
+    /// Unit in which the columns of a line are counted.
     pub encoding: Encoding,
-    /// Whether the client accepts completions whose text is a snippet, i.e. has placeholders.
+    /// Whether the client accepts completions that are snippets, i.e. texts with placeholders.
     pub snippets: bool,
-    /// Whether the client accepts edits that name the version of the document that they apply to.
+    /// Whether the client accepts edits that state the version of the document to which they apply.
     pub versioned_edits: bool,
-    /// Whether the client accepts edits whose text is a snippet, i.e. has placeholders.
+    /// Whether the client accepts edits that insert snippets, i.e. texts with placeholders.
     pub snippet_edits: bool,
 }
 
@@ -42,8 +42,9 @@ impl Client {
     }
 }
 
-/// Returns the first unit for columns in `offered` that the server supports. `offered` is the
-/// client's list in its order of preference. Returns UTF-16 if the server supports none of it.
+/// Returns the unit in which columns are counted: the first one in `offered`, the client's list in
+/// its order of preference, that the server supports. Returns UTF-16 if the list contains no such
+/// unit.
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),
@@ -62,7 +63,7 @@ pub fn capabilities(client: &Client) -> Value {
             Encoding::Utf32 => "utf-32",
             Encoding::Utf16 => "utf-16",
         },
-        // The protocol calls 2 `Incremental`: changes are sent as edits of the text.
+        // In the protocol, 2 stands for `Incremental`: changes are sent as edits of the text.
         "textDocumentSync": { "openClose": true, "change": 2 },
         "completionProvider": { "triggerCharacters": ["("] },
         "hoverProvider": true,
@@ -89,7 +90,7 @@ pub fn capabilities(client: &Client) -> Value {
     })
 }
 
-/// Returns the name of a kind of token in the token legend.
+/// Returns the protocol's name for a kind of token, as the legend of token kinds lists it.
 fn token_type(kind: SemanticKind) -> &'static str {
     match kind {
         SemanticKind::Keyword => "keyword",

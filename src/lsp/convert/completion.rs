@@ -12,21 +12,22 @@ impl Converter<'_> {
     pub fn completion(&self, index: usize, completion: Completion) -> Value {
         let kind = match completion.kind {
             CompletionKind::Function => 3,
-            // The protocol calls 6 `Variable`.
+            // 6 is the number of the kind `Variable` in the protocol.
             CompletionKind::Definition => 6,
-            // The protocol calls 10 `Property`.
+            // 10 is the number of the kind `Property` in the protocol.
             CompletionKind::Field => 10,
             CompletionKind::Value => 12,
             CompletionKind::Keyword => 14,
             CompletionKind::Color(_) => 16,
-            // The protocol calls 20 `EnumMember`.
+            // 20 is the number of the kind `EnumMember` in the protocol.
             CompletionKind::Method => 20,
             CompletionKind::Constant => 21,
-            // The protocol calls 22 `Struct`.
+            // 22 is the number of the kind `Struct` in the protocol.
             CompletionKind::Block => 22,
         };
         let documentation = match completion.kind {
-            // Editors show a swatch if the documentation is only a colour code.
+            // If the documentation is only a colour code, editors show the colour beside the
+            // completion.
             CompletionKind::Color(color) => json!(color.to_string()),
             _ => markup(completion.help),
         };
@@ -39,23 +40,23 @@ impl Converter<'_> {
         };
         without_nulls(json!({
             "label": completion.label,
-            // If an item has an edit but lacks `filterText`, Neovim assumes that the items are
-            // filtered already, and replaces the typed text by the first item.
+            // If a completion has an edit but no `filterText`, Neovim assumes that the completions
+            // are filtered already, and replaces the typed text by the first of them.
             "filterText": completion.label,
             "kind": kind,
             "detail": Some(completion.detail).filter(|detail| !detail.is_empty()),
             "documentation": documentation,
-            // Editors sort by this text, so it keeps the order of the list.
+            // Editors sort by this text. The number in it preserves the order of the list.
             "sortText": format!("{index:04}"),
-            // The protocol calls 1 `PlainText` and 2 `Snippet`.
+            // In the protocol, 1 stands for `PlainText` and 2 for `Snippet`.
             "insertTextFormat": 1 + u8::from(is_snippet),
             "textEdit": { "range": self.range(completion.replaces), "newText": text },
         }))
     }
 }
 
-/// Returns the text that a completion inserts, for a client without snippets: its example values
-/// are plain text.
+/// Returns the text that a completion inserts in a client without snippets. Example values become
+/// plain text.
 fn plain(pieces: &[SnippetPart]) -> String {
     let texts = pieces.iter().map(|piece| match piece {
         SnippetPart::Text(text) | SnippetPart::Placeholder(text) => text.as_str(),
@@ -63,8 +64,8 @@ fn plain(pieces: &[SnippetPart]) -> String {
     texts.collect()
 }
 
-/// Returns the text that a completion inserts as a snippet: each example value is a numbered
-/// placeholder, which typing replaces.
+/// Returns the snippet that a completion inserts. Each example value becomes a numbered
+/// placeholder, which the author replaces by typing.
 fn snippet(pieces: &[SnippetPart]) -> String {
     let mut text = String::new();
     let mut holes = 0;

@@ -1,5 +1,5 @@
-//! Converts answers about a document to the types of the protocol, and positions and changes in the
-//! protocol to byte offsets and spans.
+//! Converts answers about a document to the types of the protocol. Also converts positions and
+//! changes from the protocol to byte offsets and spans.
 
 use serde_json::{Value, json};
 
@@ -18,14 +18,15 @@ use crate::{
     source::{Encoding, SourceId, Span},
 };
 
-/// Converter for a document and the client in which the document is open.
+/// A document and the client in which it is open. Converts between the types of the protocol and
+/// those of the editor module.
 #[derive(Clone, Copy)]
 pub struct Converter<'d> {
     /// The client in which the document is open.
     pub client: &'d Client,
-    /// The document's URI.
+    /// URI of the document.
     pub uri: &'d Uri,
-    /// The document.
+    /// The document itself.
     pub document: &'d Document,
 }
 
@@ -34,12 +35,12 @@ pub(super) fn count(number: usize) -> u32 {
 }
 
 impl Converter<'_> {
-    /// Converts a position to a byte offset.
+    /// Converts a position in the protocol to a byte offset.
     pub fn offset(&self, position: Position) -> usize {
         self.document.offset(line_column(position))
     }
 
-    /// Converts a range to a span. A range whose end precedes its start is accepted.
+    /// Converts a range in the protocol to a span. The end of the range may precede its start.
     pub fn span(&self, range: Range) -> Span {
         let (start, end) = (self.offset(range.start), self.offset(range.end));
         Span::new(SourceId::File, start.min(end), end.max(start))
@@ -65,8 +66,8 @@ impl Converter<'_> {
         count(self.client.encoding.columns(text))
     }
 
-    /// Converts a diagnostic. The help is appended to the message, and all labels except the first
-    /// become related information.
+    /// Converts a diagnostic to the protocol's type. The help is appended to the message, and all
+    /// labels except the first become related information.
     pub fn diagnostic(&self, diagnostic: &Diagnostic) -> Value {
         let mut labels = diagnostic.labels.iter();
         let place = labels.next().map(|label| self.range(label.span));
@@ -84,11 +85,11 @@ impl Converter<'_> {
                 Severity::Error => 1,
                 Severity::Warning => 2,
             },
-            // The field `source` already says that the code is Pinhole's.
+            // The field `source` already names Pinhole, so the code does not need the prefix.
             "code": diagnostic.code.trim_start_matches("pinhole::"),
             "source": "pinhole",
             "message": message,
-            // The protocol calls 1 `Unnecessary`: editors show the text in grey.
+            // In the protocol, 1 stands for `Unnecessary`; editors show such text in grey.
             "tags": diagnostic.is_needless.then_some([1]),
             "relatedInformation": Some(related).filter(|related| !related.is_empty()),
         }))
@@ -100,7 +101,7 @@ impl Converter<'_> {
 
     pub fn signature(&self, signature: Signature) -> Value {
         let parameters = signature.parameters.iter().map(|range| {
-            // Offsets within labels are in UTF-16 units, regardless of the encoding of positions.
+            // Offsets within labels are in UTF-16 code units, whatever the unit of positions is.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
                 count(Encoding::Utf16.columns(before))
@@ -122,37 +123,37 @@ impl Converter<'_> {
     }
 
     pub fn highlight(&self, occurrence: Occurrence) -> Value {
-        // The protocol calls 3 `Write` and 2 `Read`.
+        // In the protocol, 3 stands for `Write` and 2 for `Read`.
         let kind = if occurrence.is_definition { 3 } else { 2 };
         json!({ "range": self.range(occurrence.span), "kind": kind })
     }
 
-    /// Converts edits to LSP `TextEdit`s.
+    /// Converts edits to the protocol's type `TextEdit`.
     pub fn text_edits(&self, edits: impl IntoIterator<Item = Edit>) -> Vec<Value> {
         let edit = |edit: Edit| json!({ "range": self.range(edit.span), "newText": edit.text });
         edits.into_iter().map(edit).collect()
     }
 
-    /// Converts edits to a `WorkspaceEdit` of the document, with the document's version if the
-    /// client supports that.
+    /// Converts edits of the document to the protocol's type `WorkspaceEdit`. Includes the
+    /// document's version if the client supports it.
     pub fn edit(&self, edits: impl IntoIterator<Item = Edit>) -> Value {
         let edits = self.text_edits(edits);
         if !self.client.versioned_edits {
             return json!({ "changes": { self.uri.0.as_str(): edits } });
         }
-        // The version is included so that an editor whose text is newer rejects the edits.
+        // With the version, an editor can reject the edits if its text has changed since.
         let document = json!({ "uri": self.uri, "version": self.document.version });
         json!({ "documentChanges": [{ "textDocument": document, "edits": edits }] })
     }
 
-    /// Converts a fix to a code action. `of` is the diagnostic that the fix is for; `None` for a
-    /// fix of all diagnostics. Placeholder values become placeholders of a snippet if the client
-    /// supports snippets in edits.
+    /// Converts a fix to a code action. `of` is the diagnostic that it fixes; `None` if it fixes
+    /// all diagnostics. Made-up values become placeholders of a snippet if the client supports
+    /// snippets in edits.
     pub fn action(&self, fix: &Fix, of: Option<&Diagnostic>) -> Value {
         let is_made_up = fix.applicability == Applicability::Placeholder;
         let edit = match (is_made_up, fix.edits.as_slice()) {
-            // A fix of several lines is not converted to a snippet, since an editor would indent
-            // its further lines once more.
+            // A fix of several lines does not become a snippet, because an editor would indent all
+            // lines after the first once more.
             (true, [only]) if self.client.snippet_edits && !only.text.trim().contains('\n') => {
                 self.snippet(only)
             }
@@ -171,11 +172,11 @@ impl Converter<'_> {
             "title": title,
             "kind": if of.is_some() { QUICK_FIX } else { FIX_ALL },
             "diagnostics": of.map(|diagnostic| [self.diagnostic(diagnostic)]),
-            // A safe fix is preferred if the diagnostic has no other one: editors may apply it
-            // without asking.
+            // Editors may apply a preferred fix without asking. So a fix is preferred only if it is
+            // safe and is the only fix of its diagnostic.
             "isPreferred": of.map(|diagnostic| diagnostic.fixes.len() == 1 && fix.is_safe()),
             "edit": edit,
-            // This is Pinhole's extension of code actions; see docs/protocol.md.
+            // This field is Pinhole's extension of code actions; see docs/protocol.md.
             "data": of.map(|_| json!({
                 "applicability": fix.applicability.word(),
                 "values": values,
@@ -209,11 +210,11 @@ impl Converter<'_> {
             "name": symbol.name,
             "detail": Some(symbol.detail).filter(|detail| !detail.is_empty()),
             "kind": match symbol.kind {
-                // The protocol calls 2 `Module`.
+                // 2 is the number of the kind `Module` in the protocol.
                 SymbolKind::Setting => 2,
-                // The protocol calls 7 `Property`.
+                // 7 is the number of the kind `Property` in the protocol.
                 SymbolKind::Field => 7,
-                // The protocol calls 13 `Variable`.
+                // 13 is the number of the kind `Variable` in the protocol.
                 SymbolKind::Definition => 13,
                 SymbolKind::Object => 19,
             },
@@ -236,7 +237,7 @@ impl Converter<'_> {
     }
 
     pub fn hint(&self, hint: Hint) -> Value {
-        // The protocol calls 1 `Type`.
+        // 1 is the number of the kind `Type` of hints in the protocol.
         let kind = 1;
         json!({
             "position": self.position(hint.at), "label": hint.text, "kind": kind, "paddingLeft": true
@@ -260,9 +261,9 @@ impl Converter<'_> {
     }
 }
 
-/// Reads the changes of a text. A change without the field `range` replaces the whole text. A
-/// `range` of null is an error, since treating it as missing would replace the whole text by a part
-/// of it.
+/// Reads the changes of a text from a notification. A change without the field `range` replaces the
+/// whole text. A `range` of null is an error: if it counted as missing, a part of a text would
+/// replace the whole text.
 pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     let changes: Vec<Value> = at(params, "/contentChanges")?;
     let change = |change: &Value| {
@@ -290,7 +291,7 @@ fn line_column(position: Position) -> LineColumn {
     (position.line, position.character)
 }
 
-/// Converts a colour that the client has picked, rounded to 8 bits per channel.
+/// Converts a colour that the user has picked in the client. Its channels are rounded to 8 bits.
 pub fn color(color: protocol::Color) -> Color {
     let bytes = [color.red, color.green, color.blue];
     // The conversion saturates, so channels outside of 0 to 1 are clamped.

@@ -1,5 +1,5 @@
-//! Converts between the types of the editor module and those of the protocol. The protocol uses
-//! numbers for kinds; comments give the protocol's names for these numbers.
+//! Converts between the types of the editor module and the types of the language server protocol.
+//! The protocol uses numbers for kinds; comments give the protocol's names for these numbers.
 
 mod client;
 mod completion;

@@ -1,4 +1,4 @@
-//! Converts semantic tokens to the protocol's encoding.
+//! Converts semantic tokens, i.e. words with their kinds, to the encoding of the protocol.
 
 use serde_json::{Value, json};
 
@@ -9,8 +9,8 @@ use crate::{
 };
 
 impl Converter<'_> {
-    /// Encodes tokens as the protocol requires: the position of each is relative to the previous
-    /// one. A comment of several lines is split into one token per line.
+    /// Encodes tokens as the protocol requires: the position of each token is relative to the
+    /// previous one. A comment of several lines is split into one token per line.
     pub fn semantic_tokens(&self, tokens: &[SemanticToken]) -> Value {
         let mut data = Vec::with_capacity(5 * tokens.len());
         let mut last = Position::default();

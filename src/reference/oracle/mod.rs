@@ -1,11 +1,11 @@
-//! The oracle: a tracer that decides what is seen at a sample point by textbook formulas, in
+//! The oracle: a tracer that decides by textbook formulas what is seen at a sample point, in
 //! arithmetic of hundreds of bits.
 //!
 //! The oracle shares nothing with the tracer. It uses world coordinates instead of the view plane,
-//! the quadratic formula, signed areas, and slabs with divisions. A value counts as zero if it is
-//! smaller than its terms by 5/14 of the bits: 2^−500 with 1400 bits, 2^−182 with 512. This is far
-//! below 2^−90, the difference up to which the language lets depths count as equal, and far above
-//! the rounding errors.
+//! the quadratic formula, signed areas, and slabs with divisions. A sum counts as zero if it is
+//! smaller than its terms by a factor of 2 to the power 5/14 of the bits: 2^−500 with 1400 bits,
+//! and 2^−182 with 512. This is far above the rounding errors. It is far below 2^−90, the relative
+//! difference up to which the language lets depths count as equal.
 
 mod number;
 
@@ -21,22 +21,22 @@ use crate::{
     scene::{Lens, Scene, Shape, TriangleOutline, View},
 };
 
-/// Number of bits of the oracle's arithmetic for scenes whose numbers may be of any size within the
-/// range of `f64`.
+/// Number of bits that suffices for the oracle's arithmetic if a scene's numbers have any size in
+/// the range of `f64`. More bits would only take longer.
 pub const ALL_SIZES: usize = 1400;
 
-/// Number of bits of the oracle's arithmetic for extremely wide or narrow views, in which the side
-/// of a pixel and the distance of the view plane differ by factors of about 2^1000.
+/// Number of bits that suffices for the oracle's arithmetic if a view is extremely wide or narrow.
+/// The side of a pixel and the distance of the view plane then differ by a factor of about 2^1000.
 pub const ALL_VIEWS: usize = 3000;
 
-/// Number of bits of the oracle's arithmetic for scenes whose numbers differ by factors of about
-/// 2^100.
+/// Number of bits that suffices for the oracle's arithmetic if a scene's numbers differ by factors
+/// of at most about 2^100. It takes less time than the larger numbers of bits.
 pub const USUAL_SIZES: usize = 512;
 
-/// A scene prepared for the oracle's arithmetic of hundreds of bits.
+/// A scene prepared for the oracle, a tracer that computes with hundreds of bits.
 #[derive(Debug)]
 pub struct Oracle {
-    /// Arithmetic of the oracle's precision.
+    /// Arithmetic with the oracle's number of bits.
     pub number: Number,
     scene: Scene,
     surfaces: Vec<PreparedShape>,
@@ -50,34 +50,34 @@ pub struct Oracle {
     pixel: N,
 }
 
-/// Values that the formulas for a shape need for every ray.
+/// Values of a shape that are the same for every ray, computed once.
 #[derive(Debug)]
 enum PreparedShape {
-    /// A sphere: f = eye − centre, f·f, and c = f·f − radius².
+    /// A sphere: `f` is eye − centre, `square` is f·f, and `c` is f·f − radius².
     Sphere { f: V, square: N, c: N },
-    /// A triangle: the vertices; the normal n; `height`, n·(centroid − eye), which is zero if the
-    /// eye lies in the plane; and `scale`, the size of the terms of signed areas, relative to which
-    /// an area may be negligible.
+    /// A triangle: its vertices, and its normal n. `height` is n·(p − eye) for a point p of the
+    /// triangle; it is 0 if the eye lies in the triangle's plane. `scale` is the size of the terms
+    /// of signed areas; an area that is far smaller counts as 0.
     Triangle {
         vertices: Box<[V; 3]>,
         normal: V,
         height: N,
         scale: N,
     },
-    /// A box: min − eye and max − eye.
+    /// A box: its least corner minus the eye, and its greatest corner minus the eye.
     Box { lo: V, hi: V },
-    /// A checkerboard: its height above the eye (y − the eye's y), and the side of a square.
+    /// A checkerboard: its height above the eye, and the side of a square.
     Checkerboard { height: N, square: N },
 }
 
-/// The visible intersection of a ray, in the oracle's arithmetic.
+/// The point at which a ray hits the object that is seen, in the oracle's arithmetic.
 #[derive(Clone, Debug)]
 pub struct OracleHit {
-    /// The object's index in the scene.
+    /// Index of the object in the scene.
     pub object: usize,
     /// Whether a checkerboard shows its second colour.
     pub odd: bool,
-    /// Parameter t of the intersection eye + t·direction.
+    /// Parameter t of the intersection, which lies at eye + t·direction.
     pub t: N,
 }
 
@@ -156,7 +156,7 @@ impl Oracle {
             let crossings = self.crossings(object, r);
             Some((object, crossings.into_iter().find(is_visible)?))
         });
-        // If two objects are at the same distance, the first in the file is seen.
+        // If two objects are at the same depth, the one that comes first in the file is seen.
         let (object, t) = seen.reduce(|best, next| match self.order(&next.1, &best.1) {
             Ordering::Less => next,
             _ => best,
@@ -171,22 +171,22 @@ impl Oracle {
         Some(OracleHit { object, odd, t })
     }
 
-    /// Computes the point eye + `t`·`r`.
+    /// Computes the point on a ray from the eye with the direction `r`, at the parameter `t`.
     pub fn point(&self, t: &N, r: &V) -> V {
         axpy(&self.eye, t, r)
     }
 
-    /// Returns whether the coordinate `x` lies in a row of squares with an odd number. `square` is
-    /// the side of the squares.
+    /// Returns whether floor(`x`/`square`) is odd, for a coordinate `x` of a point on a
+    /// checkerboard whose squares have the side `square`.
     fn is_odd(&self, x: &N, square: &N) -> bool {
-        // A quotient that is only negligibly below an integer counts as this integer: 1/3 + 2/3
-        // must not become 0.999….
+        // A quotient that is only negligibly below an integer counts as this integer. For example,
+        // 1/3 + 2/3 must not become 0.999….
         let close = self.number.exact(1.0) >> (self.number.bits as isize * 3 / 14);
         let cell = (x / square + close).floor();
         (cell.to_int().value() & IBig::ONE) == IBig::ONE
     }
 
-    /// Returns all t > 0, in ascending order, at which the ray eye + t·`r` hits the object with
+    /// Returns all t > 0, in ascending order, at which the ray eye + t·`r` hits the object with the
     /// index `index`.
     pub fn crossings(&self, index: usize, r: &V) -> Vec<N> {
         match &self.surfaces[index] {
@@ -209,8 +209,9 @@ impl Oracle {
         }
     }
 
-    /// Intersects the ray with a sphere. Returns the positive roots of a·t² + 2b·t + c in ascending
-    /// order. A ray that only touches the sphere misses it.
+    /// Intersects the ray with the direction `r` from the eye with a sphere. Returns its positive
+    /// parameters t, the smaller first. They are roots of a·t² + 2b·t + c = 0. A ray that only
+    /// touches the sphere misses it.
     fn sphere(&self, f: &V, square: &N, c: &N, r: &V) -> Vec<N> {
         let (a, b) = (dot(r, r), dot(f, r));
         let bb = &b * &b;
@@ -220,8 +221,8 @@ impl Oracle {
         }
         let root = discriminant.sqrt();
         let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
-        // The eye is on the sphere's surface, so that the true t of one root is zero. Its computed
-        // value has a rounding error and is left out.
+        // The eye is on the sphere's surface, so the true t of one root is 0. Because of rounding
+        // errors its computed value may differ from 0, so this root is left out.
         if self.sign(c, square) == Ordering::Equal {
             let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
             return roots.into_iter().skip(1).filter(|_| is_ahead).collect();
@@ -229,9 +230,9 @@ impl Oracle {
         roots.into_iter().filter(|t| *t > N::ZERO).collect()
     }
 
-    /// Intersects the ray with the plane n·(p − eye) = `height`, and returns t. Returns `None` if
-    /// the eye lies in the plane, if the ray is parallel to the plane, or if the plane is behind
-    /// the eye.
+    /// Intersects the ray with the direction `r` from the eye with a plane whose points p satisfy
+    /// n·(p − eye) = `height`. Returns the ray's parameter t. Returns `None` if the eye lies in the
+    /// plane, if the ray is parallel to it, or if it is behind the eye.
     fn plane(&self, n: &V, height: &N, r: &V) -> Option<N> {
         let slope = dot(n, r);
         if *height == N::ZERO || self.sign(&slope, &(size(n) * size(r))) == Ordering::Equal {
@@ -251,9 +252,10 @@ impl Oracle {
         })
     }
 
-    /// Intersects the ray with a box. The ray is inside from the greatest t at which it enters a
-    /// slab to the least t at which it leaves one. Returns those of these two t that are positive.
-    /// Returns an empty list if the ray misses the box.
+    /// Intersects the ray with the direction `r` from the eye with a box. A box is the intersection
+    /// of three slabs, each between two parallel planes. The ray is inside of the box from the last
+    /// t at which it enters a slab to the first t at which it leaves one. Returns those of these
+    /// two t that are positive, or an empty list if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);
@@ -271,8 +273,8 @@ impl Oracle {
         ends.filter(|t| *t > N::ZERO).collect()
     }
 
-    /// Compares two numbers. They count as equal if their difference is negligible relative to
-    /// their absolute values.
+    /// Compares two numbers. They count as equal if their difference is negligible, compared with
+    /// the numbers themselves.
     fn order(&self, a: &N, b: &N) -> Ordering {
         self.sign(&(a - b), &(abs(a) + abs(b)))
     }

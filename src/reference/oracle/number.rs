@@ -1,4 +1,4 @@
-//! The oracle's numbers, vectors, angles and triangles.
+//! The numbers, vectors, angles and triangles of the oracle, a tracer of very high precision.
 
 use std::cmp::Ordering;
 
@@ -7,13 +7,14 @@ use glam::DVec3;
 
 use crate::{math::Angle, scene::CenteredTriangle};
 
-/// A binary floating-point number of the oracle's precision.
+/// A binary floating-point number with as many bits as the oracle, a tracer of very high precision,
+/// uses.
 pub type N = FBig<HalfEven, 2>;
 
-/// A vector in world coordinates.
+/// A vector in world coordinates, of high-precision numbers.
 pub type V = [N; 3];
 
-/// Arithmetic of the oracle, with a fixed number of bits.
+/// Arithmetic with a fixed number of bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Number {
     /// Number of bits of every result.
@@ -21,7 +22,7 @@ pub struct Number {
 }
 
 impl Number {
-    /// Converts a number of a scene. The number must be finite.
+    /// Converts a number of a scene, which must be finite, without an error.
     pub fn exact(self, x: f64) -> N {
         debug_assert!(x.is_finite());
         let x = N::try_from(x).unwrap_or(N::ZERO);
@@ -33,8 +34,9 @@ impl Number {
         v.to_array().map(|x| self.exact(x))
     }
 
-    /// Returns the sign of the number `x`, which was computed from terms of the size `size`. The
-    /// sign is zero if |`x`| is at most `size` times 2^(−5/14 · `bits`).
+    /// Returns the sign of `x`, a sum whose terms have the size `size`. The sign is zero if |`x`|
+    /// is at most 2^(−5/14 · `bits`) times `size`, because rounding errors may be the only reason
+    /// for such a small number.
     pub fn sign(self, x: &N, size: &N) -> Ordering {
         if abs(x) <= size.clone() >> (self.bits as isize * 5 / 14) {
             Ordering::Equal
@@ -43,7 +45,8 @@ impl Number {
         }
     }
 
-    /// Returns the sine and the cosine of an angle, including its part in radians.
+    /// Returns the sine and the cosine of an angle, which has a part in degrees and a part in
+    /// radians.
     pub fn sin_cos(self, angle: Angle) -> (N, N) {
         let (s, c) = self.exact(angle.degrees).sin_cos_unit(360);
         if angle.radians == 0.0 {
@@ -119,8 +122,8 @@ pub fn length(a: &V) -> N {
     dot(a, a).sqrt()
 }
 
-/// Returns the sum of the absolute values of a vector's components, an upper bound of its length. A
-/// number that is far smaller counts as negligible.
+/// Returns the sum of the absolute values of a vector's components, an upper bound of the vector's
+/// length. Results that are far smaller than this size count as rounding errors.
 pub fn size(a: &V) -> N {
     abs(&a[0]) + abs(&a[1]) + abs(&a[2])
 }

@@ -1,5 +1,5 @@
-//! Hard cases of planes and checkerboards: horizons, integers, extreme heights and distances, and
-//! coplanar surfaces.
+//! Hard cases of checkerboards: rays near the horizon or parallel to the board, extreme heights and
+//! distances, exact corners of squares, and other surfaces in the board's plane.
 
 use glam::{DVec3, dvec3};
 
@@ -10,7 +10,7 @@ use crate::reference::{
     scenes::{SIZE, along, board, camera, cuboid, sphere, spun, triangle},
 };
 
-/// Hard cases of planes and checkerboards, in the order in which the report lists them.
+/// Hard cases of checkerboards, in the order of the report.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "P1", title: "up to 1e-13 pixels below the horizon", bound: 2.0, subject: Seen(horizon) },
@@ -52,7 +52,8 @@ fn parallels(random: &mut CaseRng) -> CaseScene {
     })
 }
 
-/// Returns a scene with a board, a triangle, and the top of a box exactly at the height of the eye.
+/// Returns a scene in which the eye lies exactly in the planes of a board, a triangle, and a box's
+/// top face.
 fn edge_on(random: &mut CaseRng) -> CaseScene {
     let eye = random.vector(3.0);
     let ahead = dvec3(random.within(-0.5, 0.5), random.within(-0.3, 0.3), -1.0);
@@ -92,8 +93,8 @@ fn displaced(random: &mut CaseRng) -> CaseScene {
     input(along(eye, down), &[board(0.0, 1.0)])
 }
 
-/// Returns a view from a height of 64 squares, where the slope of a ray changes by 1/64 from pixel
-/// to pixel. Therefore, the upper left corner of each pixel shows the corner of a square.
+/// Returns a view straight down from a height of 64 squares. From pixel to pixel, the slope of the
+/// ray changes by 1/64, so the upper left corner of each pixel shows exactly a corner of a square.
 fn corners(random: &mut CaseRng) -> CaseScene {
     let (reach, size) = (1 << random.below(53), libm::exp2(random.whole(-60, 60)));
     let eye = random.wholes([-reach, 64, -reach], [reach, 64, reach]) * size;

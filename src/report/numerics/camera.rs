@@ -20,8 +20,8 @@ use crate::{
     scene::{Camera, Lens},
 };
 
-/// Hard cases of the camera, in the order in which the report lists them: first those that test its
-/// axes, then those that test what is seen.
+/// Hard cases of the camera, in the order of the report. The first ones test the camera's axes, and
+/// the others what is seen.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "C1", title: "up within 1e-1 … 1e-200 of the view direction", bound: 4.0, subject: Axes(nearly_parallel) },
@@ -38,9 +38,10 @@ fn nearly_parallel(random: &mut CaseRng) -> Camera {
     let lowest = random.pick(&[-16.0, -200.0]);
     let view = random.unit() * random.power(-3.0, 3.0);
     let beside = random.unit() * random.power(lowest, -1.0);
-    // The up vector is as close to the view direction as `f64` allows. If the sum rounds to a
-    // vector parallel to `view`, the camera looks nearly along −y instead. The view's x and z
-    // are then the difference from the up vector's line, and no sum rounds them.
+    // The up vector is nearly the view direction. In half of the inputs, and if rounding makes both
+    // exactly parallel, the camera looks nearly straight down instead, and `up` stays the y axis.
+    // The tiny x and z components of the view direction are then exact, since nothing is added to
+    // them.
     let mut camera = along(DVec3::ZERO, view);
     camera.up = view + beside;
     if camera.up.cross(view) == DVec3::ZERO || random.below(2) == 0 {
@@ -70,14 +71,13 @@ fn lengths(random: &mut CaseRng) -> Camera {
     camera
 }
 
-/// Returns a scene seen through a lens that shows nearly everything, or through one that shows next
-/// to nothing.
+/// Returns a scene seen by an extremely wide or narrow lens, i.e. with the view plane at a tiny or
+/// huge distance d.
 ///
-/// Through the widest lenses, the rays of whole rows of the picture differ from the board's
-/// direction only by about d. The language calls a ray parallel to the board (a tie) if this
-/// difference is below about 2^−90. Pinhole treats the ray as parallel only below 2^−310, and the
-/// oracle only below 2^−1071, 5/14 of its bits. Lenses whose d lies between the limits are not
-/// tested.
+/// If d is tiny, some rays are parallel to the checkerboard except for a slope of about d. A ray
+/// counts as exactly parallel if its slope is below a threshold. The threshold is about 2^−90 in
+/// the language's rules, 2^−310 in Pinhole, and 2^−1071 in the oracle (the reference, with 3000
+/// bits). Distances d between 2^−90 and 2^−310 are not tested.
 fn lenses(random: &mut CaseRng) -> CaseScene {
     let lowest = random.pick(&[9.0, 155.0]);
     let d = random.power(lowest, lowest * 1.95);
@@ -122,15 +122,16 @@ fn wide(random: &mut CaseRng) -> CaseScene {
         let size = dvec3(0.7, random.within(0.1, 2.0), 18.0);
         shapes.push(cuboid(corner, corner + size));
     }
-    // The window is 2 m high and shows 64 rows of 2^20 columns, so it is 2^20/64 times as wide.
+    // The picture has 64 rows and 2^20 columns, and its window in space is 2 m high, so the window
+    // is 32768 m wide. At a distance of half its width, the horizontal field of view is 90°.
     camera.lens = Lens::Distance(16384.0);
     let mut input = input(camera, &shapes);
     input.scene.image.width = 1 << 20;
     input
 }
 
-/// View directions with integer components and an integer length, each with its length. A wall
-/// perpendicular to such a view can have a depth that is an integer.
+/// View directions with integer components and an integer length, each with its length. Along such
+/// a direction, a wall perpendicular to it can have an exactly representable depth.
 const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(0.0, 0.0, -1.0), 1.0),
     (dvec3(3.0, 0.0, -4.0), 5.0),
@@ -138,8 +139,8 @@ const WHOLE: [(DVec3, f64); 4] = [
     (dvec3(6.0, 3.0, -2.0), 7.0),
 ];
 
-/// Returns a scene with a wall perpendicular to the view. Its depth is that of a clip plane or the
-/// next `f64` before or behind it.
+/// Returns a scene with a wall perpendicular to the view direction, and a near or far clip plane.
+/// The clip plane has exactly the wall's depth or a neighbouring `f64`.
 fn exactly_there(random: &mut CaseRng) -> CaseScene {
     let (direction, length) = random.pick(&WHOLE);
     let steps = random.whole(1, 1 << 20) / 1024.0;

@@ -1,4 +1,5 @@
-//! A hard case: a generator of inputs, and the points of the picture that are tested.
+//! A hard case of the arithmetic: it generates scenes, and points of their pictures at which the
+//! renderer's answers are tested.
 
 use super::{
     inputs::{CaseRng, SamplePoint},
@@ -9,43 +10,43 @@ use crate::{
     scene::{Camera, Scene, Shape},
 };
 
-/// A hard case of the catalogue in [`cases`](super::cases).
+/// A hard case of the arithmetic. [`cases`](super::cases) returns all of them.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Case {
-    /// Name of the case in tables, such as `C3a`.
+    /// Short name of the case in tables, such as `C3a`.
     pub id: &'static str,
-    /// Description of what is difficult in the case.
+    /// Description of what is difficult in the case, for tables.
     pub title: &'static str,
-    /// Maximum error that Pinhole guarantees, in the case's [`unit`](Self::unit). In addition, no
-    /// decision may be wrong.
+    /// Maximum error of a number that Pinhole guarantees, in the unit that [`unit`](Self::unit)
+    /// returns. Errors in decisions, such as which object is seen, are never allowed.
     pub bound: f64,
     pub(super) subject: Question,
 }
 
-/// The quantity that a case tests.
+/// What a case tests, with a generator of random inputs.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Question {
-    /// What is seen at many points of a scene. Errors of distances and points are counted in units
-    /// in the last place.
+    /// Which object is seen at points of a scene's picture, at which distance and place. Errors of
+    /// numbers are in units in the last place (ulp).
     Seen(fn(&mut CaseRng) -> CaseScene),
-    /// The axes of a camera. Errors of the components of unit vectors are counted in units of
+    /// The axes of a camera, which are unit vectors. Errors of their components are in units of
     /// 2^−53.
     Axes(fn(&mut CaseRng) -> Camera),
 }
 
 impl Case {
-    /// Returns whether the case tests decisions about what is seen, besides numbers.
+    /// Returns whether the case tests which object is seen. Other cases test only numbers.
     pub fn decides(&self) -> bool {
         matches!(self.subject, Question::Seen(_))
     }
 
-    /// Returns the unit of the case's errors: `ulp`, the unit in the last place, or `u`, 2^−53.
+    /// Returns the unit of the case's errors: `ulp` (unit in the last place) or `u` (2^−53).
     pub fn unit(&self) -> &'static str {
         if self.decides() { "ulp" } else { "u" }
     }
 
-    /// Tests `count` inputs of the case and adds the results to `tally`.
+    /// Tests `count` random inputs of the case, and adds the results to `tally`.
     pub(super) fn ask(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let input = match self.subject {
             Question::Seen(input) => input(random),
@@ -60,19 +61,20 @@ impl Case {
     }
 }
 
-/// A scene, and the points of its picture that are tested.
+/// A scene, with a rule for the points of its picture that are tested.
 pub(super) struct CaseScene {
     pub scene: Scene,
-    /// Precision of the oracle's arithmetic for this scene, in bits.
+    /// Precision of the arithmetic of the oracle, the reference that Pinhole is compared with, in
+    /// bits.
     bits: usize,
-    /// Generator of points of the picture. By default, they are uniform over the picture.
+    /// Generator of random points of the picture. By default, all points are equally likely.
     points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// Number of halves of the inputs, 0, 1 or 2, that are tested at points from `points`. The
-    /// other inputs lie close to boundaries between colours.
+    /// How many halves of the inputs (0, 1 or 2) are points from the generator `points`. The other
+    /// inputs lie close to boundaries between colours.
     halves: u64,
 }
 
-/// Returns a scene that is tested close to the boundaries between its colours.
+/// Returns a scene that is tested only close to boundaries between colours.
 pub(super) fn input(camera: Camera, shapes: &[Shape]) -> CaseScene {
     CaseScene {
         scene: scene(camera, shapes),
@@ -83,17 +85,18 @@ pub(super) fn input(camera: Camera, shapes: &[Shape]) -> CaseScene {
 }
 
 impl CaseScene {
-    /// Sets the number of bits of the oracle's arithmetic.
+    /// Sets the precision of the oracle's arithmetic, in bits. The oracle is the reference that
+    /// Pinhole is compared with.
     pub fn bits(self, bits: usize) -> Self {
         Self { bits, ..self }
     }
 
-    /// Makes all inputs of the case lie at points that are uniform over the picture.
+    /// Tests the scene at random points of the picture, which are all equally likely.
     pub fn anywhere(self) -> Self {
         Self { halves: 2, ..self }
     }
 
-    /// Makes all inputs of the case lie at points that `point` generates.
+    /// Tests the scene at the points that the function `point` generates.
     pub fn at(self, point: impl Fn(&mut CaseRng) -> SamplePoint + 'static) -> Self {
         Self {
             points: Box::new(point),
@@ -101,8 +104,8 @@ impl CaseScene {
         }
     }
 
-    /// Makes half of the case's inputs lie at points anywhere in the picture, or at those of
-    /// [`at`](Self::at), and half close to boundaries.
+    /// Tests half of the inputs at points from the generator `points`, and the other half close to
+    /// boundaries between colours.
     pub fn mixed(self) -> Self {
         Self { halves: 1, ..self }
     }

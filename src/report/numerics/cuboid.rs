@@ -1,5 +1,5 @@
-//! Hard cases of boxes: rays in the planes of faces, eyes inside and on the surface, thin boxes and
-//! neighbours.
+//! Hard cases of boxes: rays in the planes of faces, eyes inside and on the surface, extremely thin
+//! boxes, and boxes that share a face.
 
 use glam::{DVec3, dvec3};
 
@@ -10,7 +10,7 @@ use crate::{
     reference::scenes::{along, camera, cuboid, sphere},
 };
 
-/// Hard cases of boxes, in the order in which the report lists them.
+/// Hard cases of boxes, in the order of the report.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "B1", title: "rays in the planes of faces, and along edges", bound: 2.0, subject: Seen(in_planes) },
@@ -20,8 +20,8 @@ pub const CASES: &[Case] = &[
     Case { id: "B5", title: "the seam of two boxes that share a face", bound: 2.0, subject: Seen(neighbours) },
 ];
 
-/// Returns a view along −z from an eye whose x and y may be those of a face. Rays leave the eye in
-/// the planes x = e_x and y = e_y, so that they may lie in the plane of a face.
+/// Returns a view along −z in which the eye may lie in the planes of a box's faces. Rays through
+/// the vertical or horizontal middle line of the picture then stay exactly in such a plane.
 fn in_planes(random: &mut CaseRng) -> CaseScene {
     let min = random.wholes([-9, -9, -40], [9, 9, -9]) / 4.0;
     let max = min + random.wholes([1; 3], [9; 3]) / 4.0;
@@ -67,8 +67,8 @@ fn thin(random: &mut CaseRng) -> CaseScene {
     let axis = random.below(3) as usize;
     max[axis] = min[axis].next_up();
     let mut eye = random.vector(1.0).normalize() * 5.0;
-    // The eye may be far above the plane of the thin box, or so close that it looks along the
-    // plane.
+    // The eye may be far above the plane of the thin box, or so near it that the box is seen from
+    // its edge.
     eye[axis] = min[axis] + random.sign() * random.power(-15.0, 0.5);
     let shapes = [cuboid(min, max), sphere((min + max) / 2.0, 0.3)];
     input(camera(eye, (min + max) / 2.0), &shapes)
@@ -83,7 +83,7 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
     input(camera(eye, (min + max) / 2.0), &shapes)
 }
 
-/// Returns two boxes that share a face. The eye is beside the plane of that face or exactly in it.
+/// Returns two boxes that share a face. The eye may lie exactly in the plane of this face.
 fn neighbours(random: &mut CaseRng) -> CaseScene {
     let seam = random.within(-1.0, 1.0);
     let mut shapes = [

@@ -1,4 +1,4 @@
-//! Pseudorandom numbers from which the inputs of cases are generated.
+//! Pseudorandom numbers for the inputs of hard cases.
 
 use glam::DVec3;
 use rand::{Rng, RngExt};
@@ -11,52 +11,53 @@ use crate::{
     },
 };
 
-/// A point of a picture: for each axis, the pixel's column or row and an offset from the pixel's
-/// centre, in pixels.
+/// A point of a picture. For each axis, it has the pixel's column or row, and the offset from the
+/// pixel's centre, in pixels.
 pub type SamplePoint = [(u32, f64); 2];
 
-/// Coordinates at the middle of a picture of the usual size, [`SIZE`]: just before the middle, and
-/// exactly on it.
+/// Coordinates in the middle of a picture of [`SIZE`] × [`SIZE`] pixels, for use on either axis:
+/// the last `f64` before the middle, and the middle itself.
 pub const MIDDLE: [(u32, f64); 2] = [(SIZE / 2 - 1, 0.5_f64.next_down()), (SIZE / 2, -0.5)];
 
-/// Pseudorandom numbers that depend only on a case and on the index of a block of its inputs.
+/// A generator of pseudorandom numbers. They depend only on a case and on the index of a block of
+/// its inputs, so that threads do not affect them.
 #[derive(Clone, Debug)]
 pub struct CaseRng(CounterRng);
 
 impl CaseRng {
-    /// Creates the generator of the block `block` of the case named `case`.
+    /// Makes the generator for block `block` of the inputs of the case named `case`.
     pub fn new(case: &str, block: u64) -> Self {
         let name = case.bytes();
         let name = name.fold(0, |name, byte| name << 8 | u64::from(byte));
         Self(Key::new(name, block).rng())
     }
 
-    /// Returns a uniform integer from 0 to `n` − 1.
+    /// Returns a uniformly random integer from 0 to `n` − 1.
     pub fn below(&mut self, n: u64) -> u64 {
         scale(self.0.next_u64(), n)
     }
 
-    /// Returns a uniform integer from `low` to `high`, both included.
+    /// Returns a uniformly random integer from `low` to `high`, both included.
     pub fn whole(&mut self, low: i64, high: i64) -> f64 {
         (low + self.below((high - low + 1) as u64) as i64) as f64
     }
 
-    /// Returns a random column or row of a picture of the usual size, [`SIZE`].
+    /// Returns a random column or row of a picture with [`SIZE`] columns and rows.
     pub fn pixel(&mut self) -> u32 {
         self.below(SIZE.into()) as u32
     }
 
-    /// Returns one of `things` at random.
+    /// Returns a random element of `things`.
     pub fn pick<T: Copy>(&mut self, things: &[T]) -> T {
         things[self.below(things.len() as u64) as usize]
     }
 
-    /// Returns a uniform number between `low` and `high`.
+    /// Returns a uniformly random number between `low` and `high`.
     pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.random::<f64>()
     }
 
-    /// Returns 10^p for a uniform p between `low` and `high`.
+    /// Returns 10^p, where p is uniformly random between `low` and `high`.
     pub fn power(&mut self, low: f64, high: f64) -> f64 {
         libm::pow(10.0, self.within(low, high))
     }
@@ -66,8 +67,8 @@ impl CaseRng {
         self.pick(&[-1.0, 1.0])
     }
 
-    /// Returns a uniform point of the box from `low` to `high`. An axis without extent consumes no
-    /// random number.
+    /// Returns a uniformly random point of the box from `low` to `high`. If both have the same
+    /// coordinate on an axis, no random number is drawn for the axis.
     pub fn between(&mut self, low: [f64; 3], high: [f64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| {
             let (a, b) = (low[axis], high[axis]);
@@ -75,8 +76,8 @@ impl CaseRng {
         }))
     }
 
-    /// Returns a point with integer coordinates in the box from `low` to `high`. An axis without
-    /// extent consumes no random number.
+    /// Returns a random point with integer coordinates in the box from `low` to `high`. If both
+    /// have the same coordinate on an axis, no random number is drawn for the axis.
     pub fn wholes(&mut self, low: [i64; 3], high: [i64; 3]) -> DVec3 {
         DVec3::from([0, 1, 2].map(|axis| {
             let (a, b) = (low[axis], high[axis]);
@@ -84,12 +85,14 @@ impl CaseRng {
         }))
     }
 
-    /// Returns a uniform point of a cube around the origin whose side is 2·`half`.
+    /// Returns a uniformly random point of the cube whose centre is the origin and whose side is 2
+    /// · `half`.
     pub fn vector(&mut self, half: f64) -> DVec3 {
         self.between([-half; 3], [half; 3])
     }
 
-    /// Returns a uniformly distributed unit vector.
+    /// Returns a uniformly random unit vector. It is a random point of the unit ball, scaled to
+    /// length 1.
     pub fn unit(&mut self) -> DVec3 {
         loop {
             let v = self.vector(1.0);
@@ -99,7 +102,7 @@ impl CaseRng {
         }
     }
 
-    /// Returns a random point of a picture of the usual size, [`SIZE`].
+    /// Returns a random point of a picture with [`SIZE`] columns and rows.
     pub fn point(&mut self) -> SamplePoint {
         self.point_of([SIZE; 2])
     }

@@ -1,20 +1,19 @@
-//! The accuracy of the arithmetic, measured with a catalogue of hard cases.
+//! The accuracy of the arithmetic, measured in hard cases.
 //!
-//! A case generates inputs around a singularity: tangents, horizons, shared edges, eyes on
-//! surfaces, numbers of all sizes. What is seen there is decided three times: by the
-//! [`oracle`](crate::reference::oracle) in hundreds of bits, by the
-//! [`textbook`](crate::reference::textbook) formulas in `f64`, and by the tracer that renders
-//! pictures, one ray at a time. (Tests verify that SIMD rays give bit-identical pictures.)
-//! Decisions that differ from the oracle's are counted. Distances and points are measured for one
-//! input of 16. Unless the case says otherwise, inputs lie at the neighbouring `f64`s on both sides
-//! of a boundary, and at distances from the boundary that are uniform on a logarithmic scale.
+//! A hard case generates scenes in which rounding errors easily cause wrong answers: rays that
+//! touch surfaces, horizons, shared edges, eyes on surfaces, very large and small numbers. What is
+//! seen at a point is computed three times: by the [`oracle`](crate::reference::oracle) in hundreds
+//! of bits, by the [`textbook`](crate::reference::textbook) formulas in `f64`, and by the tracer
+//! that renders pictures, one ray at a time. (Tests verify that SIMD rays give bit-identical
+//! pictures.) Answers that differ from the oracle's are counted. For one of 16 inputs, the errors
+//! of the distance and of the point are also measured.
 //!
-//! Inputs depend only on the case and on their own number, so that they are the same for any number
-//! of threads.
+//! By default, the inputs lie close to boundaries between colours: at the neighbouring `f64`s on
+//! both sides, and at distances that are uniform on a logarithmic scale. They depend only on the
+//! case and on their own number, so that threads do not affect them.
 //!
-//! The catalogue leaves out what the tests of the samplers and of the film cover. It also leaves
-//! out what the language rejects, such as negative sizes, empty clip ranges, and numbers that are
-//! not finite.
+//! Samplers and films have tests of their own, and are left out. Scenes that the language rejects,
+//! such as those with negative sizes, are left out, too.
 
 mod board;
 mod camera;
@@ -41,7 +40,7 @@ use crate::{
     threads::{self, NoThreads},
 };
 
-/// Returns all cases of the catalogue, in order.
+/// Returns all hard cases, in the order of the report.
 pub fn cases() -> impl Iterator<Item = &'static Case> {
     let families = [
         sphere::CASES,
@@ -53,13 +52,13 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
     families.into_iter().flatten()
 }
 
-/// Number of inputs of a case that share a scene, which is prepared once for all of them. They are
-/// generated and tested one after the other by one thread.
+/// Number of inputs of a case that are tested in the same scene, one after the other by one thread.
+/// Preparing a scene is slow, so it serves many inputs. A larger number would mean fewer different
+/// scenes.
 const BLOCK: u64 = 100;
 
-/// Tests `inputs_per_case` inputs of every case, and reports progress in inputs. If the run is
-/// cancelled, the result contains the inputs tested until then: about equally many of every case,
-/// and at least one.
+/// Tests `inputs_per_case` inputs of every case. Reports the progress as a number of inputs. If it
+/// is cancelled, returns the results so far, which cover about equally many inputs of every case.
 ///
 /// # Errors
 ///
@@ -68,13 +67,14 @@ pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, NoT
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);
     let count = cases.len() as u64;
-    // Blocks alternate between all cases, so that all cases progress evenly.
+    // The blocks of different cases alternate, so that all cases progress evenly.
     let ask = |mut tallies: Vec<CaseTally>, index| {
         let (block, at) = (index / count, (index % count) as usize);
         let inputs = BLOCK.min(inputs_per_case - block * BLOCK);
         let random = &mut CaseRng::new(cases[at].id, block);
-        // Each block has a tally of its own, so that the choice of measured inputs does not depend
-        // on how the threads share the blocks.
+        // A tally measures errors for every 16th of its inputs, by its own count. Each block of
+        // inputs has its own tally, so that the choice does not depend on how the threads share the
+        // blocks.
         let mut tally = CaseTally::default();
         cases[at].ask(random, inputs, &mut tally);
         tallies[at] = tallies[at].plus(tally);

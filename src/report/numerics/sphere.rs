@@ -1,5 +1,5 @@
-//! Hard cases of spheres: tangents, small and distant ones, huge ones, and eyes inside and on the
-//! surface.
+//! Hard cases of spheres: rays that touch the sphere, tiny and distant spheres, huge ones, and eyes
+//! inside and on the surface.
 
 use glam::{DVec3, dvec3};
 
@@ -10,7 +10,7 @@ use crate::{
     scene::Lens,
 };
 
-/// Hard cases of spheres, in the order in which the report lists them.
+/// Hard cases of spheres, in the order of the report.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "S1a", title: "rays that nearly touch a sphere", bound: 1.0, subject: Seen(silhouettes) },
@@ -32,14 +32,16 @@ fn silhouettes(random: &mut CaseRng) -> CaseScene {
     input(camera, &[shape])
 }
 
-/// Returns a view along −z from the origin of a sphere that touches the plane x = 0 at (0, y, z).
-/// The rays in that plane pass through the middle of the picture, and none of them hits the sphere.
-/// A ray next to the plane hits it on the sphere's side.
+/// Returns a view along −z from the origin, and a sphere that touches the plane x = 0. Rays in this
+/// plane, in the middle of the picture, touch the sphere at most, which counts as a miss. Rays
+/// beside the plane, on the sphere's side, may hit it.
 fn touches(random: &mut CaseRng) -> CaseScene {
     let camera = along(DVec3::ZERO, DVec3::NEG_Z);
     let row = random.pixel();
     let depth = random.whole(16, 400);
-    // The ray through the upper side of the row has the slope (32 − row)/64.
+    // The slope of a ray changes by 1/64 from row to row. The ray through the upper edge of the row
+    // `row` has the slope (32 − row)/64, so it goes through the point where the sphere touches the
+    // plane.
     let y = depth * (f64::from(SIZE) / 2.0 - f64::from(row)) / 64.0;
     let radius = random.whole(1, 80) / 8.0;
     let side = random.sign();
@@ -79,8 +81,8 @@ fn inside(random: &mut CaseRng) -> CaseScene {
 }
 
 fn at_the_surface(random: &mut CaseRng) -> CaseScene {
-    // The points are exactly 5 from the origin. Therefore, the eye is exactly on the surface,
-    // unless `above` moves it.
+    // These three points are exactly 5 from the origin, so the eye is exactly on the surface if
+    // `above` is 0.
     let on = random.pick(&[
         dvec3(3.0, 4.0, 0.0),
         dvec3(0.0, 4.0, -3.0),

@@ -7,28 +7,28 @@ use serde_json::{Value, json};
 use super::{case::Case, trial::CaseTally};
 use crate::numbers::grouped;
 
-/// Result of testing a case.
+/// Result of testing a hard case.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct CaseResult {
     /// The case that was tested.
     pub case: &'static Case,
-    /// Counts of inputs and wrong decisions, and the greatest errors.
+    /// The numbers of inputs and of wrong answers, and the largest errors.
     pub tally: CaseTally,
 }
 
-/// Results of all cases.
+/// Results of all hard cases.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct NumericsTable {
-    /// The results in the order of the catalogue.
+    /// The results, in the order of the report.
     pub rows: Vec<CaseResult>,
-    /// Number of inputs that were planned, for all cases together.
+    /// Number of inputs that should be tested, in all cases together.
     pub planned: u64,
 }
 
 impl NumericsTable {
-    /// Returns the number of wrong decisions by Pinhole.
+    /// Returns the number of inputs for which Pinhole's answer was wrong.
     pub fn wrong(&self) -> u64 {
         self.rows.iter().map(|row| row.tally.wrong[1]).sum()
     }
@@ -43,8 +43,8 @@ impl NumericsTable {
         self.inputs() == self.planned
     }
 
-    /// Converts the table to JSON. Null stands for an infinite error, such as that of a distance
-    /// that is not found at all, and for numbers that were not measured or do not apply to a case.
+    /// Converts the table to JSON. Null stands for an infinite error (for example, that a surface
+    /// was not found), and for numbers that were not measured.
     #[doc(hidden)]
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|CaseResult { case, tally }| {
@@ -101,8 +101,8 @@ impl fmt::Display for NumericsTable {
     }
 }
 
-/// Returns the cells of a row: the case, its title, wrong decisions and errors of the textbook and
-/// of Pinhole, and the bound.
+/// Returns the cells of a row: the case's name and title, the wrong answers of the textbook
+/// formulas and of Pinhole, their largest errors, and the guaranteed bound.
 fn cells(CaseResult { case, tally }: &CaseResult) -> [String; 7] {
     let [theirs, ours] = if case.decides() {
         [share(tally.wrong[0], tally.inputs), grouped(tally.wrong[1])]
@@ -115,7 +115,8 @@ fn cells(CaseResult { case, tally }: &CaseResult) -> [String; 7] {
     [id, title, theirs, ours, their_error, our_error, bound]
 }
 
-/// Formats `count` as a percentage of `inputs`, with an exponent if it is below 0.1.
+/// Formats `count` as a percentage of `inputs`. If it is below 0.1 %, it is written with an
+/// exponent.
 fn share(count: u64, inputs: u64) -> String {
     let percent = 100.0 * count as f64 / inputs as f64;
     match count {
@@ -125,8 +126,8 @@ fn share(count: u64, inputs: u64) -> String {
     }
 }
 
-/// Formats an error with two decimals, or with one digit and an exponent if it is very small or
-/// large. Returns a dash if no error was measured.
+/// Formats an error with two decimals. A very small or large error has one digit and an exponent,
+/// and an error that was not measured is a dash.
 fn size(error: Option<f64>) -> String {
     let Some(error) = error else {
         return "-".to_owned();

@@ -1,4 +1,5 @@
-//! Compares what the oracle, the textbook and Pinhole see at sample points.
+//! Compares what is seen at points of a picture by the oracle (the reference in hundreds of bits),
+//! by textbook formulas, and by Pinhole.
 
 use dashu_float::ops::Abs;
 use glam::{DVec2, DVec3, dvec2};
@@ -17,20 +18,21 @@ use crate::{
     tracer::{Basis, World, ray},
 };
 
-/// Counts and measurements of a case. In each pair, the textbook comes first and Pinhole second.
+/// Results of testing a case. In each pair, the first element is for the textbook formulas, and the
+/// second for Pinhole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct CaseTally {
     /// Number of inputs tested.
     pub inputs: u64,
-    /// Number of decisions that differ from the oracle's.
+    /// Numbers of answers that differ from the oracle's, i.e. of wrong ones.
     pub wrong: [u64; 2],
-    /// Greatest error of a measured number, in the case's unit; `None` if none was measured.
+    /// Largest errors of the measured numbers, in the case's unit; `None` if nothing was measured.
     pub error: [Option<f64>; 2],
 }
 
 impl CaseTally {
-    /// Returns the sum of two tallies, with the greater errors.
+    /// Combines two results: adds their counts, and keeps the larger errors.
     pub fn plus(self, other: Self) -> Self {
         Self {
             inputs: self.inputs + other.inputs,
@@ -39,7 +41,8 @@ impl CaseTally {
         }
     }
 
-    /// Records a pair of errors; one that was not measured is `None`.
+    /// Records two errors, of the textbook formulas and of Pinhole. `None` stands for an error that
+    /// was not measured.
     pub fn errors(&mut self, errors: [Option<f64>; 2]) {
         self.error = [0, 1].map(|i| greater(self.error[i], errors[i]));
     }
@@ -50,8 +53,8 @@ fn greater(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::max)
 }
 
-/// Measures the greatest error of a camera's axes, in units of 2^−53, for the textbook's formulas
-/// and for Pinhole. Records both errors in `tally` as one input.
+/// Measures the largest errors of a camera's axes, in units of 2^−53, for the textbook formulas and
+/// for Pinhole. Records them in `tally` as one input.
 pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     let scene = scene(*camera, &[]);
     let oracle = Oracle::new(&scene, ALL_SIZES);
@@ -73,7 +76,7 @@ pub(super) fn axes(camera: &Camera, tally: &mut CaseTally) {
     tally.errors(errors.map(Some));
 }
 
-/// A scene prepared for the oracle, for the textbook's formulas, and for Pinhole.
+/// A scene that was prepared for the oracle, for the textbook formulas, and for Pinhole.
 #[derive(Debug)]
 pub(super) struct Trial {
     scene: Scene,
@@ -82,17 +85,19 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of decided inputs for each input that is also measured: the errors of the distance and of
-/// the point that are seen. A measurement takes longer than a decision.
+/// Number of inputs per measurement. For every input, it is tested whether the right object is
+/// seen. For one in this number, the errors of the distance and of the point are also measured,
+/// which takes longer. With 16, there are many measurements, and they take little of the time.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Average number of searches for a boundary between colours, of which one uses the oracle's
-/// decisions and the others use Pinhole's. A search with the oracle takes about six times as long
-/// as testing the inputs beside the boundary.
+/// Boundaries between colours are searched by Pinhole's answers or, once in this number of searches
+/// on average, by the oracle's (the reference). The oracle also finds boundaries that Pinhole does
+/// not see, but its search takes about six times as long as testing the inputs beside the boundary.
+/// With 8, the oracle's searches take less than half of the time.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {
-    /// Prepares a scene. The oracle computes with numbers of `bits` bits.
+    /// Prepares a scene. The oracle will compute with `bits` bits.
     pub fn new(scene: Scene, bits: usize) -> Self {
         Self {
             world: World::new(&scene),
@@ -102,8 +107,9 @@ impl Trial {
         }
     }
 
-    /// Compares what the oracle, the textbook and Pinhole see at a sample point, and counts wrong
-    /// decisions in `tally`. One of every [`INPUTS_PER_MEASUREMENT`] inputs is also measured.
+    /// Compares what the oracle, the textbook formulas and Pinhole see at a point, and counts wrong
+    /// answers in `tally`. For one of [`INPUTS_PER_MEASUREMENT`] inputs, errors of numbers are
+    /// measured, too.
     pub fn decide(&self, point: SamplePoint, tally: &mut CaseTally) {
         let truth = self.truth(point);
         let pixels = point.map(|(pixel, offset)| f64::from(pixel) + 0.5 + offset);
@@ -130,16 +136,16 @@ impl Trial {
         self.world.palette()[self.world.slot_at(x, y, dvec2(dx, dy))]
     }
 
-    /// Returns the colour that is seen: that of an object (for a checkerboard, of the square's
-    /// colour), or the background if `seen` is `None`.
+    /// Returns the colour that stands for what is seen: an object, with one of its two colours if
+    /// it is a checkerboard. If `seen` is `None`, it is the background's.
     fn color(&self, seen: Option<(usize, bool)>) -> Color {
         let background = self.scene.image.background;
         seen.map_or(background, |(object, is_odd)| color(object, is_odd))
     }
 
     /// Measures the errors of the distance and of the point that are seen at `pixels`, and records
-    /// the greater of the two in `tally`. The error of the distance is in units in its last place,
-    /// that of the point in units in the last place of its greatest coordinate.
+    /// the larger one in `tally`. The unit is the last place of the distance or of the point's
+    /// largest coordinate.
     fn measure(&self, pixels: DVec2, tally: &mut CaseTally) {
         let r = self.oracle.direction_through(pixels, DVec2::ZERO);
         let Some(seen) = self.oracle.seen(&r) else {
@@ -159,8 +165,8 @@ impl Trial {
         tally.errors([theirs, Some(ours)]);
     }
 
-    /// Returns the greater of two errors, in units in the last place: that of the distance `t` and
-    /// that of `point`.
+    /// Returns the larger of two errors: that of the distance `t`, in units in its last place, and
+    /// that of `point`, in units in the last place of its largest coordinate.
     fn distance(&self, t: f64, point: DVec3, true_t: &N, true_point: &V) -> f64 {
         let coordinates = true_point.iter().map(|x| x.to_f64().value().abs());
         let greatest = coordinates.fold(0.0, f64::max);
@@ -169,8 +175,8 @@ impl Trial {
         of_point.into_iter().fold(of_t, f64::max)
     }
 
-    /// Returns the error of `x` in units in the last place of `of`. If `x` is not finite, the error
-    /// is infinite.
+    /// Returns the error of `x` in units in the last place of the number `of`. It is infinite if
+    /// `x` is not finite.
     fn ulps(&self, x: f64, truth: &N, of: f64) -> f64 {
         if !x.is_finite() {
             return f64::INFINITY;
@@ -180,14 +186,14 @@ impl Trial {
         error.to_f64().value()
     }
 
-    /// Tests `count` inputs close to boundaries between colours, along random rows and columns. The
-    /// inputs lie at the neighbouring `f64`s on both sides of each boundary, and at distances from
-    /// it that are uniform on a logarithmic scale. Most boundaries are found by Pinhole's own
-    /// decisions. Some are found by the oracle's, in case Pinhole does not see a boundary at all.
+    /// Tests `count` inputs close to boundaries between colours: the neighbouring `f64`s on both
+    /// sides, and points at distances that are uniform on a logarithmic scale. The boundaries are
+    /// searched in random rows and columns, mostly by Pinhole's answers. Some are searched by the
+    /// oracle's, in case Pinhole does not see a boundary.
     pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
-        // If too few boundaries are found in `4 · count` searches, the remaining inputs lie
-        // anywhere.
+        // A scene may have few boundaries. After four searches per input, the remaining inputs are
+        // tested anywhere in the picture.
         let mut patience = 4 * count;
         while tally.inputs < end && patience > 0 {
             patience -= 1;
@@ -206,8 +212,8 @@ impl Trial {
     }
 
     /// Searches a random row (`axis` 0) or column (`axis` 1) for a point where the colour `seen`
-    /// changes. Returns the pixel and the last offset before the change. Returns `None` if both
-    /// ends of the search have the same colour.
+    /// changes. Returns the last point before the change, or `None` if both ends of the search have
+    /// the same colour.
     fn boundary(
         &self,
         random: &mut CaseRng,
@@ -233,11 +239,13 @@ impl Trial {
         }
         let (mut low, mut high) = (-0.5, 0.5_f64.next_down());
         if at(ends[0], high) == first {
-            // The pixel begins and ends with one colour, so the colour changes at its far edge.
+            // The pixel has one colour from its start to its end, so the colour changes between it
+            // and the next pixel.
             low = high;
         }
-        // Bisect down to neighbouring `f64`s. Near 0, 130 steps end at a distance that is smaller
-        // than anything that matters.
+        // The interval is bisected until its ends are neighbouring `f64`s. Near 0, `f64`s are
+        // extremely dense, so there are at most 130 bisections. The interval is then shorter than
+        // any useful distance.
         for _ in 0..130 {
             let middle = low + (high - low) / 2.0;
             if middle == low || middle == high {
@@ -253,7 +261,7 @@ impl Trial {
         Some(point)
     }
 
-    /// Tests inputs on and beside `boundary`, at most 12 and at most `count`.
+    /// Tests at most 12 inputs on and beside a boundary between colours, but not more than `count`.
     fn beside(
         &self,
         random: &mut CaseRng,

@@ -1,5 +1,5 @@
-//! Hard cases of triangles: tiny ones, needles, shared edges, normals of all lengths, and vertices
-//! behind the eye.
+//! Hard cases of triangles: tiny and extremely thin ones, shared edges, normals of all lengths, and
+//! vertices behind the eye.
 
 use glam::{DVec3, dvec3};
 
@@ -10,7 +10,7 @@ use crate::{
     scene::Lens,
 };
 
-/// Hard cases of triangles, in the order in which the report lists them.
+/// Hard cases of triangles, in the order of the report.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "T1", title: "triangles of 1e-3 … 1e-9 m", bound: 2.0, subject: Seen(tiny) },
@@ -23,7 +23,8 @@ pub const CASES: &[Case] = &[
     Case { id: "T7", title: "vertices behind the eye", bound: 2.0, subject: Seen(around) },
 ];
 
-/// Lengths of the sides of the triangle in figure 9.9, the picture of the assignment.
+/// Lengths of a triangle's sides, in metres. They are those of the triangle in
+/// `examples/figure_9_9.scn`.
 const SIDES: DVec3 = dvec3(2.0, 2.0, 1.0);
 
 fn tiny(random: &mut CaseRng) -> CaseScene {
@@ -48,13 +49,14 @@ fn slivers(random: &mut CaseRng) -> CaseScene {
     input(camera, &[shape])
 }
 
-/// Lengths of the sides of a triangle with integer vertices: (∓9, −4) and (0, 8), from the
-/// centroid. The triangle rotated by 180° about the middle of an edge shares this edge. In a plane
-/// that is perpendicular to a coordinate axis, the two edges coincide exactly.
+/// Lengths of the sides of a triangle whose vertices have integer coordinates in its plane: (−9,
+/// −4), (9, −4) and (0, 8), relative to its centroid. Since these are exact, two such triangles can
+/// share an edge without any rounding.
 const LATTICE: DVec3 = dvec3(15.0, 15.0, 18.0);
 
-/// For each edge of a [`LATTICE`] triangle, the centroid of the rotated triangle that shares the
-/// edge, and some points of the edge. All are relative to the first triangle's centroid.
+/// For each edge of a triangle with the sides [`LATTICE`], the centroid of a triangle that shares
+/// the edge and is rotated by 180°, and some points of the edge. All coordinates are relative to
+/// the first triangle's centroid.
 #[rustfmt::skip]
 const SHARED: [([f64; 2], &[[f64; 2]]); 3] = [
     ([0.0, -8.0], &[[-9.0, -4.0], [-4.0, -4.0], [0.0, -4.0], [7.0, -4.0], [9.0, -4.0]]),
@@ -82,8 +84,8 @@ fn shared_edges(random: &mut CaseRng) -> CaseScene {
     input(camera(eye, middle), &shapes)
 }
 
-/// Returns two triangles at a distance of 64, where the corners of pixels show points with integer
-/// coordinates.
+/// Returns two triangles that share an edge, at a distance of 64 units. The corners of pixels then
+/// show points with integer coordinates, some of which lie exactly on the edge.
 fn lattice_points(random: &mut CaseRng) -> CaseScene {
     let size = libm::exp2(random.whole(-8, 8));
     let (other, points) = random.pick(&SHARED);

@@ -1,8 +1,8 @@
-//! Charts of error against time and against samples, as SVG.
+//! Charts of error against time and of error against samples, as SVG.
 //!
-//! Both axes are logarithmic. Each line is labelled at its end, so that no legend is needed. Its
-//! marker and its dash identify it even in black and white. Black is written as CSS's
-//! `currentColor`, so that the page may be dark.
+//! Both axes are logarithmic. Each method's line has its name at the end, so that no legend is
+//! needed. Markers and dashes distinguish the lines even in black and white. Black is written as
+//! CSS's `currentColor`, so that it becomes light on a dark page.
 
 use std::ops::Range;
 
@@ -27,25 +27,26 @@ use super::{
 };
 use crate::{diagnostic::escaped, numbers};
 
-/// Width and height of a chart, in pixels. The chart is small so that its letters are still legible
-/// on a phone, whose screen is 400 CSS pixels wide.
+/// Width and height of a chart, in pixels. A larger chart would be reduced more on a phone, whose
+/// screen is about 400 CSS pixels wide, so that its letters could hardly be read.
 const SIZE: (u32, u32) = (560, 440);
 
-/// Width of the labels to the right of the chart, in pixels; the longest label is `multi_jittered`.
+/// Width of the space for methods' names at the right of a chart, in pixels. The longest name,
+/// `multi_jittered`, fits into it.
 const LABELS: i32 = 162;
 
-/// Minimum vertical distance between labels, in pixels. Labels that would be closer are moved
-/// apart.
+/// Minimum vertical distance between the methods' names at the right of a chart, in pixels. It is a
+/// little more than the height of the letters, 18, so that the names do not overlap.
 const LABEL_HEIGHT: i32 = 21;
 
-/// The quantity on the horizontal axis: its names, and how it is computed and formatted.
+/// The quantity on a chart's horizontal axis, with the texts for it.
 struct HorizontalAxis {
     title: &'static str,
     name: &'static str,
     of: fn(&SeriesPoint) -> f64,
     written: fn(f64) -> String,
-    /// Value of the exact method on this axis, such as its CPU time. It is drawn as a vertical
-    /// line, because the method's error is too small for the chart.
+    /// Value of the exact method on this axis, for example its CPU time. A vertical line marks it,
+    /// since the method's error is too small for the chart. `None` if there is no such value.
     exact: Option<f64>,
 }
 
@@ -73,8 +74,8 @@ pub fn against_samples(measured: &Measurement) -> String {
     svg(measured, &samples)
 }
 
-/// Returns the requested errors that the chart marks: those within a factor of 30 of a measured
-/// error. Errors farther away would make the chart's range too large.
+/// Returns the requested errors that a chart marks: those within a factor of 30 of a measured
+/// error. Marking others would make the chart's range too large.
 pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
     let points = measured.series.iter().flat_map(|series| &series.points);
     let found: Vec<_> = points.map(|point| point.typical().error).collect();
@@ -87,7 +88,7 @@ pub fn shown_errors(measured: &Measurement) -> Vec<f64> {
 
 fn svg(measured: &Measurement, against: &HorizontalAxis) -> String {
     let mut svg = String::new();
-    // Writing to a string can fail only in plotters' layout of text, which is not used.
+    // Drawing to a string fails only if plotters measures text, which it does not here.
     let canvas = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
     let done = draw(canvas, measured, against);
     debug_assert!(done.is_ok(), "{done:?}");
@@ -105,7 +106,8 @@ fn svg(measured: &Measurement, against: &HorizontalAxis) -> String {
 
 fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Drawn {
     let wanted = shown_errors(measured);
-    // A value that is not finite and positive has no logarithm, so no line is drawn.
+    // Only positive, finite numbers have a place on a logarithmic axis, so other values are not
+    // drawn.
     let exact = against.exact.filter(|x| x.is_finite() && *x > 0.0);
     let lines = measured.series.iter().map(|series| {
         let place = |point: &SeriesPoint| ((against.of)(point), point.typical().error);
@@ -175,9 +177,9 @@ fn draw(canvas: Canvas, measured: &Measurement, against: &HorizontalAxis) -> Dra
     canvas.present()
 }
 
-/// Draws the vertical line of the exact method, with an arrow downwards, since its error lies below
-/// the chart. The lines of the other methods run from the top left to the bottom right, so the
-/// label is placed off this diagonal.
+/// Draws the vertical line of the exact method. An arrow at its lower end shows that the method's
+/// error lies below the chart. The other methods' lines run from the top left to the bottom right,
+/// so the label is placed in another corner.
 fn draw_exact(canvas: &Canvas, x: i32, columns: &Range<i32>, rows: &Range<i32>) -> Drawn {
     let end = rows.end - 2;
     let head = [(x - 6, end - 10), (x, end), (x + 6, end - 10)];
@@ -201,21 +203,21 @@ fn letters(size: f64) -> TextStyle<'static> {
     TextStyle::from(("sans-serif", size).into_font())
 }
 
-/// Returns the range of an axis: from the least of `values`, divided by 1.5, to the greatest, times
-/// 1.5.
+/// Returns the range of an axis that contains `values`. It is wider by a factor of 1.5 at both
+/// ends.
 fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let wider = |(low, high): (f64, f64), value| (low.min(value), high.max(value));
     let (low, high) = values.fold((f64::INFINITY, 0.0), wider);
     if low <= high {
         low / 1.5..high * 1.5
     } else {
-        // There are no values, so any axis will do.
+        // If there are no values, any range will do.
         0.1..1.0
     }
 }
 
-/// Returns a logarithmic axis. It has labels at 1, 2 and 5 times the powers of ten, or only at the
-/// powers if there would be more than five, and grid lines at all digits times the powers.
+/// Returns a logarithmic axis. It has labels at 1, 2 and 5 times the powers of ten or, if these
+/// would be more than five labels, only at the powers. Grid lines are at 1 to 9 times the powers.
 fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let marks = |digits: &[i32]| -> Vec<f64> {
         let powers = libm::log10(ends.start).floor() as i32..=libm::log10(ends.end) as i32;
@@ -233,19 +235,19 @@ fn axis(ends: &Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
         .with_light_points(marks(&[1, 2, 3, 4, 5, 6, 7, 8, 9]))
 }
 
-/// Returns a height in pixels for each line's label, in the order of `ends`. The labels are near
-/// the ends of their lines and do not overlap.
+/// Returns the vertical positions, in pixels, of the methods' names at the right of a chart. Each
+/// is near the end of the method's line, given in `ends`, and no two names overlap.
 fn spread_out(ends: &[CanvasPoint], rows: &Range<i32>) -> Vec<i32> {
     let mut order: Vec<_> = (0..ends.len()).collect();
     order.sort_by_key(|&at| ends[at].1);
     let mut heights = vec![0; ends.len()];
-    // Labels are placed from the top downwards, each as high as possible.
+    // From the top downwards, each name is placed as high as the names above allow.
     let mut free = rows.start;
     for &at in &order {
         heights[at] = ends[at].1.max(free);
         free = heights[at] + LABEL_HEIGHT;
     }
-    // Labels below the chart's end are then moved up, from the bottom upwards.
+    // From the bottom upwards, names that are below the chart are moved up.
     let mut free = rows.end;
     for &at in order.iter().rev() {
         heights[at] = heights[at].min(free);

@@ -1,5 +1,5 @@
-//! Estimates of the samples and the time that each method needs for an error, and a ranking of the
-//! methods by CPU time.
+//! Estimates of the samples and the time that each method needs to reach an error, and a ranking of
+//! the methods by CPU time.
 
 use super::{
     results::{Measurement, MethodSeries, Run, SeriesPoint, end},
@@ -7,51 +7,51 @@ use super::{
 };
 use crate::scene::Method;
 
-/// Estimated samples and time that a method needs to reach an error.
+/// Estimate of what a method needs to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {
-    /// Samples per pixel; `None` for the exact method.
+    /// Samples per pixel; `None` for the exact method, which takes none.
     pub per_pixel: Option<f64>,
     /// Estimated CPU time, in seconds.
     pub cpu: f64,
-    /// Least and greatest CPU time estimated from single runs, in seconds.
+    /// Least and greatest CPU time, in seconds, if each run is used alone for the estimate.
     pub cpu_runs: [f64; 2],
     /// Estimated elapsed time, in seconds.
     pub wall: f64,
-    /// Whether the error lies beyond the measured range, so that the estimate is extrapolated.
+    /// Whether no measured number of samples reaches the error, so that the estimate is
+    /// extrapolated.
     pub is_extrapolated: bool,
 }
 
 impl Estimate {
-    /// Returns whether the runs leave open which of two methods is faster: the time of one method
-    /// is within the range of the other's runs.
+    /// Returns whether this method may be as fast as the `fastest` one, since the measurements do
+    /// not distinguish them: the time of one lies within the range of the other's single runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
 }
 
-/// The methods that reach an error, sorted by CPU time.
+/// The methods that reach an error, ranked by CPU time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// The method with the least CPU time, and the methods that are about as fast.
+    /// The method with the least CPU time, and others whose times do not clearly differ from it.
     pub fastest: Vec<(Method, Estimate)>,
-    /// The other methods, by CPU time.
+    /// The other methods, sorted by CPU time.
     pub others: Vec<(Method, Estimate)>,
 }
 
 impl Measurement {
-    /// Estimates the samples and the time that a sampled method needs to reach an error. Returns
-    /// `None` if more samples do not reduce the error. Returns `None` also if `error` is not above
-    /// the root mean square of the exact picture's error bounds, since smaller errors cannot be
-    /// measured.
+    /// Estimates the samples and the time that a method needs to reach an error. Returns `None` if
+    /// more samples do not reduce the method's error. Also returns `None` if `error` is too small
+    /// to be measured, i.e. not above the error bound of the exact picture (as a root mean square).
     pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
 
-    /// Estimates the time that the exact method needs for an error. Returns `None` if the method
-    /// was not measured. Returns `None` also if `error` is not above the root mean square of the
-    /// exact picture's error bounds.
+    /// Estimates the time that the exact method needs. Returns `None` if it was not measured. Also
+    /// returns `None` if `error` is not above the error bound of the exact picture (as a root mean
+    /// square).
     pub fn exact_estimate(&self, error: f64) -> Option<Estimate> {
         let runs = self.exact.as_ref().filter(|_| self.tells(error))?;
         let Run { cpu, wall, .. } = Run::typical(runs);
@@ -68,14 +68,14 @@ impl Measurement {
         error > self.reference.root_mean_square_bound()
     }
 
-    /// Ranks the methods that reach an error by CPU time. Extrapolated estimates come after
-    /// all others, even if their times are less.
+    /// Ranks the methods that reach an error by CPU time. Methods with extrapolated estimates come
+    /// last, since such estimates are uncertain.
     pub fn ranking(&self, error: f64) -> Ranking {
         let estimate = |it: &MethodSeries| Some((it.method, self.estimate(it, error)?));
         let sampled = self.series.iter().filter_map(estimate);
         let exact = self.exact_estimate(error).map(|it| (Method::Exact, it));
         let mut all: Vec<_> = sampled.chain(exact).collect();
-        // If the system does not report CPU time, no method can be ranked.
+        // If the system does not report CPU times, there is nothing to rank.
         all.retain(|(_, estimate)| estimate.cpu.is_finite());
         all.sort_by(|(_, a), (_, b)| {
             let measured_first = a.is_extrapolated.cmp(&b.is_extrapolated);
@@ -91,17 +91,17 @@ impl Measurement {
     }
 }
 
-/// A number of samples per pixel and its result: of one run, or typical of all its runs.
+/// A number of samples per pixel, with the times and the error that were measured for it.
 type Measured = (f64, Run);
 
 impl MethodSeries {
-    /// Estimates the samples and the time that the method needs for an error. If the smallest
-    /// measured number of samples suffices, returns it. Returns `None` if more samples do not
+    /// Estimates the samples and the time that the method needs to reach an error. Returns the
+    /// smallest measured number of samples if it suffices. Returns `None` if more samples do not
     /// reduce the error.
     ///
-    /// Errors are assumed to fall as a power of the number of samples. Between two measured
-    /// numbers, the power is that of the line through both in logarithms. Beyond the last, it is
-    /// the slope at the `end`. Times are assumed to grow linearly with the samples.
+    /// The error is assumed to fall as a power of the number of samples, i.e. along a straight line
+    /// in logarithms. Between two measured numbers, it is the line through both. Beyond the last,
+    /// it is the line through the last three. Times are assumed to grow linearly with the samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));
@@ -119,11 +119,11 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // From the index `enough` on, no measured error is greater than the requested one.
+        // Index of the first number of samples from which on all measured errors are small enough.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
-            // Fewer samples might suffice, but none were measured.
+            // Fewer samples may suffice, but were not measured.
             Some(_) if enough == 0 => first,
             Some(many) => self.between(&steps[enough - 1], many, error),
             None => {
@@ -144,11 +144,12 @@ impl MethodSeries {
         })
     }
 
-    /// Interpolates the samples per pixel at which the error is `error`. With `few` samples the
-    /// measured error is greater, with `many` it is not.
+    /// Interpolates the number of samples per pixel at which the error is `error`. It lies between
+    /// two measured numbers: with `few` samples the error is too large, and with `many` it is not.
     fn between(&self, (few, of_few): &Measured, (many, of_many): &Measured, error: f64) -> f64 {
         let share = if of_many.error == 0.0 {
-            // If `many` samples have no error at all, they suffice for every request.
+            // An error of 0 has no logarithm. In this case, `many` samples are returned, which
+            // suffice.
             1.0
         } else {
             libm::log(of_few.error / error) / libm::log(of_few.error / of_many.error)
@@ -161,10 +162,10 @@ impl MethodSeries {
     }
 }
 
-/// Returns the least square or product of two neighbouring integers that is at least `per_pixel`.
-/// Multi-jittered sampling divides the pixel into a grid with as many cells as samples. Only for
-/// these numbers, the grid is nearly square; for a prime number, it is a single row. The
-/// interpolation between squares therefore holds only for them.
+/// Returns the least number n·n or n·(n + 1) that is at least `per_pixel`, for an integer n.
+/// Multi-jittered sampling divides the pixel into a grid of as many cells as samples. For such a
+/// number, the grid is nearly square; for others, it may be far from square (for a prime number, it
+/// is one row), and the error may then exceed the interpolated one.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
     let next = root + 1.0;
@@ -173,9 +174,9 @@ fn oblong(per_pixel: f64) -> f64 {
     enough.unwrap_or(per_pixel)
 }
 
-/// Returns the time that `per_pixel` samples take, by linear interpolation between the neighbouring
-/// measured numbers of samples. Above the greatest, the line through the first and the last of
-/// `steps` is used. `per_pixel` must be at least the number of the first step.
+/// Returns the time that `per_pixel` samples take. It is interpolated linearly between the
+/// neighbouring measured numbers of samples in `steps`. Above the last one, the line through the
+/// first and the last is extended.
 fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
     let times: Vec<_> = times.collect();
@@ -186,7 +187,7 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // The slope is clamped to 0, because more samples do not take less time.
+        // Measured times may fall by chance, but more samples never take less time.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }

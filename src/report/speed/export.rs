@@ -1,5 +1,5 @@
-//! The measurement in formats for programs: CSV, with a row for each method and number of samples,
-//! and JSON.
+//! Writes a measurement for other programs: as CSV, with a row for each method and number of
+//! samples, and as JSON.
 
 use std::io;
 
@@ -12,9 +12,9 @@ use super::{
     summary::verdicts,
 };
 
-/// A row of the CSV file. Times are medians in seconds: CPU time in `time`, elapsed time in `wall`.
-/// Errors are in linear light. The row of the exact method has no number of samples, and its error
-/// is a bound.
+/// A row of the CSV file. Times are medians in seconds: CPU time in `time`, and elapsed time in
+/// `wall`. Errors are in linear light. The exact method has no number of samples, and an error
+/// bound instead of an error.
 #[derive(Default, Serialize)]
 struct CsvRow {
     method: &'static str,
@@ -28,7 +28,7 @@ struct CsvRow {
     bound: Option<f64>,
 }
 
-/// Returns the measurement as CSV: a row of names, then a row for each method and number of
+/// Returns the measurement as CSV: a row of column names, then a row for each method and number of
 /// samples.
 ///
 /// # Errors
@@ -69,7 +69,7 @@ fn row(method: &'static str, runs: &[Run]) -> CsvRow {
     }
 }
 
-/// Converts runs to JSON: their medians, and the values of each run.
+/// Converts runs to JSON: the typical times and error, and those of each run.
 fn of_runs(runs: &[Run]) -> Value {
     let each = |number: fn(&Run) -> f64| runs.iter().map(number).collect::<Vec<_>>();
     let Run { cpu, wall, error } = Run::typical(runs);
@@ -81,7 +81,7 @@ fn of_runs(runs: &[Run]) -> Value {
     })
 }
 
-/// Converts the whole measurement to JSON. A number that is not finite becomes null.
+/// Converts a measurement to JSON. Numbers that are not finite become null.
 pub fn to_json(measured: &Measurement) -> Value {
     let whole = measured.whole();
     let (machine, reference) = (&measured.machine, &measured.reference);

@@ -1,5 +1,5 @@
-//! Line styles of the methods: a colour, a marker and a dash. Each of the three alone distinguishes
-//! a method from its neighbours in the chart.
+//! Line styles of the sampling methods in a chart: colours, markers and dashes. Methods whose lines
+//! usually lie close to each other differ in all three.
 
 use std::io;
 
@@ -13,22 +13,22 @@ use plotters::{
 
 use crate::scene::Method;
 
-/// The canvas of a chart.
+/// The drawing area of a chart, as SVG.
 pub type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Result of drawing on a chart's canvas.
+/// Result of drawing a part of a chart.
 pub type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
 
-/// A point of the canvas, in pixels.
+/// A point of a chart, in pixels from the top left.
 pub type CanvasPoint = (i32, i32);
 
 /// Style of a method's line in a chart.
 #[derive(Clone, Copy)]
 pub struct LineStyle {
     pub color: RGBColor,
-    /// Lengths of dashes and of gaps, in pixels; `None` for a solid line.
+    /// Lengths of a dash and of the gap after it, in pixels; `None` for a solid line.
     dash: Option<(u32, u32)>,
-    /// Outline of the marker, in pixels from its middle, and whether the marker is filled.
+    /// The marker's outline, in pixels from its centre, and whether it is filled.
     marker: (&'static [CanvasPoint], bool),
 }
 
@@ -63,7 +63,7 @@ impl LineStyle {
         }
     }
 
-    /// Draws a line through the points `places`.
+    /// Draws the method's line through the points `places`.
     pub fn line(self, canvas: &Canvas, places: &[CanvasPoint]) -> Drawn {
         let (places, style) = (places.to_vec(), self.color.stroke_width(2));
         match self.dash {

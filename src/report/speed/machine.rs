@@ -4,12 +4,11 @@ use std::{num::NonZero, thread};
 
 use crate::files::read_system_text;
 
-/// Properties of a machine that affect how long renders take.
+/// Properties of a machine that affect the time of renders.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Machine {
-    /// Name of the processor's model as the system reports it, or else the processor's
-    /// architecture.
+    /// Name of the processor's model, or its architecture if the system does not tell the model.
     pub processor: String,
     /// Number of processors that this process may use.
     pub processors: usize,
@@ -25,8 +24,8 @@ impl Machine {
     }
 }
 
-/// Returns the name of the processor's model from `/proc/cpuinfo`. Returns `None` if there is none,
-/// as on systems other than Linux, which provide the name only through their libraries.
+/// Returns the name of the processor's model from `/proc/cpuinfo`, or `None` if the file does not
+/// contain one. Systems other than Linux do not have the file.
 fn model() -> Option<String> {
     let table = read_system_text("/proc/cpuinfo")?;
     let line = table.lines().find(|line| line.starts_with("model name"))?;

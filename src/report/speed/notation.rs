@@ -1,13 +1,13 @@
-//! Formats of errors, times, numbers of samples and slopes.
+//! Formats errors, times, numbers of samples and slopes for people.
 
 use super::{estimate::Estimate, results::EndSlope};
 use crate::numbers;
 
-/// Mark in a table in place of a number that is not known.
+/// Mark in a table for a number that is not known: an en dash.
 pub const UNKNOWN: &str = "–";
 
-/// Formats a requested error with all its digits, or as a fraction such as 1/256 if that is
-/// shorter.
+/// Formats an error that the user asked for, with all its digits. If a fraction such as 1/256 is
+/// shorter, it is used instead.
 pub fn asked_error(error: f64) -> String {
     let decimal = if error < 1e-4 {
         format!("{error:e}")
@@ -37,8 +37,8 @@ pub fn seconds(seconds: f64, digits: usize) -> String {
     }
 }
 
-/// Formats a time of an estimate in seconds or milliseconds, with three significant digits. An
-/// extrapolated time has only two, because more would not be meaningful.
+/// Formats an estimated time with three significant digits. An extrapolated time has only two,
+/// since more would not be meaningful, and the mark `~`.
 pub fn time(estimate: &Estimate, time: f64) -> String {
     if estimate.is_extrapolated {
         format!("~{}", seconds(time, 2))
@@ -47,7 +47,8 @@ pub fn time(estimate: &Estimate, time: f64) -> String {
     }
 }
 
-/// Formats the samples per pixel of an estimate. Returns an empty string for the exact method.
+/// Formats an estimated number of samples per pixel. It is empty for the exact method, which takes
+/// none.
 pub fn samples(estimate: &Estimate) -> String {
     match estimate.per_pixel {
         None => String::new(),
@@ -56,7 +57,7 @@ pub fn samples(estimate: &Estimate) -> String {
     }
 }
 
-/// Formats a slope with its standard error, if it has one.
+/// Formats a slope, with its standard error if that is known.
 pub fn slope(slope: Option<EndSlope>) -> String {
     let signed = |number: f64| format!("{number:.2}").replace('-', "−");
     match slope {
@@ -68,7 +69,7 @@ pub fn slope(slope: Option<EndSlope>) -> String {
     }
 }
 
-/// Formats a factor with two significant digits; a factor that is not known or beyond 10⁶ becomes
+/// Formats a factor with two significant digits. If it is unknown or above 10⁶, it becomes
 /// [`UNKNOWN`].
 pub fn factor(factor: Option<f64>) -> String {
     let known = factor.filter(|factor| *factor <= 1e6);
@@ -83,7 +84,7 @@ pub fn percent(share: f64) -> String {
     }
 }
 
-/// Formats a count with the noun `what`, in the plural unless the count is 1.
+/// Formats a count with the noun `what`, for example `1 run` or `3 runs`.
 pub fn plural(count: usize, what: &str) -> String {
     match count {
         1 => format!("1 {what}"),
@@ -92,7 +93,7 @@ pub fn plural(count: usize, what: &str) -> String {
 }
 
 /// Formats a number with `digits` significant digits, including trailing zeros. A very large or
-/// small number has an exponent and two digits.
+/// small number has two digits and an exponent.
 fn significant(number: f64, digits: usize) -> String {
     if number == 0.0 {
         return "0".to_owned();

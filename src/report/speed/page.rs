@@ -1,8 +1,8 @@
-//! One HTML page with the measurements: for each scene the verdicts, the charts, the table and the
+//! An HTML page about measurements: for each scene, recommended methods, charts, a table and
 //! pictures.
 //!
-//! The page is self-contained: its charts are inline SVG, its pictures `data:` URIs, and it runs no
-//! script. It is also well-formed XML.
+//! The page is a single file without scripts: its charts are inline SVG, and its pictures are
+//! `data:` URIs. It is also well-formed XML.
 
 use std::{fmt::Write, io};
 
@@ -21,10 +21,10 @@ use crate::{
 };
 
 /// Maximum width and height of the whole picture on the page, in pixels. A larger picture is
-/// reduced, since a page is not much wider, and the file stays small.
+/// reduced, so that the file stays small. This size still shows the objects clearly.
 const WHOLE: [u32; 2] = [640, 480];
 
-/// Returns the page, with a section for each scene.
+/// Returns the HTML page. It has a section for each scene.
 ///
 /// # Errors
 ///
@@ -54,7 +54,7 @@ fn write_escaped(out: &mut fmt::Formatter<'_>, value: &Value) -> fmt::Result {
     }
 }
 
-/// Returns the values that the page's template inserts into the section of a scene.
+/// Returns the values that the page's template needs for the section about a scene.
 fn section(measured: &Measurement) -> io::Result<Value> {
     let summary = table(measured, &measured.errors);
     let overrides = measured.subject.overrides.iter().map(|set| printable(set));
@@ -91,16 +91,16 @@ fn section(measured: &Measurement) -> io::Result<Value> {
     })
 }
 
-/// Returns the name and the picture of each method that has a picture.
+/// Returns the methods for which a picture was rendered: their names and pictures.
 fn shown_methods(measured: &Measurement) -> Vec<(&'static str, &MethodPicture)> {
     let series = measured.series.iter();
     let shown = series.filter_map(|series| Some((series.method.name(), series.picture.as_ref()?)));
     shown.collect()
 }
 
-/// Returns a description of the part of the picture that is shown for every method, and the
-/// pictures of this part: the exact one first, then one for each sampled method. Returns no
-/// description and no pictures if no sampled method has a picture.
+/// Returns the pictures that compare the methods, with a description. All show the same part of the
+/// scene's picture: first the exact one, then one for each method. Both are empty if no method has
+/// a picture.
 fn pictures(measured: &Measurement) -> io::Result<(String, Vec<Value>)> {
     let shown = shown_methods(measured);
     let Some(&(first, &MethodPicture { part, .. })) = shown.first() else {
@@ -140,11 +140,13 @@ fn whole(measured: &Measurement) -> io::Result<Value> {
     picture(&film, None, "the exact picture as a whole", about)
 }
 
-/// Factor by which the page magnifies the part of a picture that it shows for each method.
+/// Factor by which the page magnifies the pictures that compare the methods. With 5, single pixels
+/// are visible, and pictures of 48 pixels are 240 CSS pixels wide, so that several fit beside each
+/// other.
 const MAGNIFIED: u32 = 5;
 
-/// Returns the values that the template inserts into a figure: a picture and, below it, the heat
-/// map of its difference from the exact picture.
+/// Returns the values that the page's template needs for a picture. If `difference` is given, the
+/// heat map of the differences from the exact picture is shown below it.
 fn picture(film: &Film, difference: Option<&Film>, name: &str, about: String) -> io::Result<Value> {
     let difference = difference.map(film::data_uri).transpose()?;
     Ok(value! {

@@ -1,5 +1,4 @@
-//! Explains why sampling methods differ in a scene, in sentences with the numbers that were
-//! measured there.
+//! Explains why sampling methods differ in a scene, in sentences with measured numbers.
 
 use super::{
     notation::{asked_error, factor, percent, samples},
@@ -7,9 +6,9 @@ use super::{
 };
 use crate::scene::Method;
 
-/// Explains why the methods differ in this scene: which pixels they can err in, how the error falls
-/// there, and what the exact method does instead. Without measured series or mixed pixels, only the
-/// first sentence is returned.
+/// Returns sentences that explain why the methods differ in this scene: in which pixels they can
+/// err, how the error falls there, and what the exact method does instead. If no method was
+/// measured or all pixels have a single colour, there is only the first sentence.
 pub fn reasons(measured: &Measurement) -> Vec<String> {
     let mixture = measured.mixture;
     let (edges, board) = (percent(mixture.edges), percent(mixture.board));
@@ -37,7 +36,8 @@ pub fn reasons(measured: &Measurement) -> Vec<String> {
     reasons
 }
 
-/// Compares the method that needs the fewest samples for `error` with independent samples.
+/// Compares the method that needs the fewest samples for `error` with the method `random`, whose
+/// samples are independent.
 fn compared(measured: &Measurement, error: f64) -> Option<String> {
     let estimates = measured.series.iter().filter_map(|series| {
         let estimate = measured.estimate(series, error)?;
@@ -58,7 +58,8 @@ fn compared(measured: &Measurement, error: f64) -> Option<String> {
     })
 }
 
-/// Says how many samples per pixel the fastest method takes in the time of the exact picture.
+/// Compares the exact method with the fastest sampling method: says how many samples per pixel the
+/// sampling method takes in the CPU time of the exact method.
 fn in_exact_time(measured: &Measurement) -> Option<String> {
     let exact = measured.exact_estimate(1.0)?;
     let most = measured.series.iter().filter_map(|series| {

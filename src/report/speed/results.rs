@@ -1,4 +1,4 @@
-//! The request and the results of a measurement: plain data, and numbers derived from it.
+//! The request for a measurement, and its results: plain data, and numbers that follow from them.
 
 use std::time::Duration;
 
@@ -9,27 +9,29 @@ use super::{
 };
 use crate::{area::Area, film::Film, render::Exact, scene::Method};
 
-/// The measured scene, as the user named it.
+/// The measured scene, as the user named it on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MeasuredScene {
-    /// Name of the scene as the user gave it.
+    /// Name of the scene's file.
     pub name: String,
-    /// Values of the scene that the command line overrides.
+    /// Overrides of the scene's values, i.e. `--set` arguments.
     pub overrides: Vec<String>,
 }
 
 /// What the user asks to be measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// Methods to measure, possibly including `exact`.
+    /// Methods to measure. They may include `exact`.
     pub methods: Vec<Method>,
-    /// Samples per pixel to measure; if empty, powers of 4, as many as the time permits.
+    /// Numbers of samples per pixel to measure. If empty, these are 1, 4, 16, …, as many as there
+    /// is time for.
     pub samples: Vec<u64>,
-    /// Number of runs per method and number of samples; `None` for as many as the time permits.
+    /// Number of runs of each method with each number of samples. If `None`, as many as there is
+    /// time for.
     pub runs: Option<u64>,
-    /// Errors for which samples and time are estimated, in linear light.
+    /// Errors, in linear light, for which the needed samples and time are estimated.
     pub errors: Vec<f64>,
-    /// Time that the measurement may take, if the samples or the runs are not given.
+    /// Time that the measurement may take. It has no effect if both `samples` and `runs` are given.
     pub budget: Duration,
 }
 
@@ -42,96 +44,101 @@ pub struct Measurement {
     pub machine: Machine,
     /// Number of rendering threads.
     pub threads: usize,
-    /// Seed of the scene, from which the runs' seeds are derived.
+    /// Seed of the scene. The seeds of the runs are derived from it.
     pub seed: u64,
     /// Measured numbers of samples per pixel, in ascending order.
     pub rungs: Vec<u64>,
     /// Requested errors, in linear light.
     pub errors: Vec<f64>,
-    /// The exact picture, with which all renders are compared.
+    /// The exact picture, which is computed without samples. All renders are compared with it.
     pub reference: Exact,
-    /// Shares of the pixels in which a sampling method can err.
+    /// Shares of the pixels that show several colours. Only in these pixels can a sampling method
+    /// err.
     pub mixture: Mixture,
-    /// Renders by the exact method, if it was requested.
+    /// Runs of the exact method; `None` if it was not requested.
     pub exact: Option<Vec<Run>>,
-    /// Results of the sampled methods, in the order of the methods in the language's reference.
+    /// Results of the sampling methods, in the order in which the language's reference lists them.
     pub series: Vec<MethodSeries>,
     /// Whether the user interrupted the measurement.
     pub interrupted: bool,
 }
 
-/// Results of a sampled method on a scene.
+/// Results of measuring one sampling method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodSeries {
     /// Method that was measured.
     pub method: Method,
     /// Results for each number of samples per pixel, in ascending order.
     pub points: Vec<SeriesPoint>,
-    /// Picture that a page shows to compare methods. Each method's number of samples takes about
-    /// the same CPU time. `None` if the pictures were not rendered.
+    /// Picture by which an HTML page compares the methods. Its number of samples is chosen so that
+    /// all methods take about the same CPU time. `None` if it was not rendered.
     pub picture: Option<MethodPicture>,
 }
 
-/// Results of a method with one number of samples per pixel.
+/// Results of one method with one number of samples per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesPoint {
-    /// Samples per pixel; for `scatter` the mean number.
+    /// Number of samples per pixel. The method `scatter` spreads samples unevenly; for it, this is
+    /// the mean.
     pub per_pixel: u64,
-    /// Timed renders with this number of samples per pixel.
+    /// Timed renders with this number of samples.
     pub runs: Vec<Run>,
 }
 
-/// Slope of a method's error against the number of samples, both logarithmic, at the `end` of its
-/// series. There, the error is proportional to the power `slope` of the number of samples.
+/// Slope of a method's error against the number of samples, both logarithmic, for the last three
+/// measured numbers of samples. If it is s, the error is about proportional to the number of
+/// samples to the power s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EndSlope {
-    /// Slope of the line of least squares through the logarithms.
+    /// The slope, by the method of least squares.
     pub slope: f64,
-    /// Standard error of the slope, from the slopes of single runs; `None` for fewer than three
-    /// runs.
+    /// Standard error of the slope, from the slopes of single runs; `None` if there are fewer than
+    /// three.
     pub error: Option<f64>,
 }
 
 impl EndSlope {
-    /// Minimum value of −`slope` at which the report says that more samples help. A smaller one may
-    /// be noise of the measurement.
+    /// Minimum steepness of the slope, i.e. value of −`slope`, for the report to say that more
+    /// samples help. A smaller value may come from noise in the measurement. The steepness for
+    /// independent samples, 0.5, is far above the minimum.
     const LEAST: f64 = 0.05;
 
-    /// Returns the factor by which four times as many samples divide the error, 4^−`slope`. Returns
-    /// `None` if more samples do not help.
+    /// Returns the factor by which the error falls if there are four times as many samples,
+    /// 4^−`slope`. Returns `None` if more samples do not help.
     pub fn divisor(&self) -> Option<f64> {
         (self.slope < -Self::LEAST).then(|| libm::pow(4.0, -self.slope))
     }
 
-    /// Returns the factor of samples that divides the error by ten, 10^(−1/`slope`). Returns `None`
-    /// if more samples do not help.
+    /// Returns the factor by which the number of samples must grow for a tenth of the error,
+    /// 10^(−1/`slope`). Returns `None` if more samples do not help.
     pub fn cost_of_a_tenth(&self) -> Option<f64> {
         (self.slope < -Self::LEAST).then(|| libm::pow(10.0, -1.0 / self.slope))
     }
 }
 
-/// Returns the last three of a method's results, or all if there are fewer. With few samples,
-/// errors may fall at another rate than later: `scatter` then leaves pixels empty, and `n_rooks`
-/// falls as steeply as strata in two dimensions, but ends like independent samples.
+/// Returns the last three elements of a method's results, or all if there are fewer. The first
+/// results would distort the slope, because with few samples, the errors of some methods fall
+/// differently. For example, `scatter` leaves pixels without samples, and the error of `n_rooks`
+/// falls faster at first than later.
 pub fn end<T>(points: &[T]) -> &[T] {
     &points[points.len().saturating_sub(3)..]
 }
 
-/// Times and error of a render.
+/// Times and error of a render, or typical ones of several renders.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run {
-    /// CPU time of the whole process in seconds, summed over all threads. NaN if the system does
-    /// not report it.
+    /// CPU time in seconds: the sum over all threads of the process. NaN if the system does not
+    /// report it.
     pub cpu: f64,
     /// Elapsed time in seconds.
     pub wall: f64,
-    /// Root mean square difference from the exact picture, in linear light. NaN for the exact
-    /// method, whose error has a bound instead.
+    /// Root mean square of the differences from the exact picture, in linear light. NaN for the
+    /// exact method, which has an error bound instead.
     pub error: f64,
 }
 
-/// A method's picture that a page shows next to those of other methods.
+/// A method's picture by which an HTML page compares the methods.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MethodPicture {
@@ -141,16 +148,17 @@ pub struct MethodPicture {
     pub cpu: f64,
     /// Root mean square error of the whole picture, in linear light.
     pub rmse: f64,
-    /// Part of the picture that the page shows; it is the same for every method.
+    /// Area of the whole picture that the page shows. It is the same for all methods.
     pub part: Area,
-    /// Pixels of the part of the picture that the page shows.
+    /// Pixels in the area that the page shows.
     pub film: Film,
-    /// Heat map of the difference between this part and the exact picture.
+    /// Heat map of the differences from the exact picture, in the area that the page shows.
     pub difference: Film,
 }
 
 impl Run {
-    /// Combines renders into one: their median times, and the root mean square of their errors.
+    /// Returns typical values of several renders: the medians of their times, and the root mean
+    /// square of their errors.
     pub fn typical(runs: &[Self]) -> Self {
         let all = |pick: fn(&Self) -> f64| runs.iter().map(pick).collect::<Vec<_>>();
         Self {
@@ -162,15 +170,16 @@ impl Run {
 }
 
 impl SeriesPoint {
-    /// Returns the median times and the root mean square error of the runs.
+    /// Returns typical values of the runs: the medians of their times, and the root mean square of
+    /// their errors.
     pub fn typical(&self) -> Run {
         Run::typical(&self.runs)
     }
 }
 
 impl MethodSeries {
-    /// Returns the slope of the error at the end of the series. Returns `None` if fewer than two
-    /// numbers of samples were measured, or an error is 0.
+    /// Returns the slope of the error for the last three numbers of samples. Returns `None` if
+    /// fewer than two were measured, or an error is 0.
     pub fn slope(&self) -> Option<EndSlope> {
         let slope = |error: &dyn Fn(&SeriesPoint) -> f64| {
             let points = end(&self.points).iter();
@@ -185,9 +194,9 @@ impl MethodSeries {
         })
     }
 
-    /// Returns the samples per pixel that take the CPU time `cpu`, by linear interpolation between
-    /// the measured numbers. Outside their range, returns the least or the greatest. Returns `None`
-    /// if nothing was measured.
+    /// Returns the number of samples per pixel that takes the CPU time `cpu`. It is interpolated
+    /// linearly between the measured numbers. Below the least measured number, that number is
+    /// returned; above the greatest, the greatest. Returns `None` if nothing was measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
         let slower = |pair: &&[SeriesPoint]| pair[1].typical().cpu > cpu;
@@ -206,7 +215,8 @@ impl Measurement {
         Area::whole(self.reference.film.width(), self.reference.film.height())
     }
 
-    /// Returns the greatest number of runs with the same method and the same number of samples.
+    /// Returns the number of runs, i.e. how often each render was repeated. After an interruption,
+    /// it is the greatest number for any method.
     pub fn runs(&self) -> usize {
         let sampled = self.series.iter().flat_map(|series| &series.points);
         let most = sampled.map(|point| point.runs.len()).max();

@@ -1,14 +1,14 @@
-//! Times renders and compares them with the exact picture.
+//! Times renders, and compares them with the exact picture.
 //!
-//! The exact picture is rendered first. It is the reference for errors. Its time does not count,
-//! since this render also warms up the caches and the processor. Then come rounds; each renders
-//! once with every method and every number of samples. The first round quadruples the number of
-//! samples as long as there is time for a few such rounds. The order of the renders in the later
-//! rounds is shuffled by a fixed rule, so that other load on the machine affects all methods alike.
+//! The exact picture is rendered first, since all errors are differences from it. This render is
+//! not timed, because it also warms up the caches and the processor. Then come several rounds. In
+//! each, every method renders once with every number of samples. In the first round, the number of
+//! samples is quadrupled as long as there is time for a few such rounds. In later rounds, the
+//! renders are in shuffled order, so that other load on the machine affects all methods alike.
 //!
-//! The timed part starts with the scene in memory and ends with the film in memory: preparing the
-//! objects and the samples, starting the threads, and rendering. Reading the scene, comparing
-//! pictures and encoding are not timed.
+//! A timed render starts with the scene in memory and ends with the picture in memory. It includes
+//! preparing the objects and the samples, and starting the threads. Reading the scene, comparing
+//! pictures and encoding them are not timed.
 
 use std::time::{Duration, Instant};
 
@@ -30,25 +30,26 @@ use crate::{
     tracer::World,
 };
 
-/// Minimum and maximum length of the series 1, 4, 16, … samples per pixel, which is measured if the
-/// user names no numbers of samples. With at least 4, the slope at the end of the series, which is
-/// that of the last three points, leaves out a single sample per pixel.
+/// Minimum and maximum length of the series 1, 4, 16, … of samples per pixel, if the user does not
+/// choose the numbers. Slopes are taken from the last three numbers. With at least four, they leave
+/// out one sample per pixel, whose error is untypical. The maximum allows up to 4^9 samples per
+/// pixel, but the time limit usually ends the series earlier.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// Number of runs of each render, if the user does not name it. The series of samples is continued
-/// only if there is time for the first number of runs; the second is the maximum. With fewer than
-/// three runs, the median may be that of a run that other load on the machine delayed.
+/// Usual and maximum number of runs of each render, if the user does not choose it. The series of
+/// samples is continued only if there is time for the usual number. With three runs, the median
+/// ignores one that other load on the machine delayed. With more than nine, the report would take
+/// longer for hardly better medians.
 const RUNS: (u64, u64) = (3, 9);
 
-/// Number of samples per pixel that sets the CPU time of the pictures on the page. All methods get
-/// the time that the slowest one takes for this number. With 16, the methods differ enough, and
-/// their noise is still visible.
+/// Number of samples per pixel of the slowest method in the pictures by which the page compares
+/// methods. The other methods get the same CPU time. With 16, noise is still visible, and so are
+/// the differences between the methods.
 const SHOWN: u64 = 16;
 
-/// Measures the methods of the request. If it is cancelled, returns the measurement so far, marked
-/// as interrupted, or an error if the exact picture is not done yet. Calls `progress` after each
-/// timed render with the share of the whole that is done. Does not call the progress callback of
-/// `control`.
+/// Makes the measurement that the request describes. Calls `progress` after each timed render with
+/// the share of the work that is done. If it is cancelled, returns the results so far, marked as
+/// interrupted. The progress callback in `control` is not called.
 ///
 /// # Errors
 ///
@@ -112,11 +113,11 @@ pub fn measure(
     Ok(measured)
 }
 
-/// A measurement in progress.
+/// A measurement that is being made.
 struct Benchmark<'a> {
     scene: &'a Scene,
     request: &'a Request,
-    /// Requested numbers of samples, ascending and without duplicates.
+    /// Numbers of samples that the user chose, in ascending order and without duplicates.
     samples: Vec<u64>,
     control: &'a Control<'a>,
     progress: &'a dyn Fn(f64),
@@ -124,8 +125,8 @@ struct Benchmark<'a> {
     measured: Measurement,
 }
 
-/// A render of a round: the index of a method's series and the index of a point in it, or `None`
-/// for the exact picture.
+/// A render in a round: the index of the method and the index of the number of samples. `None`
+/// stands for the exact method.
 type Task = Option<(usize, usize)>;
 
 impl Benchmark<'_> {
@@ -141,7 +142,8 @@ impl Benchmark<'_> {
             if self.request.runs.is_none() && !has_time {
                 break;
             }
-            // The order depends only on the number of the round.
+            // The random order depends only on the number of the round, so it is the same in every
+            // measurement.
             tasks.shuffle(&mut Key::new(round, 0).rng());
             for &task in &tasks {
                 self.render(task, round)?;
@@ -150,9 +152,9 @@ impl Benchmark<'_> {
         self.pictures()
     }
 
-    /// Renders once with the exact method, and once with every sampled method and number of
-    /// samples. If no numbers of samples are requested, they are quadrupled as long as there is
-    /// time.
+    /// Makes the first round: renders once with the exact method, and once by every sampling method
+    /// with every number of samples. If the user chose no numbers, each is four times the last, as
+    /// long as there is time.
     fn first_round(&mut self) -> Result<(), RenderError> {
         self.render(None, 0)?;
         if self.measured.series.is_empty() {
@@ -172,9 +174,8 @@ impl Benchmark<'_> {
                 self.render(Some((series, point)), 0)?;
             }
             let last = started.elapsed();
-            // The time of a render is assumed to be a constant plus a part proportional to the
-            // number of samples. This number is quadrupled next, and with it the part that the last
-            // step added.
+            // A render is assumed to take a constant time plus a time proportional to the number of
+            // samples. When this number is quadrupled, so is the difference of the last two times.
             let next = last + 4 * last.saturating_sub(before);
             if is_open && !self.goes_on(next) {
                 break;
@@ -184,10 +185,10 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Returns whether to go on with four times as many samples, for which a round is expected to
-    /// take `next`. Up to the minimum of [`RUNGS`], always returns `true`. After that, there must
-    /// be time for all rounds, and some method must still have an error above the least requested
-    /// one.
+    /// Returns whether to continue with four times as many samples. `next` is the estimated time of
+    /// all methods together with this number. The first numbers, as many as the minimum in
+    /// [`RUNGS`], are always measured. More are measured only if there is time for all runs, and if
+    /// a method's error is still above the smallest requested error.
     fn goes_on(&self, next: Duration) -> bool {
         let least = self.request.errors.iter().copied().fold(1.0, f64::min);
         let error = |series: &MethodSeries| Some(series.points.last()?.typical().error);
@@ -202,8 +203,8 @@ impl Benchmark<'_> {
         let measured = &mut self.measured;
         if let Some((series, point)) = task {
             let per_pixel = measured.rungs[point];
-            // Each run and each number of samples has a seed of its own, so that runs differ and
-            // the errors of different numbers of samples are independent.
+            // Each run with each number of samples has its own seed, so that their errors are
+            // independent.
             let seed = Key::new(measured.seed, per_pixel).bits(round) >> 11;
             let series = &mut measured.series[series];
             let samples = [per_pixel, seed];
@@ -224,9 +225,9 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Renders a picture with each sampled method for the page, all in about the same CPU time:
-    /// that of the slowest method with at least [`SHOWN`] samples. Keeps the same part of each
-    /// picture.
+    /// Renders the pictures by which the page compares the sampling methods. All take about the
+    /// same CPU time, which is that of the slowest method with about [`SHOWN`] samples per pixel.
+    /// Of each picture, the same small area is stored.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
@@ -268,8 +269,8 @@ impl Benchmark<'_> {
         Ok(())
     }
 
-    /// Reports progress: the share of the samples that are done if their total is known, otherwise
-    /// the share of the time that has passed.
+    /// Reports the progress. It is the share of the samples that are done or, if their number is
+    /// not known beforehand, the share of the time that has passed.
     fn report_progress(&self) {
         let measured = &self.measured;
         let share = match self.request.runs {
@@ -286,13 +287,13 @@ impl Benchmark<'_> {
     }
 }
 
-/// Returns the root mean square error of a picture of the scene.
+/// Returns the root mean square of a picture's differences from the exact picture.
 fn error_of(film: &Film, reference: &Film) -> f64 {
     film::rmse(film, reference).expect("pictures of one scene have one size")
 }
 
-/// Renders the scene with `method`, `per_pixel` samples per pixel and `seed`. The exact method
-/// ignores both numbers.
+/// Renders the scene with the given method, samples per pixel and seed. The exact method ignores
+/// the last two.
 fn rendered(
     scene: &Scene,
     method: Method,
@@ -309,18 +310,18 @@ fn rendered(
     render_as_asked(&world, &sampling, world.picture(), control)
 }
 
-/// Maximum width and height of the part of a picture that the page shows for each method, in
-/// pixels. The page magnifies the part, so that single pixels are visible, and shows several parts
-/// side by side.
+/// Maximum width and height, in pixels, of the area by which the page compares the methods. Several
+/// areas, magnified, must fit beside each other on the page; a smaller area would show fewer edges.
 const PART: (u32, u32) = (48, 27);
 
-/// Minimum share of the pixels of a part that do not show its most frequent object. With less, the
-/// part counts as one without an edge.
+/// Minimum share of the pixels of an area that show another object than its most frequent one. With
+/// less, the area counts as having no edge, and another area is preferred for comparing the
+/// methods. The value is a guess at how much of an edge must be visible.
 const OTHER_OBJECT: f64 = 0.1;
 
-/// Returns the part of a picture in which the errors of a method are shown. Parts without sky and
-/// with an edge of an object are preferred, then other parts without sky; among equals, the part
-/// with the greatest error is returned. Parts are compared in steps of half their size.
+/// Returns the area in which the page compares the methods. Areas without background that show an
+/// edge between objects are preferred, then other areas without background. Among these, the area
+/// with the greatest error is returned. Areas are tried at distances of half their size.
 fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge> {
     let whole = world.picture();
     let (width, height) = (whole.width.min(PART.0), whole.height.min(PART.1));
@@ -352,8 +353,9 @@ fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge
     Ok(worst)
 }
 
-/// Does `work` and measures its time. Returns the result, and a run whose error is NaN. The CPU
-/// time is that of the whole process, in which nothing else runs meanwhile except a progress bar.
+/// Does `work` and measures its times. The CPU time is that of the whole process, which does
+/// nothing else meanwhile except show a progress bar. The error in the returned run is NaN, since
+/// it is not yet known.
 fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, Run), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;

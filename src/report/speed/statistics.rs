@@ -1,7 +1,7 @@
-//! The median, the root mean square, the line of least squares, and the standard error of a mean.
+//! Statistics: median, root mean square, slope of a fitted line, and standard error of a mean.
 
-/// Returns the median of `values`, which may be in any order. For an even number of values, it is
-/// the mean of the middle two. Returns NaN if there are none.
+/// Returns the median of `values`, in any order. For an even number of values, it is the mean of
+/// the middle two. For none, it is NaN.
 pub fn median(values: &[f64]) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -18,13 +18,13 @@ pub fn root_mean_square(values: &[f64]) -> f64 {
     (squares / values.len() as f64).sqrt()
 }
 
-/// Returns the exponent b of a power law y = c·x^b through the points (x, y): the slope of the line
-/// of least squares through their logarithms,
+/// Fits a power law y = c·x^b to the points (x, y), and returns its exponent b. In logarithms, b is
+/// the slope of the line of least squares,
 ///
-/// b = Σ(x − x̄)·(y − ȳ)/Σ(x − x̄)²,
+/// b = Σ(X − X̄)·(Y − Ȳ)/Σ(X − X̄)²,
 ///
-/// where x̄ and ȳ are the means of the logarithms. Returns `None` if there are not at least two
-/// different x, or if a number has no logarithm.
+/// where X and Y are the logarithms of x and y, and X̄ and Ȳ their means. Returns `None` if there
+/// are fewer than two different x, or if a number has no logarithm.
 pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
     let logs = points.iter().map(|&(x, y)| (libm::log(x), libm::log(y)));
     let logs: Vec<_> = logs.collect();
@@ -37,8 +37,9 @@ pub fn slope(points: &[(f64, f64)]) -> Option<f64> {
     slope.is_finite().then_some(slope)
 }
 
-/// Returns the standard error of the mean of `values`, s/√n, where s² = Σ(x − x̄)²/(n − 1). Returns
-/// `None` for fewer than three values, whose spread says next to nothing.
+/// Returns the standard error of the mean of the n numbers in `values`. It is s/√n, where s is
+/// their standard deviation with the divisor n − 1. Returns `None` for fewer than three, which say
+/// too little about their spread.
 pub fn standard_error(values: &[f64]) -> Option<f64> {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;

@@ -1,4 +1,4 @@
-//! Sentences and a table about the measurement, for a terminal and for a page.
+//! Sentences and a table about a measurement, for a terminal and for an HTML page.
 
 use super::{
     estimate::{Estimate, Ranking},
@@ -7,15 +7,15 @@ use super::{
 };
 use crate::{diagnostic::visible_line, numbers, scene::Method, suggest};
 
-/// Table of a measurement, with a row for each method.
+/// A table with a row for each method.
 pub struct SummaryTable {
-    /// Column headings. A line feed marks where a heading may break if the column is narrow.
+    /// Column headings. At a line feed, a heading may be broken if the column is narrow.
     pub heads: Vec<String>,
-    /// Rows of the table: the method's name, then the cells of the other columns.
+    /// Rows of cells. The first cell is the method's name.
     pub rows: Vec<Vec<String>>,
 }
 
-/// Describes the picture's size, the number of runs, the threads and the machine.
+/// Returns a line with the picture's size, the number of runs, the threads and the machine.
 pub fn heading(measured: &Measurement) -> String {
     let whole = measured.whole();
     let machine = &measured.machine;
@@ -30,13 +30,14 @@ pub fn heading(measured: &Measurement) -> String {
     )
 }
 
-/// Recommends a method for each requested error.
+/// Returns a sentence for each requested error that recommends a method.
 pub fn verdicts(measured: &Measurement) -> Vec<String> {
     let verdict = |&error: &f64| verdict(measured, error);
     measured.errors.iter().map(verdict).collect()
 }
 
-/// Recommends a method for the error `wanted`, gives the reason, and says how certain it is.
+/// Returns a sentence that recommends a method to reach the error `wanted`, with the reason and
+/// other methods for comparison.
 pub fn verdict(measured: &Measurement, wanted: f64) -> String {
     let Ranking { fastest, others } = measured.ranking(wanted);
     let wanted = asked_error(wanted);
@@ -90,7 +91,7 @@ pub fn verdict(measured: &Measurement, wanted: f64) -> String {
     verdict
 }
 
-/// Describes the CPU time and the samples per pixel of a method, for a sentence.
+/// Returns a phrase with a method's CPU time and samples per pixel, as a part of a sentence.
 fn cost((method, estimate): &(Method, Estimate)) -> String {
     let is_guess = estimate.is_extrapolated;
     let takes = if is_guess { "would take" } else { "takes" };
@@ -108,8 +109,8 @@ fn per_pixel(estimate: &Estimate) -> String {
     format!("{} {noun} per pixel", samples(estimate))
 }
 
-/// Returns a table with a row for each method: the slope of its error at the end and what it means,
-/// and, for each of `errors`, the samples, the CPU time and the wall time that the method needs.
+/// Returns the table of methods. It has the slope of each method's error and what it means. For
+/// each of `errors`, it has the samples, the CPU time and the elapsed time that the method needs.
 pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     let mut heads = vec!["method".to_owned()];
     heads.extend(
@@ -145,8 +146,9 @@ pub fn table(measured: &Measurement, errors: &[f64]) -> SummaryTable {
     SummaryTable { heads, rows }
 }
 
-/// Returns the three cells about a slope: the slope, the factor by which four times as many samples
-/// divide the error, and the factor of samples that divides the error by ten.
+/// Returns the three cells about a slope: the slope itself; the factor by which the error falls
+/// with four times as many samples; and the factor by which the number of samples must grow for a
+/// tenth of the error.
 fn slopes(found: Option<EndSlope>) -> [String; 3] {
     let divisor = factor(found.and_then(|it| it.divisor()));
     let cost = found.and_then(|it| it.cost_of_a_tenth());
@@ -156,7 +158,7 @@ fn slopes(found: Option<EndSlope>) -> [String; 3] {
     [slope(found), divisor, cost]
 }
 
-/// Returns sentences that explain the table's signs and limits.
+/// Returns sentences that explain the marks in the table, and the limits of the measurement.
 pub fn notes(measured: &Measurement) -> Vec<String> {
     let bound = numbers::at_most(measured.reference.bound());
     let mut notes = vec![format!(
@@ -168,8 +170,8 @@ pub fn notes(measured: &Measurement) -> Vec<String> {
     notes
 }
 
-/// Makes text from outside, such as a scene's name, safe to print anywhere. Control characters are
-/// made visible, and the two other characters that XML cannot contain are replaced.
+/// Makes a text from outside, such as a file's name, safe to print and to put into XML. Control
+/// characters are made visible, and the two other characters that XML forbids are replaced.
 pub fn printable(text: &str) -> String {
     visible_line(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}")
 }

@@ -1,4 +1,4 @@
-//! The measurement as text for a terminal.
+//! Formats a measurement as text for a terminal.
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets::NOTHING};
 
@@ -7,11 +7,12 @@ use super::{
     summary::{self, heading, notes, printable, verdict},
 };
 
-/// Maximum length of a line of the report, in characters. Longer lines are wrapped.
+/// Maximum length of a line of text, in characters. Longer lines are wrapped, because they are hard
+/// to read.
 const WIDTH: usize = 100;
 
-/// Returns the measurement as text: a description of the measurement, then a table and the
-/// recommended method for each requested error, then notes on the tables.
+/// Returns the measurement as text: a line about the scene and the machine; a table and a
+/// recommended method for each requested error; and notes.
 pub fn text(measured: &Measurement) -> String {
     let filled = |text: &str| textwrap::fill(text, WIDTH) + "\n";
     let mut text = format!(

@@ -21,8 +21,8 @@ use crate::{
     },
 };
 
-/// Functions of other languages. A row holds their names and the help, which says what to write
-/// instead.
+/// Names of functions in other languages. A row holds names, separated by spaces, and the help that
+/// says what to write instead.
 #[rustfmt::skip]
 const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("pow power sq square", "write a product, such as `x * x`"),
@@ -38,9 +38,9 @@ const OTHER_FUNCTIONS: &[(&str, &str)] = &[
     ("exp log ln random rand noise", "write the number itself"),
 ];
 
-/// Number of the latest problems whose help is compared with the list of all functions. If one of
-/// them has that list, the next report refers to `pinhole explain` instead. A search of all ten
-/// thousand possible problems would be slow.
+/// Number of previous problems that are searched for one whose help lists all functions. If there
+/// is one, a new report refers to `pinhole explain functions` instead of repeating the list. Any
+/// small number works; a search of all problems, up to ten thousand, would be slow.
 const LOOKED_BACK: usize = 8;
 
 impl<'s> Evaluator<'_, 's> {
@@ -99,8 +99,8 @@ impl<'s> Evaluator<'_, 's> {
         Some(result)
     }
 
-    /// Reports an unknown function, and suggests the function with the nearest name that accepts
-    /// arguments of these types.
+    /// Reports an unknown function. Suggests the function with the nearest name among those that
+    /// accept arguments of the types `arguments`. `None` is an unknown type.
     fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Option<Type>]) {
         if self.names.suggestions.is_trying() {
             return;
@@ -190,8 +190,8 @@ impl<'s> Evaluator<'_, 's> {
         // A function of vectors needs parentheses around the coordinates, and a function of numbers
         // must not have them.
         let meant = match (row.takes, arguments) {
-            // The language has no transparency, so a fourth channel is left out. A colour alone
-            // needs no `rgb`.
+            // The language has no transparency, so a fourth channel is left out. A colour such as
+            // `red` needs no `rgb` around it.
             (_, [r, g, b, _]) if is_rgb => Some(format!("rgb({})", [r, g, b].map(text).join(", "))),
             (_, [only])
                 if is_rgb

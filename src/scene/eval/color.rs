@@ -1,4 +1,4 @@
-//! Text → colour.
+//! Parses a colour from a text.
 
 use std::{str::FromStr, sync::Arc};
 
@@ -22,7 +22,7 @@ impl FromStr for Color {
     }
 }
 
-/// Returns the colour that a text is, or its problems.
+/// Parses the text of `sources` as a colour. Returns its problems if it has any.
 fn color(sources: &Sources) -> Result<Color, Vec<Diagnostic>> {
     let (tree, mut found) = syntax::parse_value(&sources.file, SourceId::File, 0);
     let (names, mut problems) = (Names::default(), Problems::default());

@@ -17,16 +17,16 @@ use crate::{
 /// Evaluator of expressions, which collects their problems.
 #[derive(Debug)]
 pub struct Evaluator<'a, 's> {
-    /// The file and the `--set` arguments.
+    /// The scene file and the `--set` arguments of the command line.
     pub sources: &'s Sources,
-    /// The names that are defined.
+    /// The names of the scene that are defined so far.
     pub names: &'a Names<'s>,
     /// The problems found so far.
     pub problems: &'a mut Problems,
 }
 
-/// Returns the value of `written`, which uses no names of a scene, such as a default in the schema.
-/// Returns `None` if it has errors.
+/// Returns the value of an expression that uses no names of a scene, such as the default value of a
+/// field. Returns `None` if the expression has errors.
 pub fn literal(written: &str, takes: Type) -> Option<Value> {
     if takes == Type::Method {
         return schema::method(written).map(Value::Method);
@@ -36,8 +36,8 @@ pub fn literal(written: &str, takes: Type) -> Option<Value> {
     value_of(&tree, Some(takes), &sources, &Names::default())
 }
 
-/// Returns the value of an expression without reports; `wanted` is the type that would fit, if it
-/// is known.
+/// Returns the value of an expression, and discards its problems. `wanted` is the type that the
+/// context requires, if it is known.
 pub fn value_of<'s>(
     tree: &tree::Value<'s>,
     wanted: Option<Type>,
@@ -68,8 +68,8 @@ pub fn suits<'s>(
 }
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the value of an expression; `wanted` is the type that the place requires, if that is
-    /// known. The result may have another type. Reports errors and then returns `None`.
+    /// Returns the value of an expression. `wanted` is the type that the context requires, if it is
+    /// known; the result may have another type. Returns `None` after errors are reported.
     pub fn value(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         match &value.kind {
             ValueKind::Number(written) => Some(Value::Number(self.number(written, value.span)?)),
@@ -119,8 +119,9 @@ impl<'s> Evaluator<'_, 's> {
         Some(number)
     }
 
-    /// Returns the error that `number` stands where an angle is required. `what` names the place in
-    /// words. The fixes add a unit; only units for which `fits` holds are offered.
+    /// Returns the error for `number`, which has no unit and stands where an angle is required.
+    /// `what` names the place in words. The fixes add a unit; only units for which `fits` holds are
+    /// offered.
     pub fn bare_angle(
         &self,
         what: &str,
@@ -179,8 +180,9 @@ impl<'s> Evaluator<'_, 's> {
             .fixes(fixes)
     }
 
-    /// Returns the first name in `value` that a `--set` argument defines, and the span of the
-    /// argument's value. The mistake is then in the argument.
+    /// Returns the first name in `value` whose value comes from a `--set` argument of the command
+    /// line, and the span of the argument's value. A mistake in `value` is then a mistake in the
+    /// argument.
     pub(super) fn set_in(&self, value: &tree::Value<'s>) -> Option<(&'s str, Span)> {
         let ValueKind::Name(name) = value.kind else {
             return value.parts().into_iter().find_map(|part| self.set_in(part));
@@ -190,8 +192,9 @@ impl<'s> Evaluator<'_, 's> {
         is_set.then_some((name, from))
     }
 
-    /// Returns the factor of a product that a `let` of the file defines as a number literal: its
-    /// name and the literal. Returns `None` if no factor or more than one is defined so.
+    /// Returns the factor of a product that is a name for a plain number, such as `a` in `a * 2`
+    /// after `let a = 30`: the name, and the number as it is written. Returns `None` if there is no
+    /// such factor, or more than one.
     fn number_without_unit(&self, value: &tree::Value<'s>) -> Option<(&'s str, &'s str)> {
         let ValueKind::Chain { first, rest } = &value.kind else {
             return None;
@@ -276,7 +279,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Help for a number that is too large.
+/// Help text for a number above the largest finite `f64`.
 pub(super) const LARGEST: &str = "numbers go up to 1.7976931348623157e308";
 
 /// Returns the colour of a code such as `#ff8000`. The parser has checked the number of digits.

@@ -68,7 +68,7 @@ impl<'s> Evaluator<'_, 's> {
         None
     }
 
-    /// Reports `part` of a list, which has the wrong type `found`.
+    /// Reports that the element `part` of a list has the wrong type `found`.
     fn wrong_part(&mut self, list: Type, part: &tree::Value<'s>, found: Type) {
         let parts = list
             .parts()
@@ -88,7 +88,7 @@ impl<'s> Evaluator<'_, 's> {
             .report(self.problems);
     }
 
-    /// Reports a list with a wrong number of parts.
+    /// Reports a list with a wrong number of elements.
     fn part_count(
         &mut self,
         list: Type,
@@ -132,9 +132,10 @@ impl<'s> Evaluator<'_, 's> {
     }
 }
 
-/// Returns an example for a missing third coordinate: the greater one of the other two, because
-/// sides of such lengths form a triangle; but 1 if both are 0, because a zero vector has no
-/// direction.
+/// Returns an example of the missing third coordinate of a vector whose other coordinates are `x`
+/// and `y`. Chooses the greater of the two, because the vector may hold the sides of a triangle,
+/// and a triangle with these three sides exists. If both are 0, returns 1, because a zero vector
+/// has no direction.
 fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     let (a, b): (f64, f64) = (x.parse().ok()?, y.parse().ok()?);
     Some(match (a > b, a == 0.0 && b == 0.0) {
@@ -144,9 +145,9 @@ fn third<'t>(x: &'t str, y: &'t str) -> Option<&'t str> {
     })
 }
 
-/// Returns the vector that four numbers mean if two of them are one number with a decimal comma, as
-/// in `(1,5, 2, 3)`: that comma is the only one without a space behind it. Returns `None` if there
-/// is no such comma, or more than one.
+/// Interprets four numbers as a vector in which one number was written with a decimal comma, as in
+/// `(1,5, 2, 3)`. The decimal comma is the only one without a space after it. Returns `None` if
+/// there is no such comma, or more than one.
 fn with_decimal_comma(elements: &[Element<'_>], texts: &[&str]) -> Option<String> {
     let is_tight = |pair: &[Element<'_>]| match pair {
         [one, other] => one.value.span.end + 1 == other.value.span.start,

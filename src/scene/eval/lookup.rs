@@ -15,8 +15,8 @@ use crate::{
 };
 
 impl<'s> Evaluator<'_, 's> {
-    /// Returns the value of a name. Returns `None` if it has none, after a report if the name is
-    /// undefined.
+    /// Returns the value of a name. Returns `None` if the name has no value, and reports the name
+    /// if it is undefined.
     pub(super) fn name(
         &mut self,
         name: &'s str,
@@ -105,7 +105,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// If a hyphenated colour such as `light-blue` starts at `span`, returns its span and its name
-    /// in one word.
+    /// in one word, such as `lightblue`.
     fn hyphenated(&self, span: Span) -> Option<(Span, String)> {
         let text = self.sources.get(span.source).text().get(span.start..)?;
         let is_other = |c: char| !c.is_ascii_alphanumeric() && c != '-';
@@ -135,8 +135,8 @@ impl<'s> Evaluator<'_, 's> {
             })
     }
 
-    /// Returns the error that a name is undefined, and the meaning of the suggested name, if there
-    /// is a suggestion.
+    /// Returns the error that a name is undefined. If the error suggests another name, the meaning
+    /// of the other name is returned, too.
     fn unknown_name(
         &self,
         name: &str,
@@ -188,8 +188,8 @@ impl<'s> Evaluator<'_, 's> {
         )
     }
 
-    /// Returns the value of the suggested name or colour code `name`. Returns `None` if it has
-    /// errors.
+    /// Returns the value of a defined name, a predefined name or a colour code. Returns `None` if
+    /// its definition has errors.
     pub(super) fn meaning(&self, name: &str) -> Option<Value> {
         if let Some(defined) = self.names.defined.get(name) {
             return defined.value;
@@ -200,11 +200,10 @@ impl<'s> Evaluator<'_, 's> {
         }
     }
 
-    /// Returns the defined name or the named colour that is nearest to the undefined name `name`,
-    /// and whether it is a safe replacement. If a colour is wanted (`is_color`), searches
-    /// definitions and colours, and otherwise definitions and constants. If no type is wanted and
-    /// nothing was found, searches the colours. Leaves out names whose values have another type
-    /// than `wanted`.
+    /// Returns the known name that is nearest to the undefined name `name`, and whether it is a
+    /// safe replacement. Searches the scene's definitions, and also the colours if a colour is
+    /// wanted (`is_color`), or else the constants. If the wanted type is unknown and nothing was
+    /// found, searches all colours. Leaves out names whose values have another type than `wanted`.
     fn nearest(
         &self,
         name: &str,
@@ -310,8 +309,9 @@ fn and_here(problem: &mut Diagnostic, span: Span) {
     if problem.labels.iter().any(|label| label.span == span) {
         return;
     }
-    /// Maximum number of further uses of a name that get a label; later uses get none. More labels
-    /// would hide the first use.
+    /// Maximum number of further uses of an undefined name that get a label. Each label shows a
+    /// line of the text, so a much larger number would hide the first use. Any similar number would
+    /// do.
     const MOST: usize = 20;
     if problem.labels.len() <= MOST {
         let message = "and here".to_owned();

@@ -24,7 +24,7 @@ use crate::{
 /// Names that are defined at the current place of the text, and what was reported about names.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
-    /// Definitions and indices so far, with their values.
+    /// Values of the `let`s and of the indices (counters of a `for`) that are defined so far.
     pub(super) defined: HashMap<&'s str, Defined>,
     /// The names of `defined`, in the order of their definitions.
     order: Vec<&'s str>,
@@ -35,16 +35,18 @@ pub struct Names<'s> {
     definitions: HashMap<&'s str, Span>,
     /// Names of the file's objects. They have no value, but a message can explain that.
     pub(super) objects: HashSet<&'s str>,
-    /// The names of the indices of all blocks.
+    /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
+    /// `for i < 8`.
     pub(super) indices: HashSet<&'s str>,
-    /// Number of comparisons of names that are left for all searches for the nearest name.
+    /// Remaining number of name comparisons, shared by all searches for the defined name most
+    /// similar to an undefined one.
     budget: ComparisonBudget,
     /// Problems of undefined names. They are kept apart because some of the other problems are
     /// discarded when a value is evaluated again.
     pub(in crate::scene) problems: RefCell<Problems>,
     /// Names that were reported as undefined. Further uses become labels of the same problem.
     pub(super) reported: RefCell<HashMap<&'s str, Reported>>,
-    /// Suggestions in place of undefined names.
+    /// Names that reports suggest in place of undefined ones.
     pub(in crate::scene) suggestions: Suggestions<'s>,
 }
 
@@ -57,22 +59,23 @@ pub(super) struct Reported {
     pub suggested: Option<Meaning>,
 }
 
-/// A defined name: a `let` or an index.
+/// Definition of a name, by a `let` or as the index of a `for`.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::scene) struct Defined {
-    /// The value. `None` if it has errors, or for an index without a value yet.
+    /// Value of the name. `None` if its expression has errors, or if an index has no value yet.
     pub value: Option<Value>,
     /// Span of the name in its definition.
     pub place: Span,
-    /// The span of the value, in the file or in an argument.
+    /// Span of the value, in the file or in a `--set` argument of the command line.
     pub from: Span,
-    /// Unit in which the name's number is meant, as far as the formula of its value shows. It
-    /// matters if the number lacks a unit.
+    /// Unit that the formula of the value suggests, such as radians if it uses `pi`. It matters if
+    /// a number without a unit stands where an angle is required.
     pub origin: UnitOrigin,
 }
 
 impl<'s> Names<'s> {
-    /// Collects the names of a file. None of them is defined yet.
+    /// Collects the names of a file. Until [`Self::define`] is called, none of the names has a
+    /// value.
     pub fn of(tree: &Tree<'s>) -> Self {
         let mut names = Self::default();
         for item in &tree.items {
@@ -108,13 +111,14 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the unit in which the numbers of `value` are meant, as far as its formula shows.
+    /// Returns the unit in which the numbers of `value` are meant, as far as its formula shows: a
+    /// formula with `pi`, for example, suggests radians.
     pub fn origin(&self, value: &tree::Value<'_>) -> UnitOrigin {
         UnitOrigin::of(value, &|name| Some(self.defined.get(name)?.origin))
     }
 
-    /// Defines an index of the current block with the value `value`, or with an unknown value if it
-    /// is `None`.
+    /// Defines an index of the current block, which is the counter of a `for`. The value is `None`
+    /// if it is unknown.
     pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
         let index = Defined {
             value,
@@ -128,8 +132,8 @@ impl<'s> Names<'s> {
     }
 
     /// Removes and returns the `let` that has the same name as `index` and stands further down in
-    /// the file, if it is defined already, so that the index can be defined. With `--set`
-    /// arguments, all definitions are evaluated before the blocks.
+    /// the file, so that the index can be defined. With `--set` arguments, all definitions are
+    /// evaluated before the blocks, so a later `let` may already be defined.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;
@@ -145,7 +149,7 @@ impl<'s> Names<'s> {
         self.defined.extend(hidden);
     }
 
-    /// Removes an index at the end of its block.
+    /// Removes an index, the counter of a `for`, at the end of its block.
     pub fn forget_index(&mut self, name: Name<'s>) {
         if self.place(name.text) == Some(name.span) {
             self.defined.remove(name.text);
@@ -161,39 +165,42 @@ impl<'s> Names<'s> {
         self.parts.extend(text.split(is_other));
     }
 
-    /// Returns the span of a name in its definition; `None` if the name is not defined yet.
+    /// Returns the span of a name in its definition. Returns `None` if the name is not defined yet.
     pub fn place(&self, name: &str) -> Option<Span> {
         self.defined.get(name).map(|defined| defined.place)
     }
 
-    /// Returns the value of a defined name; `None` if it has errors.
+    /// Returns the value of a defined name. Returns `None` if the value has errors.
     pub fn value(&self, name: &str) -> Option<Value> {
         self.defined.get(name)?.value
     }
 
-    /// Returns the span of a name in the first `let` of the file that defines it, even further
-    /// down.
+    /// Returns the span of a name in the first `let` of the file that defines it, even if this
+    /// `let` stands further down.
     pub fn definition(&self, name: &str) -> Option<Span> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, for a search for the nearest one. Charges the
-    /// search to the budget of comparisons, and returns `None` if that is spent.
+    /// Returns the names that are defined so far, among which the one most similar to an undefined
+    /// name is searched for. Subtracts the comparisons of this search from their remaining number.
+    /// Returns `None` if fewer remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
-        // About the number of colours and constants, with which the name is compared, too.
+        // Approximate number of predefined colours and constants, with which every search also
+        // compares. An estimate is enough, because it only limits the number of searches.
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)
     }
 
-    /// Removes the suggestion from the report of an undefined name.
+    /// Records that the report of an undefined name no longer suggests another name.
     pub fn withdraw(&self, name: &str) {
         if let Some(reported) = self.reported.borrow_mut().get_mut(name) {
             reported.suggested = None;
         }
     }
 
-    /// Returns the budget of comparisons in searches for the nearest name.
+    /// Returns the remaining number of name comparisons, shared by all searches for the defined
+    /// name most similar to an undefined one.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }

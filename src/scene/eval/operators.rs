@@ -41,13 +41,14 @@ impl<'s> Evaluator<'_, 's> {
         rest: &[Step<'s>],
         wanted: Option<Type>,
     ) -> Option<Value> {
-        // With several operators, no type is wanted, since intermediate results may have any type.
+        // `wanted` is the type of the whole result. With several operators, an intermediate result
+        // may have any type, so `wanted` is not used.
         let wanted = wanted.filter(|_| rest.len() == 1);
         let mut left = self.value(first, None);
         let mut span = first.span;
         for (index, step) in rest.iter().enumerate() {
-            // Both operands of a sum have the same type, so the left one's type is wanted on the
-            // right.
+            // Both operands of a sum have the same type, so the right operand should have the type
+            // of the left one.
             let alike = left.filter(|_| !step.operator.is_of_product());
             let right = self.value(&step.operand, alike.map(|left| left.kind()));
             left = match (left, right) {
@@ -62,7 +63,8 @@ impl<'s> Evaluator<'_, 's> {
         left
     }
 
-    /// Returns the result of one operator, or `None` after a report.
+    /// Returns the result of one operator. If it has no result, reports an error and returns
+    /// `None`.
     fn step(
         &mut self,
         step: &Step<'s>,

@@ -27,8 +27,8 @@ use UnitOrigin::{In, Plain, Unclear};
 const LIKE_PI: [&str; 5] = ["3.14", "6.28", "1.57", "0.0174", ".0174"];
 
 impl UnitOrigin {
-    /// Returns the unit in which the numbers of a value are meant. `known` returns the same for a
-    /// name that the value uses, or `None` if it has no value.
+    /// Returns the unit in which the numbers of a value are meant. `known` returns this unit for a
+    /// name that the value uses, or `None` if the name is undefined.
     pub fn of(value: &tree::Value<'_>, known: &impl Fn(&str) -> Option<Self>) -> Self {
         let all = || {
             let parts = value.parts().into_iter();
@@ -82,8 +82,7 @@ impl UnitOrigin {
         }
     }
 
-    /// Returns the unit in which a sum is meant whose terms are meant in the units `self` and
-    /// `other`.
+    /// Returns the unit in which a sum is meant. `self` and `other` are the units of its terms.
     fn plus(self, other: Self) -> Self {
         match (self, other) {
             (Plain, it) | (it, Plain) => it,

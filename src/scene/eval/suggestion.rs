@@ -1,9 +1,11 @@
 //! Suggestions for undefined names.
 //!
 //! In: an undefined name, and the nearest defined one. Out: the meaning of the undefined name while
-//! the suggestion is tried. Whether a suggestion leads to another error shows only in the whole
-//! value. So the caller evaluates the value again, with the meaning of the suggested name, and then
-//! keeps or withdraws the suggestion.
+//! the suggestion is tried.
+//!
+//! The suggested name may cause another error in the value that uses it. To find out, the caller
+//! evaluates the whole value again with the meaning of the suggested name, and then keeps or
+//! withdraws the suggestion.
 
 use std::cell::RefCell;
 
@@ -19,7 +21,7 @@ pub struct Suggestion<'s> {
     pub name: &'s str,
     /// The meaning of the suggested name.
     pub means: Meaning,
-    /// Span of the first label of the report, which identifies it.
+    /// Span of the first label of the report about the undefined name. It identifies the report.
     pub report: Span,
     /// The help of the report if the suggestion is withdrawn.
     pub otherwise: String,
@@ -38,7 +40,8 @@ pub enum Meaning {
 #[derive(Debug, Default)]
 pub struct Suggestions<'s> {
     made: RefCell<Vec<Suggestion<'s>>>,
-    /// The name whose suggestion is being tried, and its meaning.
+    /// The undefined name whose suggestion is being tried, and the meaning of the suggested name.
+    /// `None` while no suggestion is being tried.
     tried: RefCell<Option<(&'s str, Meaning)>>,
 }
 
@@ -64,8 +67,8 @@ impl<'s> Suggestions<'s> {
         self.tried.borrow().is_some()
     }
 
-    /// Returns the suggested meaning of `name` while that suggestion is being tried, and otherwise
-    /// `None`.
+    /// Returns the meaning of the suggested name while a suggestion for `name` is being tried.
+    /// Otherwise, returns `None`.
     pub fn meaning(&self, name: &str) -> Option<Meaning> {
         let tried = *self.tried.borrow();
         tried.and_then(|(known, meaning)| (known == name).then_some(meaning))

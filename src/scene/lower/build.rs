@@ -26,12 +26,14 @@ const START: Span = Span {
     end: 0,
 };
 
-/// Maximum number of samples of a whole picture, which is the language's limit for `total`, too. A
-/// `per_pixel` whose product with the number of pixels is greater is reported as an error.
+/// Maximum number of samples of a whole picture: 2^53, because numbers of the language are `f64`s,
+/// which represent every whole number up to 2^53. If `per_pixel` times the number of pixels is
+/// greater, an error is reported.
 const MOST_SAMPLES: u64 = 1 << 53;
 
 impl<'s> Lowering<'s> {
-    /// Builds the parts of the scene. A part with errors is `None`.
+    /// Builds the image, the camera, the sampler and the objects of the scene. An image, camera or
+    /// sampler with errors is `None`.
     pub(super) fn build(&mut self) -> Parts {
         let blocks = std::mem::take(&mut self.blocks);
         for block in &blocks {
@@ -117,8 +119,9 @@ impl<'s> Lowering<'s> {
         (example, fix)
     }
 
-    /// Builds the object of a block for the values `indices` of its indices. Returns `false`, and
-    /// builds nothing, if a value is missing or wrong.
+    /// Builds the object of a block. If `for` repeats the block, builds the object for the values
+    /// `indices` of the block's indices. Returns `false`, and builds nothing, if a value is missing
+    /// or wrong.
     pub(super) fn object(&mut self, block: &LoweredBlock<'s>, indices: &[u32]) -> bool {
         let Some(shape) = Shape::lower(block, &mut self.problems) else {
             return false;

@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// Maximum number of objects that one warning names. For the remaining objects, it gives only their
-/// number.
+/// number. Three keep the message short; any small number would do.
 const MOST_NAMED: usize = 3;
 
 impl<'s> Lowering<'s> {
@@ -54,8 +54,8 @@ impl<'s> Lowering<'s> {
                     .at(eye_place, "the eye")
                     .help("move one of them, or give a `direction` instead of `lookat`")
                     .report(&mut self.problems);
-                // An editor shows the correct parts of a scene with errors. Without a view, it
-                // shows no camera.
+                // An editor shows those parts of a scene that have no errors. The camera has no
+                // view direction, so it is left out.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -115,8 +115,11 @@ impl<'s> Lowering<'s> {
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // The formula is explained at `level_direction`. Only the direction of `up` matters; it is
-        // scaled so that its square does not overflow.
+        // If the camera looks along up, only the direction `level_direction(up)` decides what is at
+        // the top of the picture. `across` is the component of this direction that is perpendicular
+        // to up. The picture's top is `-across` if the camera looks along up, and `across` if it
+        // looks against up. Only the direction of `up` matters; it is scaled so that its square
+        // does not overflow.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);
@@ -290,8 +293,8 @@ impl Lowering<'_> {
         self.problems.push(problem);
     }
 
-    /// Warns of checkerboards whose squares are too small, compared with their distance, for
-    /// samples to tell apart.
+    /// Warns of checkerboards whose squares look so small from the camera that samples cannot tell
+    /// them apart.
     pub(super) fn lost_squares(&mut self, camera: &Camera, image: &Image) {
         let boards = std::mem::take(&mut self.boards);
         // Only the first board of a repeated block is reported.

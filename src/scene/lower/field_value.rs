@@ -158,8 +158,9 @@ impl<'s> Lowering<'s> {
             .at(tree.span, label)
     }
 
-    /// Returns the text that expresses a value of another type as one of the field's type, and
-    /// whether replacing the value is safe. Returns `None` if the intended value is unknown.
+    /// Returns a replacement for a value that has another type than the field, such as `30deg` for
+    /// `30`, and whether replacing the value is safe. Returns `None` if the intended value is
+    /// unknown.
     pub(super) fn converted(
         &mut self,
         row: &FieldRow,
@@ -191,8 +192,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the error that a value, which is `found`, has another type than its field. `meant`
-    /// is the text to write instead, if that is known.
+    /// Returns the error that a value has another type than its field. `found` is the value's type
+    /// in words, and `meant` the text to write instead, if that is known.
     fn other_type(
         &mut self,
         row: &FieldRow,
@@ -218,7 +219,8 @@ impl<'s> Lowering<'s> {
         )
     }
 
-    /// Returns the value of an expression; `wanted` is the type that would fit, if it is known.
+    /// Returns the value of an expression; `wanted` is the type that the context requires, if it is
+    /// known.
     pub(super) fn evaluate(
         &mut self,
         value: &tree::Value<'s>,

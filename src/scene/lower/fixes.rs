@@ -19,8 +19,8 @@ pub(super) fn at_end(title: impl Into<String>, lines: &str, sources: &Sources) -
     Fix::new(title, [Edit::insert(SourceId::File, text.len(), added)]).placeholder()
 }
 
-/// Returns two fixes for something that stands twice in the text: keep the first one, or keep the
-/// second. The fixes are safe if the two texts are equal, except for white space.
+/// Returns two fixes for a duplicate, which stands at two spans of the text: keep the first one, or
+/// keep the second. The fixes are safe if the two texts are equal, except for white space.
 pub(super) fn one_of_two(name: &str, [first, second]: [Span; 2], sources: &Sources) -> [Fix; 2] {
     let ways = [("first", "second", second), ("second", "first", first)];
     ways.map(|(kept, removed, span)| {
@@ -57,10 +57,10 @@ impl Lowering<'_> {
         Some(Fix::new(title, [edit]).placeholder())
     }
 
-    /// Returns the fixes for two fields that exclude each other because they belong to different
-    /// ways of the [`Choice`] `choice`. A fix keeps the fields of one way, and removes those of the
-    /// other ways. There is no such fix if the way that is kept lacks a field, or if any other
-    /// field stands between those that would be removed.
+    /// Returns the fixes for two fields that exclude each other. A [`Choice`] has several ways to
+    /// state the same fact, each a set of fields. A fix keeps the fields of one way, and removes
+    /// those of the other ways. There is no such fix if the way that is kept lacks a field, or if
+    /// any other field stands between those that would be removed.
     pub(super) fn one_of(
         &self,
         block: &LoweredBlock<'_>,

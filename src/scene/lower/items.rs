@@ -1,4 +1,4 @@
-//! Lowers each item of a file: a definition, or a block with its fields.
+//! Converts each item of a file, i.e. each definition or block, to a part of the scene.
 
 use super::{
     fixes,
@@ -17,7 +17,7 @@ use crate::{
 };
 
 impl<'s> Lowering<'s> {
-    /// Lowers the next items of the file.
+    /// Converts the next definitions and blocks of the file to parts of the scene.
     pub(super) fn items(&mut self, items: &[Item<'s>]) {
         for item in items {
             if !self.is_wanted() {
@@ -198,7 +198,7 @@ impl<'s> Lowering<'s> {
         // A block of an unknown kind may be meant as an object, so missing objects are not
         // reported.
         self.has_objects |= near.is_none();
-        // If the block has only its start, the parser has reported it already.
+        // If the block has no fields and no `}`, the parser has reported it already.
         if near.is_none() && block.close.is_none() && block.fields.is_empty() {
             return None;
         }
@@ -311,8 +311,8 @@ impl<'s> Lowering<'s> {
 
     /// Reports two fields that exclude each other. The first label is at the later one.
     fn conflicts(&mut self, block: &LoweredBlock<'s>) {
-        // Each group of excluding fields is reported at most once, even for a box with center,
-        // size, min and max.
+        // Each group of fields that exclude each other is reported at most once, even for a box
+        // with center, size, min and max.
         for choice in block.row.choices {
             let fields = choice.ways.iter().flat_map(|way| way.iter().copied());
             let given = fields
@@ -390,8 +390,8 @@ impl<'s> Lowering<'s> {
         let behind = Span::new(name.span.source, name.span.end, end);
         let edit = Edit::new(behind, format!(" {example}"));
         self.problems.push(Diagnostic {
-            // This is a syntax problem. The parser cannot report it, since only lowering knows the
-            // names of fields.
+            // This is a syntax problem. It is reported here, because the parser does not know which
+            // names are fields.
             is_of_syntax: true,
             ..error("missing_value", format!("`{field}` has no value"))
                 .at(name.span, "a value should follow this")

@@ -21,8 +21,9 @@ pub(super) struct Lowering<'s> {
     pub(super) names: Names<'s>,
     /// Blocks that are not objects, such as `camera`; only the first of each kind.
     pub(super) blocks: Vec<LoweredBlock<'s>>,
-    /// Whether the sum of the current indices is odd; `None` outside of repeated blocks. It selects
-    /// a colour of a pair.
+    /// Whether the sum of the current indices is odd; `None` outside of repeated blocks. If an
+    /// object's colour is a pair, the first colour is used for an even sum, and the second for an
+    /// odd one.
     pub(super) is_odd: Option<bool>,
     /// The objects built so far.
     pub(super) objects: Vec<Object>,
@@ -37,11 +38,12 @@ pub(super) struct Lowering<'s> {
     pub(super) first_names: HashMap<&'s str, Span>,
     /// The texts of items that could not be parsed.
     pub(super) bad: Vec<&'s str>,
-    /// Problems of the syntax and of the targets of `--set` arguments, which were found before
-    /// lowering.
+    /// Problems that were found before the tree is converted: those of the syntax, and of the
+    /// targets of `--set` arguments.
     pub(super) found: Vec<Diagnostic>,
     pub(super) problems: Problems,
-    /// The spans of the values of unknown fields, in the order of the text.
+    /// The spans of the values of unknown fields, in the order of the text. Syntax problems within
+    /// them are dropped.
     pub(super) unknown: Vec<Span>,
 }
 

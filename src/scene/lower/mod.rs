@@ -1,4 +1,4 @@
-//! Lowers a syntax tree to a scene.
+//! Lowers a syntax tree, i.e. converts it to a scene.
 //!
 //! In: the tree of a file, in which the values of `--set` arguments replace those of the file. Out:
 //! the scene, or problems. The items are processed once, in order: each item defines its name,

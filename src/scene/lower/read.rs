@@ -1,4 +1,4 @@
-//! Reads a scene: parses the text and lowers the tree. A large file is read in parts if it has no
+//! Reads a scene: parses the text and converts its tree. A large file is read in parts if it has no
 //! mistakes, and otherwise as a whole.
 
 use std::sync::atomic::AtomicBool;
@@ -17,11 +17,12 @@ use crate::{
     syntax::{self, tree::Item},
 };
 
-/// Number of bytes at the start of a file that are searched for zero bytes. If there are more than
-/// one or two, the file is binary rather than text.
+/// Number of bytes at the start of a file that are searched for zero bytes, which show that the
+/// file is binary rather than text. A larger number would find zero bytes further down in a file,
+/// but the search would take longer. Binary files usually have some near their start.
 const BINARY_BYTES: usize = 1 << 14;
 
-/// Reads a scene: parses the file and the overrides, and lowers them.
+/// Reads a scene: parses the file and the `--set` arguments, and converts them to a scene.
 pub fn read(sources: &Sources) -> Reading {
     read_in_parts(sources, PART_BYTES)
 }
@@ -36,12 +37,12 @@ pub fn read_unless(sources: &Sources, cancel: &AtomicBool) -> Result<Reading, Ca
     cancel::unless_set(cancel, reading)
 }
 
-/// Minimum size, in bytes, of the parts in which a file is read. A part is long enough to be worth
-/// a thread with a stack of its own. It is short enough that its tree takes little memory and that
-/// cancelling takes effect soon.
+/// Minimum size, in bytes, of the parts in which a file is read. A smaller part would not be worth
+/// a thread with a stack of its own. The tree of a larger part would take more memory, and
+/// cancelling would take effect later.
 const PART_BYTES: usize = 1 << 16;
 
-/// Reads a scene as [`read`] does, in parts of at least `bytes` bytes. The parts are lowered one
+/// Reads a scene as [`read`] does, in parts of at least `bytes` bytes. The parts are converted one
 /// after the other, so that the tree of the whole file is never in memory.
 ///
 /// The result does not depend on the size of the parts: a file with mistakes is read again as a
@@ -64,7 +65,7 @@ fn in_parts(sources: &Sources, bytes: usize, cancel: &AtomicBool) -> Option<Read
     let mut lowering = Lowering::new(sources, Names::default(), cancel);
     let mut overrides = overrides::read(sources, &mut lowering.problems);
     // The value of a `--set` argument may use all names of the file. Items with such a value are
-    // therefore lowered last.
+    // therefore converted last.
     let mut last = Vec::new();
     let file = &sources.file;
     let all = lowering.is_right()
@@ -98,7 +99,7 @@ pub fn analyze(sources: &Sources) -> SemanticModel<'_> {
     }
 }
 
-/// Lowers the tree of a whole file.
+/// Converts the syntax tree of a whole file to a scene.
 fn whole<'s>(
     sources: &'s Sources,
     parsed: &syntax::Parsed<'s>,
@@ -117,7 +118,7 @@ fn whole<'s>(
     overrides::apply(&mut overrides, &mut items);
     lowering.problems = overrides::add(overrides, &mut items, sources, lowering.names.budget());
     // The value of a `--set` argument may use all names of the file. All definitions are therefore
-    // lowered before the blocks.
+    // converted before the blocks.
     let is_definition = |item: &Item<'_>| matches!(item, Item::Definition(_));
     let (definitions, others): (Vec<_>, Vec<_>) = items.into_iter().partition(is_definition);
     lowering.items(&definitions);

@@ -1,5 +1,5 @@
-//! Lowers repeated blocks: a block with indices, such as `sphere for i < 8 { … }`, stands for many
-//! objects.
+//! Converts repeated blocks: a block with indices, such as `sphere for i < 8 { … }`, stands for
+//! many objects.
 
 use std::collections::BTreeSet;
 
@@ -17,14 +17,15 @@ use crate::{
     },
 };
 
-/// Maximum number of objects in a scene with repeated blocks, as the language defines it, since a
-/// short text could otherwise ask for more objects than fit into memory. A block that would exceed
-/// it is reported as an error and builds no objects.
+/// Maximum number of objects in a scene with repeated blocks, a limit that the language's reference
+/// states. A block that would exceed it is reported as an error and builds no objects. Without a
+/// limit, a short text could ask for more objects than fit into memory.
 const MOST_OBJECTS: usize = 1 << 24;
 
 impl<'s> Lowering<'s> {
-    /// Builds an object for each combination of the indices' values; the last index changes
-    /// fastest. Stops at the first combination with a mistake, so that it is reported once.
+    /// Builds the objects of a block with indices, as in `for i < 8, j < 4`: one for each
+    /// combination of the indices' values. The last index changes fastest. Stops at the first
+    /// combination with a mistake, so that the mistake is reported once.
     pub(super) fn repeated(
         &mut self,
         row: &'static BlockRow,
@@ -50,7 +51,7 @@ impl<'s> Lowering<'s> {
         } else if are_right {
             match self.combinations(block, repetition) {
                 Some(combinations) => self.objects_of(row, block, repetition, combinations),
-                // The head is wrong, but problems of the fields are reported, too.
+                // The `for` is wrong, but problems of the fields are reported, too.
                 None => self.unbuilt_without_indices(row, block, repetition),
             }
         }
@@ -60,9 +61,8 @@ impl<'s> Lowering<'s> {
         self.names.restore(hidden);
     }
 
-    /// Returns the combinations of the indices' values, concatenated in order. Reports a wrong
-    /// count and then returns `None`. Each index extends every combination of the indices before it
-    /// by all of its values.
+    /// Returns the combinations of the indices' values, concatenated in order: 0 0, 0 1, 1 0, 1 1
+    /// for `for i < 2, j < 2`. Reports a wrong count and then returns `None`.
     ///
     /// Counts that depend on no index are evaluated before any combination is stored. So a product
     /// of counts that is too large is reported without much memory, whatever the order of the
@@ -185,7 +185,8 @@ impl<'s> Lowering<'s> {
         self.is_odd = None;
     }
 
-    /// Evaluates the fields of a block without building any object.
+    /// Evaluates the fields of a repeated block to report their problems, without building any
+    /// object.
     fn unbuilt(&mut self, row: &'static BlockRow, block: &Block<'s>) {
         self.is_odd = Some(false);
         self.lowered(row, block);
@@ -205,7 +206,7 @@ impl<'s> Lowering<'s> {
         self.unbuilt(row, block);
     }
 
-    /// Sets the indices to `values`.
+    /// Defines the indices of a repeated block, with the numbers `values`.
     fn set_indices(&mut self, repetition: &Repetition<'s>, values: &[u32]) {
         for (index, &value) in repetition.indices.iter().zip(values) {
             let value = Value::Number(f64::from(value));
@@ -220,8 +221,8 @@ impl<'s> Lowering<'s> {
         indices.any(|index| has_name(text, index.name.text))
     }
 
-    /// Returns whether every count uses only earlier indices. Otherwise reports the first count
-    /// that does not.
+    /// Returns whether every count uses only earlier indices, as in `for i < 8, j < i`. Otherwise
+    /// reports the first count that does not.
     fn are_counted_before(&mut self, repetition: &Repetition<'s>) -> bool {
         for (at, index) in repetition.indices.iter().enumerate() {
             let mut later = repetition.indices.iter().skip(at);
@@ -248,8 +249,8 @@ impl<'s> Lowering<'s> {
         true
     }
 
-    /// Returns whether the name of an index is not defined yet, and defines it with an unknown
-    /// value. Otherwise reports it.
+    /// Defines an index with an unknown value. If its name is already defined, reports the name and
+    /// returns `false`.
     fn is_index(&mut self, name: Name<'s>) -> bool {
         let text = name.text;
         let problem = if let Some(what) = predefined(text) {
@@ -290,8 +291,9 @@ impl<'s> Lowering<'s> {
             .push(problem.at(name.span, "no value depends on it").help(help));
     }
 
-    /// Returns the number of values of an index; the indices before it must have values. Reports a
-    /// count that is not a whole number ≥ 0 and then returns `None`.
+    /// Returns the number of values that an index takes, i.e. the value of its count. The indices
+    /// before it must have values. Reports a count that is not a whole number ≥ 0 and then returns
+    /// `None`.
     fn count(&mut self, index: &Index<'s>) -> Option<usize> {
         let (tree, name) = (&index.count, index.name.text);
         let value =
@@ -339,8 +341,8 @@ impl<'s> Lowering<'s> {
             .push(problem.help("let the indices count less far, or take some of them away"));
     }
 
-    /// Adds labels with the current values of the indices to the problems from the index `before`
-    /// on.
+    /// Adds a label with the current values of the indices, such as `here i = 3`, to every problem
+    /// except the first `before` ones.
     fn label_with_indices(
         &mut self,
         before: usize,
@@ -400,7 +402,7 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports indices of a block that is not an object.
+    /// Reports the `for` of a block that is not an object, such as the camera.
     pub(super) fn not_repeated(&mut self, row: &BlockRow, repetition: &Repetition<'s>) {
         let (name, span) = (row.name, repetition.span());
         let help = format!("take this away; only objects are repeated: a scene has one `{name}`");

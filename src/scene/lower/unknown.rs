@@ -22,7 +22,8 @@ use crate::{
 };
 
 /// Largest possible picture. It stands in for the image when a sampler is checked before the
-/// picture's size is known.
+/// picture's size is known: a number of samples that is allowed for it is allowed for every
+/// picture.
 const LARGEST: Image = Image {
     width: 1 << 20,
     height: 1 << 20,
@@ -58,9 +59,9 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports several unknown words together that stand for the parts of one field, or for several
-    /// fields, such as `p1`, `p2` and `p3` for the vertices of a triangle. Returns the spans of
-    /// these words.
+    /// Reports several unknown words in one problem if they stand for the coordinates of one field,
+    /// such as `x`, `y` and `z` for a centre, or for several fields, such as `p1`, `p2` and `p3`
+    /// for the vertices of a triangle. Returns the spans of these words.
     pub(super) fn parted(
         &mut self,
         fields: &[tree::Field<'s>],
@@ -68,7 +69,7 @@ impl<'s> Lowering<'s> {
     ) -> Vec<Span> {
         let (row, mut taken) = (block.row, Vec::new());
         let is_unknown = |it: &tree::Field<'_>| row.field(it.name.text).is_none();
-        // Most blocks have no unknown field, so this case is fast.
+        // Most blocks have no unknown field. For these, the function returns early.
         if !fields.iter().any(is_unknown) {
             return taken;
         }
@@ -101,8 +102,9 @@ impl<'s> Lowering<'s> {
         taken
     }
 
-    /// Reports the unknown fields `found`. If `names` has one element, the words are taken for the
-    /// parts of that field; otherwise, each word for the field at the same position in `names`.
+    /// Reports the unknown fields `found` in one problem. If `names` has one element, they stand
+    /// for the coordinates or colours of this field. Otherwise, each stands for the field at the
+    /// same position in `names`.
     fn report_parts(
         &mut self,
         row: &BlockRow,
@@ -174,8 +176,8 @@ impl<'s> Lowering<'s> {
         fields
     }
 
-    /// Returns the fields that the unknown field `name` was probably meant to be; `None` if there
-    /// is no guess.
+    /// Returns the fields that the unknown field `name` was probably meant to be. Returns `None` if
+    /// there is no guess.
     fn meant(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -198,8 +200,8 @@ impl<'s> Lowering<'s> {
             return None;
         }
         let mut perhaps: Vec<&FieldRow> = row.fields_perhaps(word).collect();
-        // A vector of length 1 is more likely a direction than a point, so the fields are suggested
-        // in reverse order.
+        // A vector of length 1 is more likely a direction than a point. The fields are then
+        // suggested in reverse order, `direction` before `lookat`.
         let is_unit = |text: &str| match literal(text, Type::Vector) {
             Some(Value::Vector(vector)) => (vector.length() - 1.0).abs() < 1e-3,
             _ => false,
@@ -255,9 +257,9 @@ impl<'s> Lowering<'s> {
         Some(if is_near { meant } else { meant.unsure() })
     }
 
-    /// Returns the meaning `field` of an unknown field, with a fix that renames it and converts its
-    /// value if necessary. In a `--set` argument, a value cannot be converted, and the name is
-    /// replaced alone.
+    /// Returns the meaning of an unknown field that probably stands for `field`, with a fix that
+    /// renames it and converts its value if necessary. The value of a `--set` argument cannot be
+    /// converted, so there the fix replaces only the name.
     fn renamed(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -284,7 +286,8 @@ impl<'s> Lowering<'s> {
     /// Evaluates a value, but reports only its undefined names.
     fn evaluate_quietly(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         if let ValueKind::Name(name) = value.kind {
-            // The name may be the word of a method, which only a field for methods accepts.
+            // A name that is neither defined nor a colour may be that of a sampling method. It is
+            // then read as a method, and not reported as undefined.
             let is_known = self.names.place(name).is_some() || css::color(name).is_some();
             if !is_known && matches!(wanted, None | Some(Type::Method)) {
                 return schema::method(name).map(Value::Method);
@@ -298,9 +301,9 @@ impl<'s> Lowering<'s> {
         found
     }
 
-    /// Returns the text of a value as the block's field `row` needs it, and whether replacing it is
-    /// safe. Returns `None` if the block cannot be given that field, or if the value does not fit
-    /// and cannot be converted.
+    /// Returns the text of a value, converted to the type of the field `row` if necessary, and
+    /// whether writing it is safe. Returns `None` if the block cannot be given this field, or if
+    /// the value does not fit and cannot be converted.
     fn fitting(
         &mut self,
         block: &LoweredBlock<'s>,
@@ -346,7 +349,7 @@ impl<'s> Lowering<'s> {
             BlockKind::Camera => {
                 self.camera(block);
             }
-            // The size of the picture may be unknown yet, so the largest one is assumed.
+            // The size of the picture may not be known yet, so the largest one is assumed.
             BlockKind::Sampler => {
                 self.sampler(block, Some(LARGEST));
             }
@@ -360,8 +363,8 @@ impl<'s> Lowering<'s> {
         tried.iter().filter(|problem| problem.is_error()).count()
     }
 
-    /// Returns the text of `fields`, each with one part of the list `value`, and whether writing it
-    /// is safe. Returns `None` if a part does not fit its field.
+    /// Returns the text of `fields`, each with one element of the list `value`, and whether writing
+    /// it is safe. Returns `None` if an element does not fit its field.
     fn spread(
         &mut self,
         block: &LoweredBlock<'s>,

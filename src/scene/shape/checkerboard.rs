@@ -1,4 +1,5 @@
-//! The shape `checkerboard`: how it is lowered, its fields, its extent and its description.
+//! The shape `checkerboard`: how it is built from its block, its fields, its extent and its
+//! description.
 
 use glam::DVec3;
 
@@ -17,7 +18,7 @@ pub struct Checkerboard {
     /// Side of a square in metres, > 0.
     pub square: f64,
     /// The colours of the even and of the odd squares. A square is even if floor(x/square) +
-    /// floor(z/square) is even in it.
+    /// floor(z/square) is even for its points.
     pub colors: [Color; 2],
 }
 

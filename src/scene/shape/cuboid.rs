@@ -1,4 +1,4 @@
-//! The shape `box`: how it is lowered, its fields, its extent and its description.
+//! The shape `box`: how it is built from its block, its fields, its extent and its description.
 
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ pub struct Cuboid {
     pub max: DVec3,
     /// The colour, unless the faces have colours of their own.
     pub color: Color,
-    /// The colours of the faces across x, y and z, instead of `color`.
+    /// The colours of the faces perpendicular to x, y and z, instead of `color`.
     pub faces: Option<[Color; 3]>,
 }
 
@@ -61,9 +61,9 @@ impl Cuboid {
         })
     }
 
-    /// Returns the value of the field `name` if that is `center` or `size`; otherwise `None`. The
-    /// value is rounded to fifteen digits, which removes the rounding errors of computing it from
-    /// the corners.
+    /// Returns the value of the field `name` if this is `center` or `size`, and otherwise `None`.
+    /// The value is rounded to fifteen digits, which removes the rounding errors of computing it
+    /// from the corners.
     pub(in crate::scene) fn center_or_size(&self, name: &str) -> Option<DVec3> {
         if name == BOX.center.name {
             Some(tidy(self.min.midpoint(self.max)))

@@ -1,11 +1,10 @@
 //! Shapes of objects, with their colours.
 //!
-//! Each kind of shape has a file. It defines how the kind is lowered from its block, its position
+//! Each kind of shape has a file. It defines how the shape is built from its block, its position
 //! and extent, its fields, and its description. This file only dispatches to the kinds.
 //!
 //! A new kind begins with [`BlockKind`] and its row in the schema. From there, compiler errors and
-//! failing tests lead to everything else; CONTRIBUTING.md lists the places, including those to
-//! which nothing leads.
+//! failing tests lead to most other places that must be changed; CONTRIBUTING.md lists all of them.
 
 mod checkerboard;
 mod cuboid;
@@ -42,7 +41,8 @@ pub enum Shape {
     Checkerboard(Checkerboard),
 }
 
-/// Evaluates an expression for the struct in a [`Shape`], such as [`Sphere`], whichever kind it is.
+/// Evaluates an expression with the struct that a [`Shape`] contains, such as [`Sphere`]. The same
+/// expression is used for all kinds of shapes.
 macro_rules! for_each_kind {
     ($shape:expr, $own:ident => $result:expr) => {
         match $shape {
@@ -106,9 +106,9 @@ impl Shape {
         schema::of_kind(self.block_kind()).name
     }
 
-    /// Returns three colours of the shape: for a box, those of the faces across x, y and z; for a
-    /// checkerboard, that of the even squares, and twice that of the odd squares; for any other
-    /// shape, three times its only colour.
+    /// Returns three colours of the shape: for a box, those of the faces perpendicular to x, y and
+    /// z; for a checkerboard, that of the even squares, and twice that of the odd squares; for any
+    /// other shape, three times its only colour.
     pub fn colors(&self) -> [Color; 3] {
         for_each_kind!(self, own => own.colors())
     }
@@ -163,16 +163,16 @@ impl Shape {
         for_each_kind!(self, own => own.greatest_length(from))
     }
 
-    /// Returns the fields that the shape is written with, and their values. A box is written by its
-    /// corners.
+    /// Returns the fields with which the shape is written as a text, and their values. A box is
+    /// written with its corners rather than its centre and size.
     pub(super) fn fields(mut self) -> impl Iterator<Item = (&'static str, Value)> {
         let row = schema::of_kind(self.block_kind());
         let value = move |name| Some((name, self.field_mut(name)?.value()));
         row.field_names().filter_map(value)
     }
 
-    /// Returns a field that the shape is written with, by its name. Those of a box are its corners,
-    /// and not the centre and the size that are derived from the corners.
+    /// Returns a mutable reference to the field `name`. For a box, `center` and `size` are not
+    /// available, because they are computed from the corners.
     pub(super) fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
         for_each_kind!(self, own => own.field_mut(name))
     }
@@ -204,8 +204,9 @@ mod tests {
         source::{Source, Sources},
     };
 
-    /// Returns sets of fields that a block can be given together. Each way of each
-    /// [`Choice`](crate::schema::Choice) of the block occurs in at least one set.
+    /// Returns sets of fields that a block can have together. Each way of each
+    /// [`Choice`](crate::schema::Choice) of the block, i.e. each of the alternatives that exclude
+    /// each other, occurs in at least one set.
     fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {
         let most = row.choices.iter().map(|choice| choice.ways.len()).max();
         (0..most.unwrap_or(1)).map(move |way| {

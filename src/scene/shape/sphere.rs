@@ -1,4 +1,4 @@
-//! The shape `sphere`: how it is lowered, its fields, its extent and its description.
+//! The shape `sphere`: how it is built from its block, its fields, its extent and its description.
 
 use glam::DVec3;
 

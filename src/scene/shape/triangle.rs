@@ -1,4 +1,5 @@
-//! The shape `triangle`: how it is lowered, its fields, its extent and its description.
+//! The shape `triangle`: how it is built from its block, its fields, its extent and its
+//! description.
 
 use glam::DVec3;
 

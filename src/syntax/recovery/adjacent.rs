@@ -23,7 +23,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports `values` if there are several, since one is expected. Returns the value that they
-    /// probably mean, or a bad value if that is uncertain.
+    /// probably mean, or a value marked as bad if this is uncertain.
     pub(super) fn adjacent_values(
         &mut self,
         mut values: Vec<Value<'s>>,
@@ -153,7 +153,7 @@ impl<'s> Recovery<'_, 's> {
         let end = self.here().start;
         // Maximum length, in bytes, of the text between `start` and the `)`. In a longer text,
         // nothing is searched or reported. A value is searched again for each of its surplus `)`,
-        // so the limit bounds the time.
+        // so the limit bounds the time. Usual values are much shorter.
         const LONGEST: usize = 1000;
         if end - start > LONGEST {
             return false;

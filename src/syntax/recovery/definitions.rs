@@ -17,8 +17,8 @@ const OTHER_LETS: &str =
     "var const def define set val auto local int float double number vec3 vector";
 
 /// Maximum number of preceding items that are searched for a definition of the same name; earlier
-/// definitions are not found. Without this limit, the time would grow with the square of the number
-/// of lines.
+/// definitions are not found. Without a limit, the time would grow with the square of the number of
+/// lines. With a much smaller one, fewer definitions would be found.
 const ITEMS_BEFORE: usize = 64;
 
 impl<'s> Recovery<'_, 's> {

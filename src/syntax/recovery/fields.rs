@@ -59,8 +59,8 @@ impl<'s> Recovery<'_, 's> {
                 }
                 name if self.is_head(0) && !(self.is(1, "{") && self.is_field_name(name)) => {
                     // Fields that the outer block lacks may stand in the inner one. A block with
-                    // bad text gets no report of missing fields, so its keyword is recorded as
-                    // such.
+                    // bad text gets no report of missing fields, so the block's keyword is recorded
+                    // as bad text.
                     block.bad.push(block.keyword());
                     had_braces = true;
                     self.nested_block();
@@ -145,7 +145,7 @@ impl<'s> Recovery<'_, 's> {
         if self.words.is_kind(kind) {
             return self.block();
         }
-        // Skip the head, which may have indices. Its `{` may be missing.
+        // Skip the part before the `{`, which may have indices. The `{` itself may be missing.
         self.skip_head();
         if self.is(0, "{") {
             self.bump();
@@ -154,7 +154,8 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports definitions within `block` and reads them as if they stood before it. A definition
-    /// that uses an index of the block gets a bad value, since the index is unknown outside.
+    /// that uses an index of the block gets a value marked as bad, since the index is unknown
+    /// outside of the block.
     fn misplaced_let(&mut self, block: &Block<'s>) {
         let (keyword, before) = (self.here(), self.items.len());
         self.context.is_block = false;
@@ -179,7 +180,8 @@ impl<'s> Recovery<'_, 's> {
         self.report(&say::MISPLACED_LET, keyword, &[help], None);
     }
 
-    /// Reports indices, `for i < 8`, within `block`, and reads them as if they stood in its head.
+    /// Reports indices, `for i < 8`, within `block`, and reads them as if they stood before its
+    /// `{`.
     fn misplaced_indices(&mut self, block: &mut Block<'s>) {
         let (keyword, mut indices) = (self.bump(), Vec::new());
         while self.is_name(0) && self.is(1, "<") {
@@ -312,8 +314,8 @@ impl<'s> Recovery<'_, 's> {
         let mut values = Vec::new();
         let (mut is_listed, mut end) = (false, start);
         while self.starts_value(0) && self.kind(0) != TokenKind::Word {
-            // A name after a comma is taken as a value. If a value follows the name, it is the next
-            // field.
+            // A name after a comma is taken as a value, unless a value follows the name. In that
+            // case the name is the next field.
             let has_value = !matches!(self.kind(1), TokenKind::Name | TokenKind::Sign)
                 || matches!(self.word(1), "(" | "[" | "<" | "=" | ":" | ":=");
             if self.is_name(0) && (!is_listed || has_value) {
@@ -353,7 +355,7 @@ impl<'s> Recovery<'_, 's> {
         let named: Vec<String> = named.collect();
         let fix = (!named.is_empty()).then(|| replace(span, named.join("  ")));
         // Two vectors in a box are read as its corners. They may also be its centre and its size,
-        // so that fix is not safe.
+        // so the fix is not safe.
         let has_one_way = row.is_some_and(|row| row.choices.is_empty());
         let said = say::MISSING_FIELD_NAME.safe_if(has_one_way);
         self.report(&said, span, &[&self.short(span)], fix);

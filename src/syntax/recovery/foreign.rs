@@ -16,8 +16,9 @@ use crate::{
     },
 };
 
-/// Maximum number of tokens that are searched for the `?` of a conditional expression. An
-/// expression whose `?` comes later is not recognized as a condition.
+/// Maximum number of tokens that are searched for the `?` of a conditional expression, such as `a >
+/// b ? c : d`. An expression whose `?` comes later is not recognized as a condition. The limit
+/// bounds the time of the search; the text before a `?` is usually shorter.
 const CONDITION_TOKENS: usize = 24;
 
 /// Position where a comment of another language may start. It decides which tokens start one: `#`,
@@ -33,7 +34,7 @@ pub(super) enum CommentPosition {
 }
 
 /// Characters of mathematical notation and of other languages. A row holds several characters, the
-/// help for one in place of a value, and the help for one after a value.
+/// help if one of them stands in place of a value, and the help if one follows a value.
 #[rustfmt::skip]
 const NOTATION: &[(&str, [&str; 2])] = &[
     ("π", ["write `pi`", "write `* pi`"]),
@@ -49,8 +50,8 @@ const NOTATION: &[(&str, [&str; 2])] = &[
 /// blue`, which chooses between colours.
 pub(super) const TURNS: &str = "there is no remainder: of objects with indices, a pair of colours, `color (gray, white)`, takes turns, and `for i < 8, j < 2` counts in rows";
 
-/// Returns the help from the first row of [`NOTATION`] that contains a character of `word`, or
-/// `None`. `is_behind` selects the help for a word after a value.
+/// Returns the help for a character of mathematical notation or of another language in `word`, such
+/// as `π`, or `None` if there is no such character. `is_behind` says that the word follows a value.
 pub(super) fn help_for_notation(word: &str, is_behind: bool) -> Option<&'static str> {
     let is_in = |row: &&(&str, _)| row.0.chars().any(|character| word.contains(character));
     let (_, [value, behind]) = NOTATION.iter().find(is_in)?;
@@ -67,8 +68,8 @@ impl<'s> Recovery<'_, 's> {
         while !(self.is_on_new_line(0) || self.is(0, "{") || self.is(0, "}")) {
             self.bump();
         }
-        // The statement may define names. Lowering does not report uses of names that occur in a
-        // `Bad` item.
+        // The statement may define names. Names in an item that is marked as `Bad` are not reported
+        // as undefined later.
         self.items.push(Item::Bad(span.to(self.behind())));
         if self.is(0, "{") {
             self.bump();
@@ -258,7 +259,8 @@ impl<'s> Recovery<'_, 's> {
     /// rest.
     pub(super) fn nested_comment(&mut self) -> bool {
         // Maximum number of tokens that are searched for the `*/` that was meant to end the
-        // comment.
+        // comment. If it comes later, the text is not recognized as the rest of a comment. The
+        // limit bounds the time of the search.
         const ENOUGH: usize = 64;
         let start = self.here().start;
         let before = self.text.get(..start).unwrap_or_default();
@@ -284,7 +286,8 @@ impl<'s> Recovery<'_, 's> {
     /// Reports a file of another program as one mistake. Returns whether the text is such a file.
     pub(super) fn foreign_file(&mut self) -> bool {
         // Number of bytes at the start of the file that are searched for the strings by which a
-        // kind of foreign file is known.
+        // kind of foreign file is known. Such strings usually occur near the start. The limit
+        // bounds the time for a large file.
         const ENOUGH: usize = 1 << 14;
         let text = self.text.get(..self.source.floor_char_boundary(ENOUGH));
         let text = text.unwrap_or_default().trim_start_matches('\u{feff}');

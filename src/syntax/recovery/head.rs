@@ -1,34 +1,33 @@
-//! Finds mistakes in the indices of an object's head, such as `for i < 8, j < i`, with tables of
-//! patterns.
+//! Finds mistakes in the indices of an object, such as `for i < 8, j < i`, with tables of patterns.
 //!
-//! In: the head's text from `for` on. Out: the place of the first mistake, the message, and the
-//! corrected head if the correction is certain.
+//! In: the text from `for` to the `{` of the object. Out: the place of the first mistake, the
+//! message, and the corrected text if the correction is certain.
 
 use std::ops::Range;
 
 use crate::syntax::tokens::{is_name_char, numeric_part};
 
-/// First mistake in the indices of a head.
+/// First mistake in the indices of an object, such as `for i <= 7`.
 pub(super) struct HeadSlip {
-    /// Range of the mistake in the head's text, in bytes.
+    /// Byte range of the mistake in the text that starts with `for`.
     pub at: Range<usize>,
     /// The message; empty if no pattern describes the mistake.
     pub said: &'static str,
     /// The help, for use if there is no correction.
     pub help: String,
-    /// The corrected head, if it is certain.
+    /// The corrected text from `for` on, if the correction is certain.
     pub right: Option<String>,
 }
 
-/// Row of a table of patterns: pattern, message, correction, and help for the case that the
-/// correction is not certain.
+/// Row of a table of patterns for mistakes in `for i < 8`: pattern, message, correction, and help
+/// for the case that the correction is not certain.
 ///
 /// In the pattern, `I` and `W` are names, `O` is a name if another one follows it, `N` and `M` are
-/// values, `$` is the end of the head, `|` separates alternatives, and the mistake is between `«`
+/// values, `$` is the end of the text, `|` separates alternatives, and the mistake is between `«`
 /// and `»`. In the other texts, `{I}`, `{W}`, `{N}` and `{M}` stand for the matched texts.
 type HeadPattern = [&'static str; 4];
 
-// Messages and help texts that several patterns of a head ([`HeadPattern`]) share.
+// Messages and help texts that several patterns for mistakes in `for i < 8` share.
 const FROM_ZERO: &str = "an index begins at 0 by itself";
 const NO_RANGE: &str = "an index has a count, and no range";
 const EITHER: &str = "write `for {I} < {N}`, or `for {I} < {N+1}` if {N} is one of its values";
@@ -37,11 +36,12 @@ const UP_TO: &str = "write `for {I} < {N-M}`, and `{I} + {M}` for `{I}` in the v
 const LACKS_COUNT: &str =
     "write `for {I} < 8` with the number of its values, or `for k < {I}` if `{I}` is that";
 const STEP: &str = "write `for {I} < {N/M}`, and `{M} * {I}` for `{I}` in the values";
-/// Correction of a pattern ([`HeadPattern`]) that is no text to write: the object's name is moved
-/// before the `for`.
+/// Mark in place of the correction in a [`HeadPattern`]. It says that the object's name is to be
+/// moved before the `for`.
 const NAME_FIRST: &str = "^";
 
-/// Patterns of one index with its count, such as `i < 8`, without and with mistakes.
+/// Patterns of one index with its count, such as `i < 8`. The first one is correct, and the others
+/// have mistakes.
 #[rustfmt::skip]
 const INDICES: [HeadPattern; 27] = [
     ["I < N", "", "{I} < {N}", ""],
@@ -75,7 +75,8 @@ const INDICES: [HeadPattern; 27] = [
 
 const COMMA: &str = "a comma separates two indices";
 
-/// Patterns of the text after an index and its count, without and with mistakes.
+/// Patterns, with and without mistakes, of the text after an index and its count, such as the comma
+/// after `i < 8` in `for i < 8, j < i`.
 #[rustfmt::skip]
 const BEHIND: [HeadPattern; 9] = [
     ["« , » $", "no comma stands behind the last index", "", ""],
@@ -89,8 +90,9 @@ const BEHIND: [HeadPattern; 9] = [
     ["« W » $", "the name of an object stands before the `for`", NAME_FIRST, ""],
 ];
 
-/// Finds the first mistake in `head`, which starts with `for` or a word that stands for it.
-/// `has_name` says whether the object has a name before the `for`.
+/// Finds the first mistake in `head`, the indices of an object, such as `for i <= 7`. The text
+/// starts with `for` or a word that stands for it. `has_name` says whether the object has a name
+/// before the `for`.
 pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     let mut found = Captures::default();
     let keyword = name_length(head);
@@ -149,8 +151,8 @@ pub(super) fn slip(head: &str, has_name: bool) -> HeadSlip {
     }
 }
 
-/// Texts that the items `I`, `N`, `M` and `W` of a pattern matched when it was matched last. They
-/// are empty if the pattern has no such item.
+/// Texts that a pattern ([`HeadPattern`]) matched: the names `I` and `W`, and the values `N` and
+/// `M`. A text is empty if the pattern does not contain its letter.
 #[derive(Default)]
 struct Captures<'t> {
     i: &'t str,
@@ -160,8 +162,8 @@ struct Captures<'t> {
 }
 
 impl<'t> Captures<'t> {
-    /// Matches the pattern `row` at the offset `from` of `text`. Returns the end of the match and
-    /// the range of the mistake, or `None` if the text does not match.
+    /// Matches the pattern `row`, as in a [`HeadPattern`], at the offset `from` of `text`. Returns
+    /// the end of the match and the range of the mistake, or `None` if the text does not match.
     fn read(&mut self, row: &str, text: &'t str, from: usize) -> Option<(usize, Range<usize>)> {
         let (mut at, mut under, mut index) = (from, from..from, "");
         for item in row.split(' ') {

@@ -16,9 +16,9 @@ use crate::{
 /// Words that are surely not an object's name if they stand before a kind, as in `a sphere {`.
 const NO_NAMES: &str = "a an the my new add create draw make object";
 
-/// Maximum number of tokens of a line that are searched for the end of a head. The search stops
-/// there as at the end of the line. Heads are shorter, and the limit bounds the time for a very
-/// long line.
+/// Maximum number of tokens of a line that are searched for the `{` that ends the head of a block.
+/// The search stops there as at the end of the line. Heads are shorter, and the limit bounds the
+/// time for a very long line.
 const LINE_TOKENS: usize = 24;
 
 impl<'s> Recovery<'_, 's> {
@@ -57,7 +57,7 @@ impl<'s> Recovery<'_, 's> {
         count
     }
 
-    /// Reads a block whose head is a kind, a kind and a name, or missing.
+    /// Reads a block whose head, the part before the `{`, is a kind, a kind and a name, or missing.
     pub(super) fn block(&mut self) {
         let span = self.here();
         let kind = self.is_name(0).then(|| self.name());
@@ -81,7 +81,8 @@ impl<'s> Recovery<'_, 's> {
     fn open_block(&mut self, mut block: Block<'s>) {
         // Maximum number of blocks within one another that are read; blocks further inside are
         // skipped. The language has no blocks within blocks, but reading them allows reports about
-        // mistakes in the inner ones.
+        // mistakes in the inner ones. A limit is needed because each level takes stack; a somewhat
+        // larger one would do, too.
         const DEEPEST: usize = 3;
         block.open = Some(self.bump());
         if self.blocks == DEEPEST {
@@ -251,7 +252,7 @@ impl<'s> Recovery<'_, 's> {
         self.items.push(Item::Block(block));
     }
 
-    /// Reports and skips a line outside of every block that starts no item.
+    /// Reports and skips a line that stands outside of all blocks and starts no item.
     fn line(&mut self) {
         let start = self.here();
         if self.is_name(0) {
@@ -313,7 +314,8 @@ impl<'s> Recovery<'_, 's> {
         while self.is(0, "}") {
             all = all.to(self.bump());
         }
-        // If no item follows, another token than `}` may have been meant.
+        // If no item follows, another token than `}` may have been meant, so the fix would not be
+        // certain.
         let is_before_item = self.is_on_new_line(0) || self.is_head(0) || self.is(0, "let");
         // If a block without its `{` was reported shortly before, the `}` may close that block, so
         // there is no fix.

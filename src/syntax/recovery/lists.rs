@@ -16,13 +16,13 @@ use crate::{
     },
 };
 
-/// The numbers of values that are allowed in a list.
+/// Range of the number of values that a list may have.
 type PartCount = RangeInclusive<usize>;
 
 /// A list as it was written.
 struct List<'s> {
     elements: Vec<Element<'s>>,
-    /// From its opening to its closing bracket.
+    /// Span from the opening to the closing bracket.
     span: Span,
     /// Whether the list is in parentheses rather than other brackets.
     is_round: bool,
@@ -33,8 +33,8 @@ struct List<'s> {
 }
 
 impl<'s> Recovery<'_, 's> {
-    /// Returns whether the next token, a `{` in place of a value, opens a list of values rather
-    /// than fields.
+    /// Returns whether the next token, a `{` in place of a value, opens a list of values, as in
+    /// `{1, 2, 3}`, rather than fields.
     pub(super) fn is_flat_list(&mut self) -> bool {
         let sign = 1 + usize::from(self.is(1, "-"));
         let is_number = self.kind(sign) == TokenKind::Number;
@@ -105,7 +105,7 @@ impl<'s> Recovery<'_, 's> {
     }
 
     /// Reports `vec3(1, 2, 3)` or `rgba(255, 0, 0, 1)`, whose arguments were read already. Returns
-    /// a bad value.
+    /// a value marked as bad.
     fn foreign_function(&mut self, name: Name<'s>, list: List<'s>) -> Value<'s> {
         let span = name.span.to(list.span);
         let mut values: Vec<Value<'s>> = list.elements.into_iter().map(|e| e.value).collect();
@@ -159,7 +159,8 @@ impl<'s> Recovery<'_, 's> {
             gaps: Vec::new(),
             needless: None,
         };
-        // Semicolons and names of parts are reported once for the whole list.
+        // Semicolons, and names of elements as in `(x = 3, …)`, are reported once for the whole
+        // list.
         let (mut semicolons, mut labels, problems_before) =
             (Vec::new(), Vec::new(), self.problems.len());
         loop {
@@ -205,7 +206,7 @@ impl<'s> Recovery<'_, 's> {
                 if !is_value_next {
                     list.gaps.push(list.elements.len());
                 }
-                // Skip the name of a part of the list, as in `(x = 3, …)`.
+                // Skip the name of an element of the list, as in `(x = 3, …)`.
                 let is_path = self.is(1, ":") && self.is(2, ":");
                 if self.is_name(0) && matches!(self.word(1), "=" | ":") && !is_path {
                     let name = self.bump();
@@ -273,7 +274,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports parts of a list that are named with `=` or `:`. The fix removes the names if they
+    /// Reports elements of a list that are named with `=` or `:`. The fix removes the names if they
     /// are x, y, z or r, g, b, in this order. Other names have an uncertain meaning and get no fix.
     fn names_of_parts(&mut self, labels: &[Span], is_plain: bool) {
         let Some(&first) = labels.first() else {

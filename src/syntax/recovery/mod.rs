@@ -41,7 +41,7 @@ use crate::{
     source::{Source, SourceId, Span},
 };
 
-/// The parser of items that do not follow the grammar.
+/// Parser of items that do not follow the grammar. It recovers from errors.
 pub struct Recovery<'w, 's> {
     source: &'s Source,
     text: &'s str,
@@ -58,10 +58,10 @@ pub struct Recovery<'w, 's> {
     pub(super) problems: Problems,
     /// Whether a mistake hides the rest of the text.
     is_cut: bool,
-    /// Whether recovery read an item that was probably meant otherwise, but found no better
+    /// Whether error recovery read an item that was probably meant otherwise, but found no better
     /// explanation, so that pest's reading was kept.
     is_doubtful: bool,
-    /// Offset after the last item that recovery read.
+    /// Offset after the last item that error recovery read.
     pub(super) read_to: usize,
     /// Whether [`Self::foreign_file`] has tested if the text is a file of another program, which is
     /// done once.
@@ -90,15 +90,16 @@ struct Context<'s> {
     field: &'s str,
     /// Type that the value should have, if that is known.
     takes: Option<Type>,
-    /// Needless separators and the characters that start comments in other languages. Each is
-    /// mapped to its places.
+    /// Needless separators, such as `;`, and the characters that start comments in other languages,
+    /// such as `#`. Each is mapped to its places.
     signs: BTreeMap<&'s str, Vec<Span>>,
-    /// Whether one of `signs` may be needed after all. The reports of `signs` then get no fix.
+    /// Whether a separator in `signs` may be needed after all, for example to continue a list. The
+    /// reports of needless separators then get no fix.
     is_doubtful: bool,
 }
 
 impl<'w, 's> Recovery<'w, 's> {
-    /// Makes a recovery at the beginning of a text.
+    /// Makes an error-recovering parser that starts at the beginning of a text.
     pub fn new(source: &'s Source, id: SourceId, words: &'w Vocabulary<'s>) -> Self {
         let text = source.text();
         Self {
@@ -159,7 +160,7 @@ impl<'w, 's> Recovery<'w, 's> {
             }
             Some([Item::Definition(_)]) => {
                 let mut new = self.problems.iter().skip(problems);
-                // If the new reading finds no mistake, pest's node is kept.
+                // If the new reading finds no mistake, the node that pest's reading gave is kept.
                 let is_new = slips(self) > slips_before || self.problems.len() > problems;
                 is_new && new.all(|problem| problem.code == "pinhole::foreign_function")
             }
@@ -216,7 +217,8 @@ impl<'w, 's> Recovery<'w, 's> {
         while self.tokens.len() <= ahead {
             self.tokens.push_back(self.lexer.seen_token());
         }
-        // Once the maximum number of problems is reached, recovery behaves as if the text ended.
+        // Once the maximum number of problems is reached, error recovery behaves as if the text
+        // ended.
         let token = self.tokens.get(ahead).filter(|_| !self.problems.is_full());
         let end = || Lexer::new(self.text, self.text.len()).token();
         token.copied().unwrap_or_else(end)
@@ -323,7 +325,7 @@ impl<'w, 's> Recovery<'w, 's> {
         self.is_name(name) && ends(self, name + 1) && !(is_kind && self.is_on_new_line(name))
     }
 
-    /// Returns whether the next token starts the head of a block of a known kind.
+    /// Returns whether the next token starts a block of a known kind, such as `sphere Ball {`.
     fn starts_block(&mut self) -> bool {
         self.is_head(0) && self.is_kind(0)
     }
@@ -338,8 +340,8 @@ impl<'w, 's> Recovery<'w, 's> {
         self.context.is_block && self.words.takes(self.context.kind, name).is_some()
     }
 
-    /// Returns whether the next token starts a line that is the head of a block of a known kind.
-    /// The head may have mistakes.
+    /// Returns whether the next token starts a line that opens a block of a known kind. The text
+    /// before the `{` may have mistakes.
     fn starts_item(&mut self) -> bool {
         let word = self.word(0);
         self.is_on_new_line(0) && self.words.is_kind(word) && !self.is_field_name(word) && {
@@ -351,7 +353,7 @@ impl<'w, 's> Recovery<'w, 's> {
     // The methods below skip text after a mistake.
 
     /// Returns whether every unfinished construct ends before the next token: a brace, `let`, the
-    /// name of a field, the start of a head, or the first token of a line (within a block, only a
+    /// name of a field, the start of a block, or the first token of a line (within a block, only a
     /// name).
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
@@ -446,8 +448,8 @@ fn unquoted(written: &str) -> &str {
     written.trim_matches(marks).trim()
 }
 
-/// Returns a help with an example of a value of the type `takes`. If the type is unknown, the
-/// examples are of several types.
+/// Returns a help text with an example value of the type `takes`. If the type is unknown, the text
+/// has examples of several types.
 fn example(takes: Option<Type>) -> &'static str {
     let any = "write a value, such as `2`, `30deg`, `(0, 1, 0)` or `olive`";
     takes.map_or(any, Type::such_as)

@@ -14,8 +14,8 @@ use crate::{
 };
 
 impl<'s> Recovery<'_, 's> {
-    /// Returns whether indices start at the token `ahead` tokens after the next one. A `for` at the
-    /// start of a line is a statement of another language instead.
+    /// Returns whether indices, as in `for i < 8`, start at the token `ahead` tokens after the next
+    /// one. A `for` at the start of a line is a statement of another language instead.
     pub(super) fn is_repetition(&mut self, ahead: usize) -> bool {
         let words = ["for", "foreach", "loop", "repeat", "while"];
         let is_word = words.contains(&self.word(ahead)) && !self.is_on_new_line(ahead);
@@ -92,8 +92,8 @@ impl<'s> Recovery<'_, 's> {
         self.report_head(at, slip.said, &slip.help, fix, is_safe);
     }
 
-    /// Reports a mistake in the indices of a head. An empty `said` or `help` is replaced by a
-    /// general explanation of indices.
+    /// Reports a mistake in the indices of an object, such as `for i <= 7`. An empty `said` or
+    /// `help` is replaced by a general explanation of indices.
     pub(super) fn report_head(
         &mut self,
         at: Span,

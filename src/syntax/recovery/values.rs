@@ -26,7 +26,7 @@ const SUM: &[&str] = &["+", "-", "−", "–", "—"];
 
 impl<'s> Recovery<'_, 's> {
     /// Reads the value of a field, a definition or a `--set` argument. Reports any other text in
-    /// its place and returns a bad value.
+    /// its place and returns a value marked as bad.
     pub(super) fn value(&mut self) -> Value<'s> {
         let start = self.here();
         let (values, commas) = self.values();
@@ -67,7 +67,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports a list that lacks its `(`; its `)` is the next token. Returns a bad value.
+    /// Reports a list that lacks its `(`; its `)` is the next token. Returns a value marked as bad.
     fn unopened_list(&mut self, start: Span, values: &[Value<'s>], commas: usize) -> Value<'s> {
         let (sign, span) = (self.word(0), self.bump());
         let parts = self.context.takes.and_then(Type::parts);
@@ -253,7 +253,7 @@ impl<'s> Recovery<'_, 's> {
         self.report(&said, span, &[written, help], fix);
     }
 
-    /// Reports an operator that lacks its right operand, and returns a bad value.
+    /// Reports an operator that lacks its right operand, and returns a value marked as bad.
     fn without_operand(&mut self, left: Value<'s>, written: &str, sign: Span) -> Value<'s> {
         if written == "%" {
             self.unknown_operator(written, sign, false, None);

@@ -1,7 +1,8 @@
-//! The grid of a quadtree: whole numbers for positions in the view plane and for nearness.
+//! The grid of a quadtree: whole numbers for positions in the view plane and for inverse depths.
 //!
-//! In: coordinates in the view plane, and inverse depths. Out: units of the grid, and the upper
-//! half of an `f64`'s bits. Both conversions are monotone, and bounds are rounded outwards.
+//! In: coordinates in the view plane, and inverse depths. Out: units of the grid, and [`Nearness`]
+//! values, the upper half of an `f64`'s bits. Both conversions are monotone, and bounds are rounded
+//! outwards.
 
 use crate::tracer::{
     bounds2d::Extent,
@@ -10,13 +11,14 @@ use crate::tracer::{
     local_form::Patch,
 };
 
-/// Ratio of the side of the quadtree's root cell to the longer side of the camera's window. The
-/// root cell is wider by a sixteenth on each side. Rectangles of pixels at the picture's edge are
-/// therefore inside it, even with rounding errors.
+/// Ratio of the side of the quadtree's root cell to the longer side of the camera's window. With
+/// 1.125, the root cell is wider than the window by a sixteenth on each side. Rectangles of pixels
+/// at the picture's edge are therefore inside it, even with rounding errors.
 const ROOT_MARGIN: f64 = 1.125;
 
-/// Binary logarithm of the side of the quadtree's root cell in units of the grid. In a picture
-/// 100,000 pixels wide, a pixel is about a hundred units long.
+/// Binary logarithm of the side of the quadtree's root cell in units of the grid. Rounding
+/// positions to units hardly matters, because even in a picture 100,000 pixels wide, a pixel is
+/// about a hundred units long.
 pub(super) const LEVELS: u32 = 24;
 
 /// A rectangle of the view plane in units of the grid; both ends are included.
@@ -26,7 +28,7 @@ pub struct Rectangle {
     pub(super) high: [u32; 2],
 }
 
-/// The bounds of an object in the view plane, and its maximum nearness.
+/// The bounds of an object in the view plane, and an upper bound of its inverse depth.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundedObject {
     /// Rectangle in which the object may be seen.
@@ -42,21 +44,22 @@ pub struct BoundedObject {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Nearness(u32);
 
-/// The conversion from X and Y to units of the grid.
+/// Conversion from the components X and Y of a ray's direction to units of the grid.
 #[derive(Clone, Copy, Debug)]
 pub struct CellGrid {
     least: f64,
     per_unit: f64,
-    /// First unit of the camera's window on each axis; no point outside of the window is looked up.
+    /// First grid unit of the camera's window on each axis. No point outside of the window is
+    /// looked up in the quadtree.
     low: [u32; 2],
     high: [u32; 2],
 }
 
 impl Nearness {
-    /// The least nearness, which hides nothing.
+    /// The least value, which hides nothing, because every object's value is greater.
     pub const NONE: Self = Self(0);
 
-    /// Rounds a non-negative number up. Returns the greatest nearness for NaN and negative numbers.
+    /// Rounds a non-negative number up. Returns the greatest value for NaN and negative numbers.
     fn above(x: f64) -> Self {
         if x >= 0.0 {
             Self((x.to_bits() >> 32) as u32 + 1)
@@ -135,14 +138,14 @@ impl CellGrid {
     /// the first unit for NaN.
     #[inline]
     fn unit(&self, x: f64) -> u32 {
-        // The last unit but one of the grid, because `CellGrid::high` is one unit beyond the
-        // result.
+        // Second-to-last unit of the grid, the maximum of the result. `CellGrid::high` is one unit
+        // beyond the result and must still be a unit of the grid.
         const LAST: u32 = (1 << LEVELS) - 2;
         (((x - self.least) * self.per_unit) as u32).min(LAST)
     }
 
-    /// Returns the units of a direction's X and Y. Returns `None` if the direction is outside of
-    /// the window.
+    /// Returns the grid units of the components X and Y of a ray's direction. Returns `None` if the
+    /// direction is outside of the window.
     #[inline]
     pub(super) fn units(&self, r: &Direction<f64>) -> Option<[u32; 2]> {
         let at = [self.unit(r.x), self.unit(r.y)];
@@ -150,8 +153,9 @@ impl CellGrid {
         (is_within(0) && is_within(1)).then_some(at)
     }
 
-    /// Converts ranges of X and Y to a rectangle of the grid, widened by one unit on each side and
-    /// clipped to the window. Returns `None` if the rectangle lies outside of the window.
+    /// Converts ranges of the components X and Y of a ray's direction to a rectangle of the grid,
+    /// widened by one unit on each side and clipped to the window. Returns `None` if the rectangle
+    /// lies outside of the window.
     fn ends(&self, ranges: [Interval; 2]) -> Option<Rectangle> {
         let low = [0, 1].map(|i| {
             let low = self.unit(ranges[i].low).saturating_sub(1);
@@ -161,8 +165,8 @@ impl CellGrid {
         (low[0] <= high[0] && low[1] <= high[1]).then_some(Rectangle { low, high })
     }
 
-    /// Returns the rectangle that contains all rays through a patch, clipped to the window. Returns
-    /// `None` if the patch lies outside of the window.
+    /// Returns the rectangle of the grid that contains all rays through the rectangle `patch` of
+    /// the view plane, clipped to the window. Returns `None` if `patch` lies outside of the window.
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         let center = [patch.center.x, patch.center.y];
         self.ends([0, 1].map(|i| Interval::about(center[i], 0.5 * patch.sides[i])))

@@ -1,14 +1,14 @@
-//! The objects that rays through a point of the view plane may hit: a quadtree over their bounds
-//! there.
+//! The objects that rays through a point of the view plane may hit: a quadtree over the objects'
+//! bounds in the view plane.
 //!
 //! All rays share the eye, so that a ray is a point of the view plane and lies in exactly one cell
 //! of each level: its search does not branch. An object is listed in the cells that it overlaps on
 //! the level where cells are about as large as the object. There are at most four such cells, so
 //! that the lists have at most four entries per object, whatever the objects look like. Each list
-//! is sorted by nearness, the greatest first. A ray that has hit an object stops reading a list at
-//! the first entry behind this object.
+//! is sorted by the objects' maximum inverse depth ([`Nearness`]), the greatest first. A ray that
+//! has hit an object stops reading a list at the first entry behind this object.
 //!
-//! Cells have coordinates in whole numbers, and the conversion to them is monotone. Its rounding
+//! Cells have coordinates in whole numbers, and the conversion to them is monotone. The conversion
 //! may move a point out of its object's bounds by at most one unit; bounds are therefore widened by
 //! one unit.
 
@@ -41,8 +41,8 @@ impl Quadtree {
     }
 
     /// Calls `visit` with the objects that a ray may hit, from the largest cell down, until `visit`
-    /// fails. `visit` returns a nearness; objects at or below it are hidden and are skipped.
-    /// Returns `None` if the direction is outside of the window.
+    /// fails. `visit` returns the rounded inverse depth of the nearest crossing so far; objects
+    /// entirely behind it are skipped. Returns `None` if the direction is outside of the window.
     #[inline]
     pub fn visit<E>(
         &self,
@@ -52,9 +52,10 @@ impl Quadtree {
         Some(self.tree.visit(self.grid.units(r)?, visit))
     }
 
-    /// Returns the objects that rays through a patch may hit, in file order. `behind` is called
-    /// with an object that fills the patch, and returns a nearness; objects at or below it are
-    /// hidden and are left out. Returns `None` if there seem to be more than `most` objects.
+    /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, in
+    /// file order. `behind` is called with an object that fills the rectangle, and returns the
+    /// rounded inverse depth that the object reaches everywhere; objects entirely behind it are
+    /// left out. Returns `None` if too many objects are found, certainly more than `most`.
     pub fn within(
         &self,
         patch: &Patch,
@@ -67,8 +68,9 @@ impl Quadtree {
         }
     }
 
-    /// Returns the objects that rays through a patch may hit, the nearest first. Returns `None` if
-    /// there seem to be more than [`OBJECTS_A_CELL`].
+    /// Returns the objects that rays through the rectangle `patch` of the view plane may hit, the
+    /// nearest first. Returns `None` if too many objects are found, certainly more than
+    /// [`OBJECTS_A_CELL`].
     pub fn nearby(&self, patch: &Patch) -> Option<Vec<BoundedObject>> {
         let mut items = self.within(patch, OBJECTS_A_CELL, |_| Nearness::NONE)?;
         items.sort_by_key(|item| Reverse(item.nearest));
@@ -76,7 +78,8 @@ impl Quadtree {
     }
 
     /// Calls `visit` with the objects of `nearby` that a ray may hit, as [`visit`](Self::visit)
-    /// does. `nearby` is the result of [`nearby`](Self::nearby) for a patch that contains the ray.
+    /// does. `nearby` is the result of [`nearby`](Self::nearby) for a rectangle of the view plane
+    /// that contains the ray.
     #[inline]
     pub fn visit_nearby<E>(
         &self,
@@ -88,8 +91,8 @@ impl Quadtree {
         Some(visit_list(nearby, at, &mut { Nearness::NONE }, &mut visit))
     }
 
-    /// Returns a rectangle that contains all rays through a patch. Returns `None` if the patch lies
-    /// outside of the window.
+    /// Returns a rectangle of the grid that contains all rays through the rectangle `patch` of the
+    /// view plane. Returns `None` if `patch` lies outside of the window.
     #[inline]
     pub fn rectangle(&self, patch: &Patch) -> Option<Rectangle> {
         self.grid.rectangle(patch)

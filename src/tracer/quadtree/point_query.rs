@@ -10,7 +10,8 @@ use super::{
 
 impl Cells {
     /// Calls `visit` with the objects that the ray through a point may hit, until `visit` fails.
-    /// `visit` returns a nearness; objects at or below it are hidden and are skipped.
+    /// `visit` returns the rounded inverse depth of the nearest crossing so far; objects entirely
+    /// behind it are skipped.
     #[inline]
     pub(super) fn visit<E>(
         &self,
@@ -37,8 +38,8 @@ impl Cells {
 }
 
 /// Calls `visit` with the objects of one list that the ray through a point may hit, the nearest
-/// first. Stores in `hidden` the nearness that `visit` returns, and stops at the first object at or
-/// below it.
+/// first. `visit` returns the rounded inverse depth of the nearest crossing so far, which is stored
+/// in `hidden`. Stops at the first object that is entirely behind it.
 #[inline]
 pub(super) fn visit_list<E>(
     list: &[BoundedObject],

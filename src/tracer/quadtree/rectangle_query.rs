@@ -16,12 +16,14 @@ const MAX_CELLS: usize = 4;
 pub(super) struct Search<'a, F> {
     tree: &'a Cells,
     rectangle: &'a Rectangle,
-    /// Maximum number of entries of lists in `found`, where an object may occur several times.
+    /// Maximum number of entries in `found`. An object has an entry for each cell that lists it.
     most: usize,
-    /// Function that is called with an object that fills the rectangle, and returns a nearness;
-    /// objects at or below it are hidden.
+    /// Function that is called with an object that fills the rectangle. It returns the rounded
+    /// inverse depth that the object reaches everywhere in the rectangle. Objects entirely behind
+    /// this depth are hidden.
     behind: F,
-    /// Nearness at and below which objects are hidden by the objects found so far.
+    /// Rounded inverse depth that an object found so far reaches everywhere in the rectangle.
+    /// Objects entirely behind this depth are hidden.
     hidden: Nearness,
     found: Vec<BoundedObject>,
 }
@@ -38,8 +40,8 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         }
     }
 
-    /// Returns the objects in file order, each once. Returns `None` if more than `most` entries are
-    /// found.
+    /// Returns the objects in file order, each once. Returns `None` if more than `most` list
+    /// entries are found.
     pub(super) fn run(mut self) -> Option<Vec<BoundedObject>> {
         self.below(0, CellSquare::ROOT)?;
         let mut items = self.found;
@@ -50,8 +52,9 @@ impl<'a, F: FnMut(u32) -> Nearness> Search<'a, F> {
         Some(items)
     }
 
-    /// Adds the objects of a cell, and then those of its quarters. Large objects, which may hide
-    /// others, therefore come first. Returns `None` if more than `most` entries are found.
+    /// Adds the objects that a cell lists, and then those of its quarters. Large objects, which may
+    /// hide others, therefore come first. Returns `None` if more than `most` list entries are
+    /// found.
     fn below(&mut self, cell: u32, square: CellSquare) -> Option<()> {
         let cell = self.tree.cells[cell as usize];
         if cell.nearest <= self.hidden || !square.bounds().meets(self.rectangle) {

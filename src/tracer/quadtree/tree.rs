@@ -29,7 +29,8 @@ pub(super) struct Cell {
     pub(super) start: u32,
     /// End of the cell's list.
     pub(super) end: u32,
-    /// Maximum nearness of the objects listed in this cell and in all cells below it.
+    /// Maximum of the rounded inverse depths of the objects listed in this cell and in all cells
+    /// below it.
     pub(super) nearest: Nearness,
 }
 
@@ -41,8 +42,8 @@ impl Cells {
             cells: vec![Cell::EMPTY],
             entries: Vec::new(),
         };
-        // The end of `stack` has the objects of the current cell. For each quarter, the quarter's
-        // objects are pushed onto it and removed afterwards.
+        // During the recursion, the end of `stack` has the objects of the current cell. For each
+        // quarter, the quarter's objects are pushed onto the stack and removed afterwards.
         let mut stack = items;
         tree.divide(0, CellSquare::ROOT, &mut stack, 0, cancel);
         tree.cells.shrink_to_fit();
@@ -50,7 +51,7 @@ impl Cells {
         tree
     }
 
-    /// Lists the objects of `stack` from the index `start` on in a cell and in all cells below it.
+    /// Adds the objects in `stack[start..]` to the lists of a cell and of all cells below it.
     fn divide(
         &mut self,
         cell: usize,

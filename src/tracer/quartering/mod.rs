@@ -26,23 +26,24 @@ use super::{
 use crate::area::Area;
 
 /// Side of the squares of pixels with which quartering of a picture begins, in pixels. It is a
-/// power of two, so that quarters of a square are squares.
+/// power of two, so that quarters of a square are squares. It equals the maximum side of a block of
+/// pixels whose checkerboard is computed at once.
 pub const GRID: u32 = checker_corners::SIDE as u32;
 
-/// Minimum number of samples per candidate object in an area of pixels; with fewer, the area is not
-/// quartered any further. Measured: with 8, the time for 10³ and 10⁵ spheres changes by less than
-/// 10 %, but 3000 slivers with one sample per pixel take twice as long. With 2, the time rises by
-/// up to 25 %.
+/// Minimum number of samples per candidate object in an area of pixels that is quartered further.
+/// Measured: with 8, the time for 10³ and 10⁵ spheres changes by less than 10 %, but 3000 slivers
+/// with one sample per pixel take twice as long. With 2, the time rises by up to 25 %.
 const SAMPLES_A_CANDIDATE: f64 = 4.0;
 
-/// Cost of finding where one candidate object is seen within an area of pixels. An area is
-/// quartered only if this costs less for all candidates than tracing its samples on their own. The
-/// unit is the time to test one object for such a sample. A sample tests the objects whose bounds
-/// contain it, and its search of the quadtree counts as one more test. Measured: with 80, 10⁴
-/// spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on 640×360 pixels.
+/// Cost of finding where one candidate object is seen within an area of pixels, in units of the
+/// time to test one object for a sample that is traced on its own. An area is quartered only if the
+/// cost for all candidates is less than that of tracing its samples. A sample tests the objects
+/// whose bounds contain it, and its search of the quadtree counts as one more test. Measured: with
+/// 80, 10⁴ spheres on 320×180 pixels take 10 % longer; with 200, they take 2 % longer on 640×360
+/// pixels.
 const ASKED_A_CANDIDATE: f64 = 120.0;
 
-/// Divides one picture into parts.
+/// Subdivision of one picture into parts.
 #[derive(Debug)]
 pub struct Quartering<'a> {
     world: &'a World,
@@ -58,7 +59,7 @@ pub enum PicturePart<'a> {
     OneColor {
         /// The part's area.
         area: Area,
-        /// The colour's slot in the palette.
+        /// Index of the colour in the palette.
         slot: usize,
     },
     /// A pixel in which more than one colour may be seen.
@@ -146,7 +147,7 @@ impl<'a> Quartering<'a> {
     }
 }
 
-/// One of the squares of pixels with which quartering begins, while it is divided.
+/// One of the squares of pixels with which quartering begins, while it is being divided.
 struct Cut<'a, 'b, V> {
     quartering: &'a Quartering<'a>,
     /// The part of the picture that is wanted.
@@ -206,9 +207,9 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
             _ => {}
         }
         let is_worth_more = candidates.len() <= self.quartering.most(area);
-        // If the candidates are no more than a cell of the quadtree lists, testing all of them is
-        // no slower than tracing each sample on its own, which would test the objects of such a
-        // list.
+        // Testing all candidates is no slower than tracing each sample on its own if there are no
+        // more candidates than a cell of the quadtree lists: a sample on its own would test the
+        // objects of a list.
         if !is_worth_more && candidates.len() > OBJECTS_A_CELL {
             return self.show(PicturePart::Crowded { area });
         }
@@ -234,7 +235,7 @@ impl<V: FnMut(PicturePart) -> ControlFlow<()>> Cut<'_, '_, V> {
         flow
     }
 
-    /// Calls `visit` with the part of `part` that is wanted. Does nothing if none of it is wanted.
+    /// Calls `visit` with the pixels of `part` that are wanted. Does nothing if there are none.
     #[inline]
     fn show(&mut self, part: PicturePart) -> ControlFlow<()> {
         if self.is_all_wanted {

@@ -96,8 +96,8 @@ fn what_a_wall_hides_is_not_found() {
         assert!(all_within(whole, usize::MAX, &mut found));
         assert_eq!(found.len() == 1, behind);
         assert!(behind || found.len() == 1001, "{}", found.len());
-        // Several cells of the quadtree list the wall. In each part of the picture, nothing is
-        // found behind it, either.
+        // Several cells of the quadtree list the wall. If it is in front of the spheres, it must
+        // hide them in each part of the picture, too.
         for part in whole.tiles(7) {
             assert!(all_within(part, usize::MAX, &mut found));
             assert!(found.len() == 1 || !behind, "{part:?}");
@@ -105,9 +105,9 @@ fn what_a_wall_hides_is_not_found() {
     }
 }
 
-/// In a crowd of objects, `nearby` finds the objects around every square of the picture. With these
-/// objects alone, some pixels are known to have one colour, and all sample points get the same
-/// colour as by the quadtree.
+/// In a crowd of objects, `nearby` finds the objects around every square of the picture. If only
+/// these objects are tested, some pixels are known to have one colour, and all sample points get
+/// the same colour as by the quadtree.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

@@ -24,7 +24,7 @@ use crate::math::SimdWidth;
 pub use self::pixel::PreparedPixel;
 
 /// Prepares `pixel` for the pixel in column `x` and row `y`. `candidates` are the objects that may
-/// be seen there, in file order. `checks` are the squares of a checkerboard, if nothing else is
+/// be seen in it, in file order. `checks` are the squares of a checkerboard, if nothing else is
 /// seen in the pixel and its squares are known. Sets `is_hard` if the samples must be traced one by
 /// one.
 pub fn prepare(
@@ -49,8 +49,8 @@ pub fn prepare(
     pixel.is_hard = prepared.is_err();
 }
 
-/// Calls `count` with the palette slot of every colour that the samples of a pixel see, and with
-/// the number of samples that see it. It may be called several times for a slot. `x` and `y` are
+/// Calls `count` with the palette index of every colour that the samples of a pixel see, and with
+/// the number of samples that see it. It may be called several times for a colour. `x` and `y` are
 /// the samples' offsets from the pixel's centre, padded to a multiple of eight; only the first
 /// `samples` of them count.
 pub fn count(

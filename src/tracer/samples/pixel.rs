@@ -1,4 +1,5 @@
-//! A prepared pixel: its surfaces as forms, and buffers for one chunk of samples.
+//! A prepared pixel: its surfaces as linear and quadratic forms, and buffers for one chunk of
+//! samples.
 
 use super::super::{
     candidates::VisibilityCandidate,
@@ -6,14 +7,14 @@ use super::super::{
     local_form::{LocalForm, LocalQuadratic, ScaledLine},
 };
 
-/// Maximum number of samples of a pixel that are evaluated at a time, a chunk. The six arrays of
-/// [`Lanes`] for them, 3 KiB, and their coordinates stay in the first-level cache.
+/// Maximum number of samples of a pixel that are evaluated at a time (a chunk). The six arrays of
+/// [`Lanes`] for 64 samples, 3 KiB, and the samples' coordinates stay in the first-level cache.
 pub(super) const CHUNK_SAMPLES: usize = 64;
 
-/// Code in [`Lanes::seen`] of a sample that hits no object. The first colour of the object with the
-/// index i among the pixel's candidates has the code 2i + 1, its second colour 2i + 2.
+/// Code, in [`Lanes::seen`], of a sample that hits no object. The object with the index i among the
+/// pixel's candidates has the code 2i + 1 for its first colour and 2i + 2 for its second.
 pub(super) const BACKGROUND: f64 = 0.0;
-/// Code in [`Lanes::seen`] of an uncertain sample, which is traced again on its own.
+/// Code, in [`Lanes::seen`], of an uncertain sample, which is traced again on its own.
 pub(super) const DOUBT: f64 = -1.0;
 
 /// The objects of one pixel, prepared for many samples. One value is reused for all pixels, to keep
@@ -25,7 +26,8 @@ pub struct PreparedPixel {
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) surfaces: Vec<PixelSurface>,
-    /// The lines of all surfaces' boundaries, and those between the squares of boards.
+    /// The lines that bound the surfaces, and the lines between the squares of checkerboards, for
+    /// all surfaces.
     pub(super) lines: Vec<ScaledLine>,
     /// Minimum difference of two inverse depths at which their order is certain. `None` if the
     /// surfaces are sorted from back to front, so that samples compare no depths.
@@ -47,7 +49,7 @@ pub struct PreparedPixel {
 pub(super) struct ColorCount {
     /// The code of the colour in [`Lanes::seen`].
     pub(super) code: f64,
-    /// The colour's slot in the palette.
+    /// Index of the colour in the palette.
     pub(super) slot: usize,
     /// Number of samples that see the colour.
     pub(super) count: u64,
@@ -68,15 +70,15 @@ pub(super) struct PixelSurface {
     pub(super) depth: Depth,
 }
 
-/// How the colour of an object varies over a pixel.
+/// Pattern of an object's colours in a pixel.
 #[derive(Debug)]
 pub(super) enum ColorPattern {
     /// One colour, given by its code.
     Plain(f64),
     /// Two colours, separated by lines in [`PreparedPixel::lines`]: those from the end of the
     /// surface's edges up to `end`. A point shows the first colour if the product of the lines'
-    /// forms is positive, and the second colour if it is negative. If `odd`, the colours change
-    /// places.
+    /// forms is positive, and the second colour if it is negative. If `odd` is set, the two colours
+    /// change places.
     Lines { end: usize, odd: bool },
     /// The squares of a checkerboard. A division finds the square of each sample.
     Squares(CheckerForms),
@@ -93,7 +95,8 @@ pub(super) enum Depth {
     /// The greatest of the inverse depths of several planes, given by the start and the end of
     /// their range in [`PreparedPixel::planes`].
     Greatest([usize; 2]),
-    /// The near side of a sphere, with the inverse depth (b + √q) · `factor`.
+    /// The near side of a sphere. Its inverse depth is (b + √q) · `factor`, where b and q are the
+    /// values of the forms `b` and `q`.
     Sphere {
         q: LocalQuadratic,
         b: LocalForm,
@@ -104,17 +107,19 @@ pub(super) enum Depth {
 /// Values of the samples of a chunk, with one array for each quantity.
 #[derive(Debug)]
 pub(super) struct Lanes {
-    /// Code of the colour of the nearest surface so far.
+    /// Code, for each sample, of the colour of the nearest surface found so far.
     pub(super) seen: [f64; CHUNK_SAMPLES],
-    /// Inverse depth of the nearest surface so far.
+    /// Inverse depth, at each sample, of the nearest surface found so far.
     pub(super) nearest: [f64; CHUNK_SAMPLES],
-    /// Least value of the current surface's boundary forms, each divided by its error bound.
+    /// Least value, at each sample, of the forms that bound the current surface, each divided by
+    /// its error bound.
     pub(super) margin: [f64; CHUNK_SAMPLES],
-    /// Code of the colour that the current surface shows.
+    /// Code, for each sample, of the colour that the current surface shows.
     pub(super) shown: [f64; CHUNK_SAMPLES],
-    /// Inverse depth of the current surface.
+    /// Inverse depth, at each sample, of the current surface.
     pub(super) depth: [f64; CHUNK_SAMPLES],
-    /// Product of the forms of the current pattern's lines.
+    /// Product, at each sample, of the forms of the lines that separate the current surface's two
+    /// colours.
     pub(super) sign: [f64; CHUNK_SAMPLES],
 }
 

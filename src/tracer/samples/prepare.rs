@@ -1,9 +1,9 @@
-//! The preparation of a pixel: what is seen of its candidates, described by forms.
+//! The preparation of a pixel: the objects that may be seen in it (candidates), described by forms.
 //!
-//! In: the pixel and its candidates. Out: surfaces with their boundary forms, patterns and depths,
-//! sorted from back to front if their depths do not overlap. A form is left out if it certainly has
-//! one sign in the whole pixel. In rare cases and after overflows, preparation fails, and the world
-//! traces the samples one by one.
+//! In: the pixel and its candidates. Out: surfaces with their boundary forms, colour patterns and
+//! depths, sorted from back to front if their depths do not overlap. A form is left out if it
+//! certainly has one sign in the whole pixel. In rare cases and after overflows, preparation fails,
+//! and the samples are traced one by one.
 
 use super::{
     super::{
@@ -21,17 +21,18 @@ use super::{
 };
 use crate::{area::Area, math::UP};
 
-/// Maximum error bound of a linear form of a checkerboard; above it, the pixel's samples are traced
-/// one by one. Otherwise, products of the form's factors with numbers of squares, which are below
-/// 2^53, might overflow.
+/// Maximum error bound of a linear form of a checkerboard in a pixel. With a larger one, the
+/// pixel's samples are traced one by one, because products of the form's factors with numbers of
+/// squares, which are below 2^53, might overflow.
 const MAX_ERROR: f64 = 1e250;
 
-/// Maximum number of lines between squares through a pixel for which the signs of the lines' forms
-/// give the colours; with more lines, a division finds the square of each sample. Measured: from 3
-/// to 12, the render time does not change; with division alone, figure 9.9 takes 11 % longer.
+/// Maximum number of lines between squares through a pixel at which the signs of the lines' forms
+/// give the colours. With more lines, a division finds the square of each sample. Measured: from 3
+/// to 12, the render time does not change; with division alone, figure 9.9, the picture of the
+/// assignment, takes 11 % longer.
 const MAX_LINES: usize = 6;
 
-/// The reason why a pixel is not prepared: its samples should be traced one by one.
+/// Error of a preparation that fails, so that the pixel's samples must be traced one by one.
 pub(super) struct Hard;
 
 impl PreparedPixel {
@@ -174,8 +175,9 @@ impl PreparedPixel {
         Ok(met)
     }
 
-    /// Returns the pattern of a checkerboard in a pixel: by lines if the squares in the pixel are
-    /// known and few, otherwise by division. Fails if an error bound exceeds [`MAX_ERROR`].
+    /// Returns how the colour of a checkerboard is found at the samples of a pixel. If the squares
+    /// in the pixel are known and few, it is found from the signs of the lines between them,
+    /// otherwise by a division for each sample. Fails if an error bound exceeds [`MAX_ERROR`].
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,
@@ -194,9 +196,10 @@ impl PreparedPixel {
         }
     }
 
-    /// Adds the lines between a board's squares that may cross the pixel to the pixel's lines, and
-    /// returns the pattern. `x0` to `x1` and `z0` to `z1` are the ranges of the squares in the
-    /// pixel. With more than [`MAX_LINES`] lines, adds none and returns a pattern by division.
+    /// Adds those lines between a board's squares that may cross the pixel to the pixel's lines.
+    /// Returns how the colours are found: from the signs of these lines. If there are more than
+    /// [`MAX_LINES`] lines, adds none, and the colours are found by a division for each sample.
+    /// `x0` to `x1` and `z0` to `z1` are the ranges of the squares in the pixel.
     fn lines(
         &mut self,
         squares: &CheckerForms,
@@ -212,16 +215,16 @@ impl PreparedPixel {
             let mut k = first + 1.0;
             while k <= last {
                 let line = across.less(k, below);
-                // The form of line k has the sign of x/square − k (or z/square − k for the second
-                // family). If it is positive in the whole pixel, the pixel lies beyond the line,
-                // where the parity changes.
+                // `line` is the form of the line with the number k between squares: a positive
+                // multiple of x/square − k, or of z/square − k. If it is positive in the whole
+                // pixel, the pixel lies beyond the line, where the parity changes.
                 match line.range().side() {
                     Side::Above => odd = !odd,
                     Side::Below => {}
                     Side::Both => {
                         self.lines.push(line.line());
-                        // `odd` is the parity where all forms of the pattern are positive. Each
-                        // form that is negative at a point changes the parity there.
+                        // `odd` is the parity at points where all forms of the pattern are
+                        // positive. Each form that is negative at a point changes the parity there.
                         odd = !odd;
                     }
                     Side::Unknown => return Err(Hard),
@@ -271,8 +274,8 @@ impl PreparedPixel {
                     let (q, b) = sphere.local(pixel);
                     let root = q.factors.iter().map(|factor| factor.abs()).sum::<f64>();
                     let size = root.sqrt() + b.factors[2].abs() + b.spread();
-                    // q has the error bound `q.rad`. The error of √q is at most the root of this,
-                    // because |√a − √b| ≤ √|a − b|.
+                    // q has the error bound `q.rad`. The error of √q is at most the root of this
+                    // bound, because |√a − √b| ≤ √|a − b|.
                     let own = b.rad + q.rad.sqrt() + size * (LOCAL_ROUNDING + error);
                     rad = rad.max(own * factor * UP);
                     Depth::Sphere { q, b, factor }

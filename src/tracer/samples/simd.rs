@@ -3,8 +3,9 @@
 //!
 //! In: a prepared pixel, and a chunk of its samples. Out: what each sample sees, and how often each
 //! colour is seen. For each surface in turn, its boundary forms are evaluated at all samples, then
-//! its pattern and its depth. A sample is in doubt if a form's value is within its error bound of
-//! 0, or if two depths differ by at most their errors. The world traces such a sample again.
+//! its colour pattern and its depth. A sample is uncertain if a form's value is within its error
+//! bound of 0, or if two depths differ by at most their errors. Uncertain samples are traced again
+//! one by one.
 
 use multiversion::multiversion;
 
@@ -28,7 +29,7 @@ fn see_simd(pixel: &mut PreparedPixel, points: At, count: usize) {
 }
 
 /// Offsets of samples from the pixel's centre, as one list for each coordinate. The length of a
-/// list is a multiple of eight, the number of lanes of the widest vectors.
+/// list is a multiple of eight, the number of `f64` in the widest vectors.
 pub(super) type At<'a> = [&'a [f64]; 2];
 
 impl PreparedPixel {
@@ -166,7 +167,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let square = |n: [f64; 3], own: f64| {
             let value = (n[0] * x + n[1] * y + n[2]) * inverse;
             // With N' and ℓ' the true values of the forms, |N'/ℓ' − N/ℓ| ≤ (|N' − N| + |N/ℓ|·|ℓ' −
-            // ℓ|)/ℓ'. ℓ' is at least ℓ/2, or the sample is in doubt (see below).
+            // ℓ|)/ℓ'. ℓ' is at least ℓ/2, because a sample is marked uncertain unless ℓ exceeds
+            // twice its error bound.
             let error = (own + value.abs() * rad) * double + (value.abs() + 1.0) * LOCAL_ROUNDING;
             let middle = value - 0.5;
             let rounded = middle + ROUND;
@@ -176,8 +178,8 @@ fn in_squares(squares: &CheckerForms, [even, odd]: [f64; 2], [x, y]: At, shown: 
         let ((bits0, margin0), (bits1, margin1)) = (square(n0, rads[0]), square(n1, rads[1]));
         let parity = f64::from_bits(ONE | (bits0 ^ bits1) << 63);
         let code = if parity > 0.0 { even } else { odd };
-        // These comparisons also fail for NaN, and for numbers that are too large to be rounded by
-        // adding `ROUND`; their errors are large.
+        // The comparisons also fail for NaN, and for numbers that are too large to be rounded by
+        // adding `ROUND`, because their errors are large. The sample is then uncertain.
         let first = if margin0 > 0.0 { code } else { DOUBT };
         let second = if margin1 > 0.0 { first } else { DOUBT };
         *shown = if below > 2.0 * UP * rad {
@@ -210,8 +212,8 @@ impl Lanes {
         }
     }
 
-    /// Draws the current surface over everything seen so far, where the samples hit it. Samples
-    /// near the surface's boundary become uncertain.
+    /// Draws the current surface over everything seen so far at the samples that hit the surface.
+    /// Samples near the surface's boundary become uncertain.
     #[inline(always)]
     fn cover(&mut self, length: usize) {
         let surface = self.margin[..length].iter().zip(&self.shown[..length]);

@@ -1,18 +1,18 @@
 //! The palette: the colours that can be seen, and the colours of each object.
 //!
-//! In: the objects and the background. Out: the distinct colours, and for each object the slots
-//! (the indices) of its colours in the palette.
+//! In: the objects and the background. Out: the palette, which is the list of distinct colours, and
+//! for each object the palette indices (slots) of its colours.
 
 use std::collections::HashMap;
 
 use crate::{color::Color, scene};
 
-/// The palette of a picture, and the palette slots of each object.
+/// The palette of a picture, and the indices of each object's colours in it.
 #[derive(Debug)]
 pub(super) struct Colors {
     /// The distinct colours: those of the objects in file order, then the background.
     pub palette: Vec<Color>,
-    /// For each object, the palette slots of its colour and of a checkerboard's second colour.
+    /// For each object, the palette indices of its colour and of a checkerboard's second colour.
     pub of_objects: Vec<[u32; 2]>,
 }
 
@@ -25,8 +25,8 @@ impl Colors {
                 .entry(color.srgb.map(f64::to_bits))
                 .or_insert_with(|| {
                     palette.push(color);
-                    // The slot fits, because there are at most two per object, and 2^31 objects do
-                    // not fit into memory.
+                    // The index fits, because there are at most two colours per object, and 2^31
+                    // objects do not fit into memory.
                     (palette.len() - 1) as u32
                 })
         };
@@ -42,8 +42,8 @@ impl Colors {
         }
     }
 
-    /// Gives each object a palette slot of its own, with an arbitrary colour. A face of a box gets
-    /// the box's slot.
+    /// Gives each object a palette entry of its own, with an arbitrary colour. All faces of a box
+    /// share the box's entry.
     pub(super) fn by_object(owners: impl Iterator<Item = usize>) -> Self {
         let of_objects: Vec<_> = owners.map(|owner| [owner as u32; 2]).collect();
         let count = of_objects

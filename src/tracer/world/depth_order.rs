@@ -1,10 +1,11 @@
 //! The depth order of two crossings, and whether they lie in one surface and are equal.
 //!
-//! In: two crossings of one ray. Out: the order of their inverse depths, or doubt. Between two
-//! crossings in one surface, computed depths would leave doubt at every sample point, and forms of
-//! higher precision take long to prepare. If computed depths leave doubt, the objects' planes are
-//! therefore compared by the numbers of the scene, without rounding. The near and the far plane,
-//! which such numbers do not give, are compared by their forms.
+//! In: two crossings of one ray. Out: the order of their inverse depths, or doubt if rounding
+//! errors leave it uncertain. Between two crossings in one surface, the order of computed depths
+//! would be uncertain at every sample point, and forms of higher precision take long to prepare. If
+//! the order is uncertain, the objects' planes are therefore compared by the numbers of the scene,
+//! without rounding. The near and the far plane, which are not given by numbers of an object, are
+//! compared by their forms.
 
 use std::cmp::Ordering;
 
@@ -18,8 +19,8 @@ use crate::{
     },
 };
 
-/// Compares the inverse depths of two crossings. Returns `Equal` for two crossings in one surface,
-/// where the computed depths leave doubt.
+/// Compares the inverse depths of two crossings. Returns `Equal` for two crossings in one surface
+/// if their computed depths leave the order uncertain.
 #[inline]
 pub(in crate::tracer) fn order<T: Real>(
     geometry: &Geometry,
@@ -34,7 +35,7 @@ pub(in crate::tracer) fn order<T: Real>(
 }
 
 /// Compares the inverse depth of a crossing with that of `clip`, the near or the far plane. Returns
-/// `Equal` if the surface lies in the clip plane and the computed depths leave doubt.
+/// `Equal` if the surface lies in the clip plane and the computed depths leave the order uncertain.
 #[inline]
 pub(super) fn order_to_clip<T: Real>(
     geometry: &Geometry,
@@ -47,12 +48,12 @@ pub(super) fn order_to_clip<T: Real>(
     if order.is_ok() {
         return order;
     }
-    // If a surface lies in the near or the far plane, its depth is in doubt against the other plane
-    // only if the two planes are equal. It is therefore enough to test whether it lies in either
-    // plane.
+    // A surface in one of the two clip planes certainly has another depth than the other clip
+    // plane, unless the two planes are equal. It is therefore enough to test whether the surface
+    // lies in either plane.
     let at = (index, crossing.part);
     // Planes may differ only after hundreds of bits. Only the highest precision finds this out, but
-    // objects take long to prepare in it; it is therefore tried last.
+    // preparing objects in it takes long, so that it is tried last.
     if is_in_clip::<Double>(geometry, at) && is_in_clip::<Big>(geometry, at) {
         return Ok(Ordering::Equal);
     }

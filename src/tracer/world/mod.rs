@@ -1,9 +1,9 @@
 //! The scene prepared for one picture, and the nearest surface at a point of the picture.
 //!
-//! In: a scene, and then sample points. Out: the palette slot of the colour that is seen at a
-//! point. A ray is tested against the objects that the quadtree lists for it, or against given
-//! nearby objects. If `f64` leaves doubt, double-double decides; if this fails, the highest
-//! precision, big numbers, decides.
+//! In: a scene, and then sample points. Out: the colour that is seen at a point, as an index into
+//! the palette. A ray is tested against the objects that the quadtree lists for it, or against
+//! given nearby objects. If rounding errors leave a decision uncertain in `f64`, it is made in
+//! double-double, and if it is still uncertain, in the highest precision, big numbers.
 
 mod colors;
 pub(super) mod depth_order;
@@ -48,21 +48,22 @@ pub struct World {
     pieces: Pieces,
 }
 
-/// The crossing that is seen at a point.
+/// The crossing that is seen at a point of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct VisibleCrossing {
     pub(super) object: usize,
-    /// Whether the crossing is the object's second one, because the near plane cuts off the first.
+    /// Whether the ray's second crossing with the object is seen, because the near plane cuts off
+    /// the first.
     pub(super) second: bool,
     /// Whether the crossing shows a checkerboard's second colour.
     odd: bool,
 }
 
-/// The nearest crossing found so far.
+/// The nearest crossing of a ray found so far.
 #[derive(Debug)]
 struct Nearest<T: Real> {
     object: usize,
-    /// Whether the crossing is the object's second one.
+    /// Whether the crossing is the ray's second one with the object.
     second: bool,
     crossing: Crossing<T>,
 }
@@ -73,18 +74,19 @@ impl World {
     ///
     /// # Errors
     ///
-    /// A condition of the language is broken, such as that a radius is more than 0.
+    /// Fails if a condition of the language is broken, for example if a radius is not greater than
+    /// 0.
     pub fn try_new(scene: &Scene) -> Result<Self, Mistakes> {
         scene.check()?;
         Ok(Self::new(scene))
     }
 
-    /// Prepares a scene for the sample points of its picture. The scene is one that was read, or
-    /// fulfils the conditions of the language; [`try_new`](Self::try_new) checks them.
+    /// Prepares a scene for the sample points of its picture. The scene must have been read from a
+    /// file, or must fulfil the conditions of the language; [`try_new`](Self::try_new) checks them.
     ///
     /// # Panics
     ///
-    /// A condition is broken, and this is noticed; otherwise the picture is wrong.
+    /// May panic if a condition is broken; otherwise the picture is wrong.
     pub fn new(scene: &Scene) -> Self {
         Self::build(scene, Faces::Seen, reach(scene), &cancel::NEVER)
     }
@@ -94,11 +96,11 @@ impl World {
     ///
     /// # Errors
     ///
-    /// The flag is set.
+    /// Fails if the flag is set.
     ///
     /// # Panics
     ///
-    /// As of [`new`](Self::new).
+    /// May panic if a condition of the language is broken, like [`new`](Self::new).
     pub fn new_unless(scene: &Scene, cancel: &AtomicBool) -> Result<Self, Cancelled> {
         let world = Self::build(scene, Faces::Seen, reach(scene), cancel);
         cancel::unless_set(cancel, world)
@@ -111,8 +113,8 @@ impl World {
         Self::build(scene, Faces::All, reach, &cancel::NEVER)
     }
 
-    /// Prepares a scene as [`new`](Self::new) does, as if each object, even a checkerboard, had one
-    /// colour of its own. The palette slot of this colour is the object's index in the file.
+    /// Prepares a scene as [`new`](Self::new) does, but as if each object, even a checkerboard, had
+    /// one colour of its own. The palette index of this colour is the object's index in the file.
     pub fn by_object(scene: &Scene) -> Self {
         let mut world = Self::new(scene);
         let pieces = 0..world.object_count();
@@ -151,16 +153,17 @@ impl World {
         &self.colors.palette
     }
 
-    /// Returns the palette slot that is seen at a sample point. The point lies in the pixel in
-    /// column `x` and row `y`, at `offset` from the pixel's centre in pixels, x to the right and y
-    /// down, each in [−1/2, 1/2).
+    /// Returns the palette index of the colour that is seen at a sample point. The point lies in
+    /// the pixel in column `x` and row `y`, at `offset` from the pixel's centre in pixels, x to the
+    /// right and y down, each in [−1/2, 1/2).
     #[inline]
     pub fn slot_at(&self, x: u32, y: u32, offset: DVec2) -> usize {
         self.slot_near(x, y, offset, None)
     }
 
-    /// Returns the result of [`slot_at`](World::slot_at). It is faster if the objects `nearby` are
-    /// given, as [`nearby`](super::nearby) returns them.
+    /// Returns the palette index of the colour that is seen at a sample point, as
+    /// [`slot_at`](World::slot_at) does. It is faster if the objects near the point are given in
+    /// `nearby`, as [`nearby`](super::nearby) returns them.
     #[inline]
     pub(crate) fn slot_near(
         &self,
@@ -190,14 +193,15 @@ impl World {
         seen.map(|piece| self.owner(piece))
     }
 
-    /// Returns the index in the file of the object from which a piece comes. The piece is this
-    /// object itself, or a face of a box.
+    /// Returns the index in the file of the object from which a prepared object comes. A prepared
+    /// object is a whole object of the file, or one face of a box.
     pub(super) fn owner(&self, piece: usize) -> usize {
         self.pieces.owner(piece)
     }
 
-    /// Returns the palette slot that is seen at a sample point if only the objects `among`, which
-    /// are in file order, may be seen. The parameters are those of [`slot_at`](World::slot_at).
+    /// Returns the palette index of the colour that is seen at a sample point if only the objects
+    /// `among`, which are in file order, may be seen. The parameters are those of
+    /// [`slot_at`](World::slot_at).
     pub fn slot_among(
         &self,
         x: u32,
@@ -213,12 +217,11 @@ impl World {
         let among = || among.clone();
         let (mut seen, is_sure) = first_certain!(&self.geometry, point, |r| self.seen(r, among()));
         if !is_sure {
-            // `f64` and double-double have left doubt, and the highest precision has decided. It
-            // counts an object as hit if it cannot distinguish the ray from one that hits the
-            // object, even if the ray is outside of the object's bounds in the quadtree. Some
-            // callers pass only objects whose bounds contain the ray, and others pass all. Objects
-            // whose bounds do not contain the ray are therefore left out here, so that all callers
-            // get the same answer.
+            // The highest precision has decided. It counts an object as hit if it cannot
+            // distinguish the ray from one that hits the object, even if the ray is outside of the
+            // object's bounds in the quadtree. Some callers pass only objects whose bounds contain
+            // the ray, and others pass all objects. To give all callers the same answer, objects
+            // whose bounds do not contain the ray are left out.
             let near = self.candidates(point);
             let is_near = |object: &usize| near.binary_search(object).is_ok();
             if !among().all(|object| is_near(&object)) {
@@ -245,12 +248,12 @@ impl World {
         (nearest, is_sure)
     }
 
-    /// Returns the palette slots of an object's colour and of a checkerboard's second colour.
+    /// Returns the palette indices of an object's colour and of a checkerboard's second colour.
     pub fn slots(&self, object: usize) -> [usize; 2] {
         self.colors.of_objects[object].map(|slot| slot as usize)
     }
 
-    /// Returns the palette slot of the background.
+    /// Returns the palette index of the background.
     pub fn background(&self) -> usize {
         self.palette().len() - 1
     }
@@ -260,8 +263,9 @@ impl World {
         self.geometry.objects.len()
     }
 
-    /// Returns the crossing that is seen. Tests the objects `nearby`, or if there are none given,
-    /// those that the quadtree lists for the ray. Fails if `f64` leaves doubt.
+    /// Returns the crossing that is seen at a point. Tests the objects `nearby` if they are given,
+    /// otherwise those that the quadtree lists for the ray. Fails if rounding errors leave a
+    /// decision uncertain in `f64`.
     #[inline]
     fn seen_fast(
         &self,
@@ -270,7 +274,8 @@ impl World {
     ) -> Result<Option<VisibleCrossing>, Doubt> {
         let r = self.geometry.fast.camera.direction(point);
         let mut nearest = None;
-        // Nearness of the nearest crossing so far: objects that are nowhere nearer are hidden.
+        // Rounded inverse depth of the nearest crossing so far. Objects entirely behind it are
+        // hidden.
         let mut hidden = Nearness::NONE;
         let visit = |index| {
             if self.meet(&r, index, &mut nearest)?
@@ -320,7 +325,7 @@ impl World {
         self.with_color(r, nearest)
     }
 
-    /// Adds to the nearest crossing which of the object's two colours is seen.
+    /// Returns the nearest crossing together with which of the object's two colours is seen.
     #[inline]
     fn with_color<T: Precision>(
         &self,

@@ -10,18 +10,18 @@ use std::{
 
 use crate::{lock::lock, math::Real, tracer::object::Object};
 
-/// Maximum number of objects that a cache keeps in one precision; with more, an object evicts the
-/// one in its slot. No scene written by hand has more. It is a prime number, because indices of
-/// objects in rows are often a power of two or of ten apart, and such objects must not evict each
-/// other.
+/// Maximum number of objects that a cache keeps in one precision. With more objects, an object
+/// evicts the one in its slot. Scenes written by hand have fewer. The number is prime, because
+/// indices of objects in rows are often a power of two or of ten apart, and such objects must not
+/// evict each other.
 pub const CACHE_SLOTS: usize = 4093;
 
 /// A cache of objects in one precision. Each object is prepared when it is first requested, and
 /// kept until another object takes its slot.
 ///
-/// Preparing an object takes far longer than testing a ray against it. If one sample point leaves
-/// doubt about an object, its neighbours often do, too. The fixed number of slots bounds the
-/// memory, however many objects a scene has.
+/// Preparing an object takes far longer than testing a ray against it. If a decision about an
+/// object is uncertain in `f64` at one sample point, it often is at neighbouring points, too. The
+/// fixed number of slots bounds the memory, however many objects a scene has.
 #[derive(Debug)]
 pub struct ObjectCache<T: Real>(Vec<Mutex<Option<Arc<CachedObject<T>>>>>);
 

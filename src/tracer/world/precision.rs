@@ -1,9 +1,10 @@
 //! The camera and the objects in each precision: `f64`, double-double, and big numbers, the highest
-//! precision, which decides everything.
+//! precision.
 //!
 //! In: the numbers of the scene. Out: frames and objects in the requested precision. In precisions
 //! higher than `f64`, objects are prepared when they are first requested. A decision that one
-//! precision leaves in doubt, by its error bounds, is made in the next precision.
+//! precision leaves uncertain, by its error bounds, is made in the next precision. The highest
+//! precision decides everything.
 
 use glam::{DVec2, DVec3};
 
@@ -84,8 +85,8 @@ impl<T: Real> SceneFrame<T> {
     pub(super) fn new(basis: &Basis, scene: &Scene, reach: DVec2, slots: usize) -> Self {
         let scene::Camera { near, far, .. } = scene.camera;
         let camera = Camera::new(basis, scene, reach);
-        // A point λr has the depth λZ, so that the inverse depth 1/λ of a plane at the depth
-        // `depth` is Z/`depth`.
+        // A point λr of a ray with the direction r has the depth λZ, where Z is the component ahead
+        // of r. The inverse depth 1/λ of a plane at the depth `depth` is therefore Z/`depth`.
         let clip = |depth: f64| {
             let zero = Ball::exact(0.0);
             let inverse = Ball::exact(1.0) / camera.length(depth);
@@ -104,8 +105,8 @@ impl<T: Real> SceneFrame<T> {
 pub trait Precision: Real {
     fn frame(geometry: &Geometry) -> &SceneFrame<Self>;
 
-    /// Returns the object with the index `index` in this precision. Prepares it if it is not
-    /// cached.
+    /// Returns the object with the index `index` in the precision of `Self`. Prepares it if it is
+    /// not cached.
     fn object(geometry: &Geometry, index: usize) -> ObjectRef<'_, Self> {
         let SceneFrame { camera, cache, .. } = Self::frame(geometry);
         let prepare = || geometry.numbers[index].object(camera);

@@ -19,12 +19,13 @@ use crate::{
 };
 use glam::DVec2;
 
-/// Minimum number of objects in a scene that are prepared on several threads. To prepare fewer
-/// objects takes less than a millisecond, at 0.7 µs each (benches/README.md).
+/// Minimum number of objects in a scene that are prepared on several threads. Preparing fewer
+/// objects takes less than a millisecond, 0.7 µs each (benches/README.md), so that threads would
+/// gain nothing.
 const OBJECTS_WORTH_THREADS: usize = 1 << 10;
 
-/// Number of objects that are prepared between two checks for cancellation. To prepare so many
-/// takes at most 6 ms.
+/// Number of objects that are prepared between two checks for cancellation. Preparing them takes at
+/// most 6 ms, so that a cancelled preparation ends soon.
 const BLOCK: usize = 1 << 13;
 
 /// Prepares the geometry of a scene, and the quadtree over its objects, for rays through points of

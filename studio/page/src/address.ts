@@ -1,13 +1,13 @@
-// The fragment of the page's address: `key=value` pairs joined by `&`, which browsers never send.
-// This module is loaded before all others, so that none of them sees the token in the address.
+// The fragment of the page's address: `key=value` pairs joined by `&`. Browsers never send it. This
+// module is loaded before all others, so that no other module sees the token in the address.
 
 import { remember, remembered } from "./dom";
 
-/** Key of the token in the address and in the tab's storage. */
+/** Key of the access token, both in the page's address and in the tab's storage. */
 const TOKEN = "token";
 const parts = () => new URLSearchParams(location.hash.slice(1));
 
-/** Returns the value of `key` in the fragment, or null if the fragment lacks the key. */
+/** Returns the value of `key` in the fragment of the page's address; null if it is absent. */
 export function inAddress(key: string): string | null { return parts().get(key); }
 
 /** Returns the page's address with the fragment `key=value`. */
@@ -15,7 +15,7 @@ export function addressWith(key: string, value: string): string {
   return `${location.origin}${location.pathname}#${key}=${value}`;
 }
 
-/** Removes only the token from the address and returns it, or null if there is none. */
+/** Removes the token, and nothing else, from the address. Returns it, or null if there is none. */
 export function takeToken(): string | null {
   const rest = parts();
   const token = rest.get(TOKEN);
@@ -32,10 +32,10 @@ export const session = {
   /** Whether the token was taken from the address, not from the host or the tab's storage. */
   isFresh: false,
 
-  /** Stores the token given by the host or by an address. */
+  /** Stores a token that the host has sent or that was in the page's address. */
   keep(token: string, from: "host" | "address"): void {
     Object.assign(this, { token, isFresh: from === "address" });
-    // Without storage, the user has to open the printed address again after a reload.
+    // If nothing can be stored, a reload requires opening the printed address again.
     remember(TOKEN, token, "sessionStorage");
   },
 };

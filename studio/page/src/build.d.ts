@@ -10,7 +10,7 @@ declare module "pinhole-engine" {
   export default function init(options: { module_or_path: URL }): Promise<unknown>;
 }
 
-/** Names and texts of the example scenes, inserted when the page is built. */
+/** Names and texts of the example scenes. The build inserts them into the page. */
 declare const EXAMPLES: [string, string][];
 /** Text of a new scene. */
 declare const EMPTY: string;

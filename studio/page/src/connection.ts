@@ -1,46 +1,46 @@
-// The connection to the engine: a WebSocket to the host, or a web worker, with one JSON-RPC message
-// per text. A lost connection is reopened after growing pauses, unless the host refuses this page.
+// The connection to the engine: a WebSocket to the host, or a web worker. Each text is a JSON-RPC
+// message. A lost connection is reopened after growing pauses, unless the host refuses the page.
 
 import type { Transport } from "@codemirror/lsp-client";
 import { session } from "./address";
 import { meta } from "./dom";
 import { Refusal } from "./protocol";
 
-/** Open channel that sends texts to the engine. */
+/** An open channel that sends texts to the engine. */
 interface Wire { send(text: string): void }
 
-/** Why there is no connection. After `lost`, `ended` (by the host) and `failed` (a worker), the
- *  page reconnects by itself; after the others, only when an address of the host is opened. */
+/** Reason why there is no connection. After `lost`, `ended` (by the host) and `failed` (a worker),
+ * the page reconnects by itself. After the others, an address of the host must be opened. */
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
-/** State of the connection; `silent` means lost, with all pauses of [`PAUSES`] used up. */
+/** State of the connection; `silent` means lost, after all pauses in `PAUSES` are used up. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
-/** Opens a `Wire`. Calls `opened` once it is open, `receive` for each text, `closed` at its end. */
+/** Opens a channel. Calls `opened` with it, `receive` for each text, and `closed` at its end. */
 type Connector = (opened: (wire: Wire) => void, receive: (text: string) => void,
   closed: (why: Closed) => void) => void;
 
-/** Pauses before attempts to reconnect, in milliseconds; the last one repeats. */
+/** Pauses before attempts to reconnect, in ms. They grow to spare the machine; the last repeats. */
 const PAUSES = [250, 500, 1000, 2000, 4000, 8000];
-/** Silence after which the server gets a test request, and maximum wait for its reply, in ms. */
+/** Silence of the server, in ms, after which the page sends a test request. */
 const QUIET = 700;
-const HANGING = 1200;
+const HANGING = 1200; // wait for the reply, in ms, after which it is reported as late
 
-/** Prefix of the ids of the page's own requests, as opposed to those of the language client. */
+/** Prefix of the ids of the page's own requests. Those of the language client have none. */
 const OWN = "page-";
 const NO_CONNECTION = "This cannot be done without a connection.";
 
-/** Meanings of the close codes that the host uses for a WebSocket. */
+/** Meanings of the codes with which the host closes a WebSocket. */
 const CLOSED: Partial<Record<number, Closed>> = { 1001: "ended", 4002: "late", 4003: "twice" };
 const UNKNOWN = 4001;
 
 class Connection implements Transport {
   state: ConnectionState = "connecting";
   onState: (state: ConnectionState) => void = () => {};
-  /** Called with true when the server does not reply in time, and with false when it replies. */
+  /** Called with true if the server does not reply in time, and with false when it replies. */
   onHang: (isHanging: boolean) => void = () => {};
-  /** Resolves when the client is initialized and all earlier messages are sent. */
+  /** Resolves when the language client is initialized and all earlier messages are sent. */
   ready: () => Promise<unknown> = () => Promise.resolve();
 
   private wire: Wire | null = null;
@@ -50,20 +50,20 @@ class Connection implements Transport {
   private requests = 0;
   private attempts = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
-  /** Number of attempts to connect; events of earlier attempts are ignored. */
+  /** Number of the latest attempt to connect. Events of earlier attempts are ignored. */
   private current = 0;
-  /** Times of the last message and of the pending test request; whether its reply is late. */
+  /** Times of the last message and (`asked`, else 0) of a test request without a reply yet. */
   private heard = 0;
   private asked = 0;
   private hangs = false;
 
   constructor(private readonly connector: Connector) {
     setInterval(() => this.listen(), 250);
-    // Browsers stop the timers of hidden pages, so a test request that is pending then is ignored.
+    // Browsers stop the timers of hidden pages, so an open test request is then forgotten.
     document.addEventListener("visibilitychange", () => (this.asked = 0));
   }
 
-  /** Sends a test request if the server is silent, and reports an overdue reply. */
+  /** Sends a test request if the server is silent, and reports a late reply. */
   private listen(): void {
     const now = performance.now();
     if (this.wire === null || document.hidden) return;
@@ -84,7 +84,7 @@ class Connection implements Transport {
     }, text => isCurrent() && this.receive(text), why => isCurrent() && this.lose(why));
   }
 
-  /** Reconnects at once; called if there is a new reason to try, such as a new token. */
+  /** Reconnects at once. It is called if there is a new reason to try, such as a new token. */
   retry(): void {
     clearTimeout(this.timer);
     this.attempts = 0;
@@ -97,18 +97,18 @@ class Connection implements Transport {
     this.wire.send(text);
   }
 
-  /** Sets the language client's handler, which gets all messages except answers to `request`. */
+  /** Sets the language client's handler. It gets all messages except answers to `request`. */
   subscribe(handler: (text: string) => void): void { this.handle = handler; }
   unsubscribe(): void { this.handle = () => {}; }
 
-  /** Sends a request. Rejects with the server's `Refusal`, or an `Error` if lost or aborted. */
+  /** Sends a request. Rejects with the server's `Refusal`, or an `Error` if lost or cancelled. */
   async request<Result>(method: string, params: unknown, wanted?: AbortSignal): Promise<Result> {
-    // Without a server, `ready` would never resolve.
+    // If there is no server, `ready` never resolves.
     if (this.wire === null) throw new Error(NO_CONNECTION);
     const id = OWN + ++this.requests;
     return new Promise<Result>((resolve, reject) => {
       this.waiting.set(id, { resolve, reject });
-      // Before `ready` resolves, the connection may be lost or the request aborted.
+      // Before `ready` resolves, the connection may be lost, or the request aborted.
       this.ready().then(() => {
         if (!this.waiting.has(id)) return;
         this.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
@@ -122,7 +122,7 @@ class Connection implements Transport {
   }
 
   private receive(text: string): void {
-    // An open wire is not enough: only a message shows that the server is back.
+    // An open channel is not enough: only a message shows that the server works again.
     this.attempts = 0;
     this.heard = performance.now();
     this.asked = 0;
@@ -143,7 +143,7 @@ class Connection implements Transport {
     for (const waiting of this.waiting.values()) waiting.reject(lost);
     this.waiting.clear();
     if (!TRIED_AGAIN.includes(why)) return this.enter(why);
-    // The state `ended` holds until the host answers again.
+    // The state `ended` stays until the host answers again.
     const isSilent = why === "lost" && this.attempts >= PAUSES.length;
     if (this.state !== "ended") this.enter(isSilent ? "silent" : why);
     const pause = PAUSES[Math.min(this.attempts++, PAUSES.length - 1)];
@@ -174,7 +174,7 @@ const webSocket: Connector = (opened, receive, closed) => {
     ? (session.isFresh ? "unknown" : "restarted") : CLOSED[code] ?? "lost"));
 };
 
-/** Starts the engine in a web worker. Its first message opens the wire, a failure closes it. */
+/** Starts the engine in a web worker. Its first message opens the channel, a failure closes it. */
 const worker: Connector = (opened, receive, closed) => {
   const engine = new Worker(new URL("engine.js", location.href), { type: "module" });
   let isOpen = false;

@@ -1,4 +1,4 @@
-// The server's diagnostics, in the editor and in a list below the text, with fixes as buttons.
+// The server's diagnostics, in the editor and in a list below the text, with buttons for fixes.
 
 import { forEachDiagnostic, setDiagnostics, setDiagnosticsEffect, type Action, type
   Diagnostic } from "@codemirror/lint";
@@ -9,13 +9,13 @@ import { byId, create, createButton } from "./dom";
 import { editor } from "./editor";
 import { setText, visible } from "./visible";
 
-/** Shows diagnostics and fixes in one update, because a second update closes an open tooltip. */
+/** Shows diagnostics and fixes in one update, because a second one would close an open tooltip. */
 export async function publishDiagnostics(published: PublishDiagnosticsParams): Promise<void> {
   const file = editor.client.workspace.getFile(published.uri);
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
-  // In most steps of a drag, there are neither new diagnostics nor old marks to remove.
+  // During a drag, there are usually neither new diagnostics nor old marks to remove.
   const isRight = published.diagnostics.length === 0;
   if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",
@@ -24,7 +24,7 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   if (editor.view.state.doc === doc) show(published.diagnostics, actions ?? []);
 }
 
-/** Whether the editor may have marks of diagnostics, including those whose text was deleted. */
+/** Whether the editor may have marks of diagnostics, even if their text was deleted. */
 let hasMarks = false;
 
 function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
@@ -36,7 +36,7 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   const ofAll = actions.filter(action => action.diagnostics === undefined);
   const shown = diagnostics.map((diagnostic): Diagnostic => {
     const fixes = mending.get(keyOf(diagnostic)) ?? [];
-    // An action that fixes all problems is listed once, at the first problem with a fix.
+    // A fix of all problems is listed once, at the first problem with a fix of its own.
     const all = fixes.length > 0 ? ofAll.splice(0) : [];
     return {
       from: editor.offset(diagnostic.range.start),
@@ -49,20 +49,20 @@ function show(diagnostics: ServerDiagnostic[], actions: CodeAction[]): void {
   editor.view.dispatch(setDiagnostics(editor.view.state, shown));
 }
 
-/** Returns a key by which a code action is matched with its diagnostic. */
+/** Returns a key that a code action has in common with the diagnostic that it fixes. */
 const keyOf = ({ message, range }: ServerDiagnostic) => JSON.stringify([message, range]);
 
 function fix(action: CodeAction): Action {
   const { doc } = editor.view.state;
   const edits = action.edit?.changes?.[editor.uri] ?? [];
-  // Range of a placeholder value within the text of the first edit.
+  // A fix may insert a made-up value. This is its range within the text of the first edit.
   const [value]: [number, number][] = action.data?.values ?? [];
   return {
     name: visible(action.title),
     apply(view) {
-      // The edits are for the checked text. If it has changed, new diagnostics are on the way.
+      // The edits fit only the checked text. If it has changed, new diagnostics will arrive.
       if (view.state.doc !== doc) return;
-      // Select a placeholder, so that typing replaces it. Its offsets are bytes of ASCII text.
+      // The made-up value is selected, so that typing replaces it. Its text is ASCII: a byte each.
       const at = edits[0] ? editor.offset(edits[0].range.start) : 0;
       const made = value && { selection: { anchor: at + value[0], head: at + value[1] } };
       const changes = editor.changes(edits);
@@ -72,7 +72,7 @@ function fix(action: CodeAction): Action {
   };
 }
 
-/** Updates the problem list when the editor's text or diagnostics change. */
+/** Updates the list of problems when the editor's text or diagnostics change. */
 export const problemsFollow = EditorView.updateListener.of(({ docChanged, transactions }) => {
   const areOther = transactions.some(it => it.effects.some(it => it.is(setDiagnosticsEffect)));
   if (docChanged || areOther) showProblems();
@@ -92,7 +92,7 @@ function diagnosed(): [Diagnostic, number, number][] {
   return found;
 }
 
-/** Lists the problems below the text: only the first one, or all if the list is expanded. */
+/** Lists the problems below the text: only the first one or, if the list is open, all. */
 export function showProblems(): void {
   const found = diagnosed();
   const { length } = found;
@@ -103,11 +103,11 @@ export function showProblems(): void {
   const isWhole = isOpen();
   list.hidden = length === 0;
   list.toggleAttribute("data-all", isWhole);
-  // Hidden items are not created, because a drag changes the text many times a second.
+  // Hidden items are not created, because a drag updates the list many times a second.
   list.replaceChildren(...found.slice(0, isWhole ? length : 1).map(it => item(...it)));
 }
 
-/** Creates the item of a problem: a link to its place, and its fixes. */
+/** Creates the list item of a problem: a button that moves the cursor there, and its fixes. */
 function item({ severity, message, actions }: Diagnostic, from: number, to: number): HTMLElement {
   const { view } = editor;
   const item = create("li", severity);
@@ -121,7 +121,7 @@ function item({ severity, message, actions }: Diagnostic, from: number, to: numb
   return item;
 }
 
-/** Applies the first fix of the diagnostic at the cursor, or else of the first fixable one. */
+/** Applies the first fix of the problem at the cursor, or else of the first problem with one. */
 export const fixKey: KeyBinding = {
   key: "Mod-.",
   run(view) {

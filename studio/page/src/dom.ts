@@ -2,14 +2,14 @@
 
 import { setText } from "./visible";
 
-/** Returns the element of index.html with this id; throws if there is none. */
+/** Returns the element of index.html with the id `id`. Throws an error if there is none. */
 export function byId<E extends HTMLElement = HTMLElement>(id: string): E {
   const element = document.getElementById(id);
   if (element === null) throw new Error(`the page has no element #${id}`);
   return element as E;
 }
 
-/** Returns a value that the host wrote into the page's head, or undefined if it is absent. */
+/** Returns a value that the host wrote into the page's head; undefined if it is absent. */
 export function meta(name: string): string | undefined {
   return document.querySelector<HTMLMetaElement>(`meta[name="pinhole-${name}"]`)?.content;
 }
@@ -23,7 +23,7 @@ export function create<K extends keyof HTMLElementTagNameMap>(tag: K, className 
   return element;
 }
 
-/** Creates a button; `name`, if not null, is its accessible name in place of its text. */
+/** Creates a button. `name` is its name for screen readers; if null, its text is used. */
 export function createButton(text: string, className: string, press: () => void,
   name: string | null = null): HTMLButtonElement {
   const button = create("button", className, text);
@@ -40,11 +40,11 @@ export function createSvg<K extends keyof SVGElementTagNameMap>(tag: K,
   return element;
 }
 
-/** Follows a pointer until it is released, or until Escape or the returned function cancels. */
+/** Calls `move` until the pointer is released. Escape or the returned function cancels. */
 export function followPointer(pressed: PointerEvent, move: (event: PointerEvent) => void,
   end: () => void, cancel: () => void): () => void {
   const following = new AbortController();
-  // Listen in the capture phase, so that Escape does not also trigger another command.
+  // Listens in the capture phase, so that Escape does not also trigger another command.
   const how = { capture: true, signal: following.signal };
   const hear = (type: "pointermove" | "pointerup" | "pointercancel",
     act: (event: PointerEvent) => void) => document.addEventListener(type,
@@ -64,7 +64,7 @@ export function followPointer(pressed: PointerEvent, move: (event: PointerEvent)
   return () => over(cancel);
 }
 
-/** Wraps `act` so that calls run one at a time; of the calls that wait, only the newest runs. */
+/** Wraps `act` so that its calls run one at a time. Of the waiting calls, only the newest runs. */
 export function newestOf<T>(act: (it: T) => Promise<void>): (it: T) => Promise<void> {
   let next: { it: T } | null = null;
   let work: Promise<void> | null = null;
@@ -91,7 +91,7 @@ export function download(name: string, content: BlobPart, type: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Browser's own base64 decoder, where it exists; it is many times faster than `atob`. */
+/** The browser's own base64 decoder, if it has one. It is many times faster than `atob`. */
 const native = Uint8Array as unknown as { fromBase64?(text: string): Uint8Array<ArrayBuffer> };
 
 /** Decodes base64 to bytes. */
@@ -99,7 +99,7 @@ export function fromBase64(text: string): Uint8Array<ArrayBuffer> {
   return native.fromBase64?.(text) ?? Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 }
 
-/** Returns a stored setting of the browser or the tab, or null if there is none or no storage. */
+/** Returns a setting stored in the browser or the tab. Returns null if there is none. */
 export function remembered(key: string, where: Store = "localStorage"): string | null {
   try {
     return window[where].getItem(`pinhole-${key}`);

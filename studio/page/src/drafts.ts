@@ -1,6 +1,6 @@
-// Drafts: unsaved texts, stored during typing and offered again after a reload, a crash, or loss of
-// the host. Each page has its own key, or the key of the draft that it continues without a host.
-// The browser stores drafts until the host has stored them, or for good if there is no host.
+// Drafts: unsaved texts, stored during typing and offered again after a reload, a crash or loss of
+// the host. Each page has its own key, or the key of a draft that it continues without a host. The
+// browser stores drafts until the host has stored them, or always if there is no host.
 
 import { createStore, del, delMany, set, values } from "idb-keyval";
 import { connection, isServed } from "./connection";
@@ -11,11 +11,11 @@ import { Refusal, type Draft } from "./protocol";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** Delay from the first unstored change to storing the text, in milliseconds. */
+/** Delay before a changed text is stored, in ms. It limits how much typing a crash can lose. */
 const BEHIND = 500;
-/** Maximum number of drafts stored in the browser. When there are more, the oldest are deleted. */
+/** Maximum number of drafts in the browser. If there are more, the oldest are deleted. */
 const MOST = 10;
-/** Maximum number of drafts offered at once; the next ones follow when these are answered. */
+/** Maximum number of drafts offered at once, to save room. Others follow after these. */
 const OFFERED = 3;
 
 const store = createStore("pinhole-drafts", "drafts");
@@ -23,13 +23,13 @@ const store = createStore("pinhole-drafts", "drafts");
 let timer = 0;
 const freshId = () => `${Date.now()} ${Math.random()}`;
 let id = freshId();
-/** Whether a draft is stored under this page's key. */
+/** Whether a draft is stored under the key of this page. */
 let isKept = false;
-/** Drafts yet to be stored, by key; null if the stored draft is to be deleted. */
+/** Drafts that must still be stored, by key. If it is null, the stored draft must be deleted. */
 const due = new Map<string, Draft | null>();
 /** Draft restored last. It stays stored until it is saved, so that Undo does not lose it. */
 let restored: Draft | null = null;
-/** Drafts offered but neither restored nor discarded yet, the newest first. */
+/** Drafts that were offered and neither restored nor discarded yet, the newest first. */
 let offers: Draft[] = [];
 const bar = byId("draft-bar");
 const kept = byId("connection-kept");
@@ -40,10 +40,10 @@ for (const type of ["beforeunload", "pagehide"]) addEventListener(type, () => vo
 files.onLeave = leave;
 files.onSaved = text => void keepDraft(text);
 
-/** Schedules storing of the changed text. */
+/** Plans to store the changed text. */
 export function draftChanged(): void { timer ||= setTimeout(() => void keepDraft(), BEHIND); }
 
-/** Stores the text if it is unsaved. Deletes offered drafts equal to it or to `saved`. */
+/** Stores the text if it is unsaved. Deletes offered drafts equal to it or to the text `saved`. */
 async function keepDraft(saved?: string): Promise<void> {
   clearTimeout(timer);
   timer = 0;
@@ -53,7 +53,7 @@ async function keepDraft(saved?: string): Promise<void> {
   const isNew = isUnsaved && textToSave !== restored?.text;
   if (isNew || isKept) due.set(id, isNew ? newDraft() : id === restored?.id ? restored : null);
   isKept = isNew;
-  // Until the server has the scene, an offered draft is kept even if it equals the text.
+  // Until the server has the scene, an offered draft stays even if it is equal to the text.
   const there = [saved, editor.uri === "" ? undefined : textToSave];
   for (const it of offers) if (there.includes(it.text)) forget(it);
   await Promise.all([...due].map(async ([id, draft]) => {
@@ -74,7 +74,7 @@ function newDraft(): Draft {
   return { id, name, text, base, time: Math.floor(Date.now() / 1000) };
 }
 
-/** Offers drafts of other pages: at once the host's, then also this browser's, which are newer. */
+/** Offers drafts of other pages: first the host's, then also those in the browser. */
 export async function offerDrafts(hosts: Draft[] = []): Promise<void> {
   offers = hosts;
   show();
@@ -106,7 +106,7 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // The host may have this draft. Once connected, it gets the changes under the same id.
+    // The host may have this draft already. Once connected, it gets changes under the same key.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }
@@ -133,9 +133,9 @@ function leave(): void {
 
 const all = async () => (await values<Draft>(store)).sort((a, b) => b.time - a.time);
 
-/** Stores a draft under `id`, or deletes the stored one if `draft` is null. */
+/** Stores a draft under the key `id`. If `draft` is null, deletes the stored one. */
 async function stored(id: string, draft: Draft | null): Promise<void> {
-  // Send the draft to the host without waiting: this browser's storage may fail or be slow.
+  // The host gets the draft without delay, since the browser's storage may fail or be slow.
   const here = storedHere(id, draft).catch(error => { if (!isServed) throw error; });
   await (isServed ? connection.request("studio/draft", draft ?? { id, text: null }) : here);
 }

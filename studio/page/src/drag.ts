@@ -1,5 +1,5 @@
-// A drag of an object's handle or of the camera. Its result depends on the first and the latest
-// point, not on the path, and on the text at the press, which the server gets under an extra URI.
+// A drag of an object's handle or of the camera. Its result depends on its first and latest point,
+// not on the path, and on the text at the press, which the server gets under a separate URI.
 
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -10,7 +10,7 @@ import { isSuperseded, Refusal, type Dragged, type Point } from "./protocol";
 import { tools } from "./tools";
 import { setText } from "./visible";
 
-/** A held handle, and its point at the press. `object` is null for a handle of the camera. */
+/** A held handle and its point at the press. `object` is null for a handle of the camera. */
 export interface Held { object: number | null; handle: string; at: Point }
 
 const BROKEN = "The text has errors. Mend them, then the picture can be changed by hand.";
@@ -18,7 +18,7 @@ const WAITING = "Waiting for Studio…";
 const SLOW = 400; // delay after which a note says that the answer is late, in ms
 const OTHERWISE = "The text was changed otherwise meanwhile, so the drag has ended.";
 
-// The note of a drag is shown beside the pointer while the drag lasts.
+// While a drag lasts, a note about it is shown beside the pointer.
 const note = byId("drag-note");
 
 function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void {
@@ -31,7 +31,7 @@ function showNote(text: string, tone: "plain" | "warning", [x, y]: Point): void 
 }
 
 const clearNote = () => showNote("", "plain", [0, 0]);
-// The reason why a drag was refused stays visible until the next press or key.
+// The reason why a drag was refused stays visible until the next press of a button or key.
 for (const type of ["pointerdown", "keydown"]) addEventListener(type, () => {
   if (!(frames.dragging instanceof Drag)) clearNote();
 }, { capture: true });
@@ -40,10 +40,10 @@ let count = 0;
 /** Settles when all earlier drags have finished. */
 let ended: Promise<unknown> = Promise.resolve();
 
-/** A drag, which requests one edit at a time, always for the pointer's newest point. */
+/** A drag. It requests one edit at a time, always for the newest point of the pointer. */
 export class Drag {
   private readonly uri = `drag:${++count}`;
-  /** Newest point of the pointer. */
+  /** Newest point of the pointer, in pixels of the picture. */
   private target: Point;
   private isOpen = false;
   private slow = 0;
@@ -57,7 +57,7 @@ export class Drag {
   private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
-  /** `hold` returns what is held, or a promise if this is known only after the press. */
+  /** `hold` returns what is dragged, or a promise if that is known only after the press. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = press;
     frames.dragging = this;
@@ -80,7 +80,7 @@ export class Drag {
 
   by([dx, dy]: Point): void { this.to([this.target[0] + dx, this.target[1] + dy]); }
 
-  /** Finishes the drag after the edit for the last point, without waiting for pictures. */
+  /** Finishes the drag after the edit for the last point. Does not wait for pictures. */
   end(): void {
     this.letGo();
     void this.work.then(() => this.finish());
@@ -101,7 +101,7 @@ export class Drag {
     const { gesture, gesture: { base }, press, uri } = this;
     if (!this.isOpen) editor.openAside(uri, base);
     this.isOpen = true;
-    // An object's handle keeps its offset from the pointer; the camera gets the pointer's movement.
+    // An object's handle keeps its offset from the pointer; the camera follows the movement.
     const to = object === null ? place : [at[0] + place[0] - press[0], at[1] + place[1] - press[1]];
     const about = { textDocument: { uri }, object, handle, from: press, to, along: tools.along,
       step: tools.step };

@@ -1,4 +1,4 @@
-// The editor: CodeMirror, with the language server's features through the language client.
+// The text editor: CodeMirror, with the language server's features through its language client.
 
 import { closeBrackets, closeBracketsKeymap, completionKeymap } from "@codemirror/autocomplete";
 import { defaultKeymap, historyKeymap, toggleComment } from "@codemirror/commands";
@@ -20,10 +20,10 @@ import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-/** Maximum time for comparing two texts, in milliseconds; after it, differences get coarser. */
+/** Maximum time to compare two texts, in ms; a longer pause is felt. Then results are coarser. */
 const DIFF_TIME = 100;
 
-/** Unpaired surrogates, which UTF-8, and so a file or a message, cannot represent. */
+/** Matches unpaired surrogates. UTF-8, in which files and messages are written, has none. */
 const HALVES = /\p{Surrogate}/gu;
 
 /** Replaces typed or pasted unpaired surrogates by U+FFFD, the replacement character. */
@@ -36,7 +36,7 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Replaces a selection of several lines; browsers would add styles, which the CSP forbids. */
+/** Types over a selection of several lines. A browser would add styles, which the CSP forbids. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -65,7 +65,7 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
   return true;
 }));
 
-/** Scrolls a change into view without moving the page, if the editor is not focused. */
+/** Scrolls to a change within the editor only, if the editor does not have the focus. */
 function withinText(view: EditorView, { head }: SelectionRange): boolean {
   if (view.hasFocus) return false;
   const { scrollDOM, documentPadding } = view;
@@ -75,12 +75,12 @@ function withinText(view: EditorView, { head }: SelectionRange): boolean {
   return true;
 }
 
-/** Returns `text` with LF line ends, which the editor uses. */
+/** Returns `text` with LF as its line ends, which the editor uses. */
 export function withLf(text: string): string {
   return text.includes("\r") ? text.replace(/\r\n?/g, "\n") : text;
 }
 
-/** Language client that drops hover answers for an outdated text. */
+/** Language client that drops hover answers about an outdated text. */
 class SceneClient extends LSPClient {
   override async request<Params, Result>(method: string, params: Params): Promise<Result> {
     const { doc } = editor.view.state;
@@ -93,14 +93,14 @@ class SceneClient extends LSPClient {
 class SceneEditor {
   readonly view: EditorView;
   readonly client: LSPClient;
-  /** URI of the scene at the server; empty until the server has the scene. */
+  /** URI of the scene at the server; empty until the scene is opened there. */
   uri = "";
   onNotification: (method: string, params: any) => void = () => {};
   onUpdate: (update: ViewUpdate) => void = () => {};
 
   constructor(parent: HTMLElement, nonce: string | undefined) {
     this.client = new SceneClient({
-      // A busy machine may answer slowly, so wait long; `connection` reports a lost connection.
+      // A busy machine may answer slowly, so wait a minute; `connection` reports losses.
       timeout: 60_000,
       sanitizeHTML: sanitized,
       unhandledNotification: (_, method, params) => this.onNotification(method, params),
@@ -116,7 +116,7 @@ class SceneEditor {
         wholeCharacters,
         lineNumbers(), lintGutter(), highlightActiveLine(), highlightActiveLineGutter(),
         highlightSpecialChars(), highlightSelectionMatches(), drawSelection(), dropCursor(),
-        // Keep tooltips from covering the tools above the text.
+        // Tooltips must not cover the tools above the text.
         tooltips({ tooltipSpace: ({ dom }) => ({ left: 0, right: innerWidth, bottom: innerHeight,
           top: dom.getBoundingClientRect().top }) }),
         EditorView.scrollHandler.of(withinText),
@@ -140,7 +140,7 @@ class SceneEditor {
     });
   }
 
-  /** Adds an extension of another module, with precedence over the editor's own extensions. */
+  /** Adds an extension from another module, with precedence over the editor's own ones. */
   extend(extension: Extension): void {
     this.view.dispatch({ effects: StateEffect.appendConfig.of(Prec.high(extension)) });
   }
@@ -148,12 +148,12 @@ class SceneEditor {
   /** The text, with LF line ends. */
   get text(): string { return this.view.state.doc.toString(); }
 
-  /** Sends a request about the scene, as `Connection.request` does. */
+  /** Sends a request about the scene. Rejects if it fails, or if there is no connection. */
   request<Result>(method: string, params: object): Promise<Result> {
     return connection.request(method, { textDocument: { uri: this.uri }, ...params });
   }
 
-  /** Sends a request about the scene. Resolves to null if it fails, as for a text with errors. */
+  /** Sends a request about the scene. Resolves to null if it fails or the text has errors. */
   async ask<Result>(method: string, params: object): Promise<Result | null> {
     try {
       return await this.request<Result | null>(method, params);
@@ -163,14 +163,14 @@ class SceneEditor {
     }
   }
 
-  /** Sends a request as `ask` does. Resolves to null also if the text changed meanwhile. */
+  /** Sends a request about the scene. Resolves to null also if the text has changed meanwhile. */
   async askCurrent<Result>(method: string, params: object): Promise<Result | null> {
     const { doc } = this.view.state;
     const answer = await this.ask<Result>(method, params);
     return this.view.state.doc === doc ? answer : null;
   }
 
-  /** Returns the LSP range of the offsets `from` to `to`, by default of the whole text. */
+  /** Returns the LSP range from offset `from` to `to`; by default, the range of the whole text. */
   range(from = 0, to = this.view.state.doc.length): Range {
     return { start: this.position(from), end: this.position(to) };
   }
@@ -181,7 +181,7 @@ class SceneEditor {
     rewrite(this.view, { changes, selection: { anchor: 0 } });
   }
 
-  /** Opens another text at the server under its own URI, without showing it. */
+  /** Opens another text at the server under the URI `uri`, without showing it in the editor. */
   openAside(uri: string, doc: Text): void {
     const file = { uri, languageId: "pinhole", version: 0, doc, getView: () => null };
     if (connection.state === "open") this.client.didOpen(file);
@@ -189,7 +189,7 @@ class SceneEditor {
 
   closeAside(uri: string): void { if (connection.state === "open") this.client.didClose(uri); }
 
-  /** Opens the scene at the server and makes the editor writable. Later calls do nothing. */
+  /** Opens the scene at the server and makes the editor writable. Does so only once. */
   start(): void {
     if (this.uri !== "") return;
     this.uri = "studio:///scene.scn";
@@ -197,8 +197,8 @@ class SceneEditor {
       Prec.highest(EditorState.readOnly.of(false)), this.client.plugin(this.uri, "pinhole")]) });
   }
 
-  /** Replaces the text by changing only the differences, so that the cursor stays. Moves a pure
-   *  insertion or deletion to the start of its line if possible, so that it covers whole blocks. */
+  /** Replaces the text by changing only what differs, so that the cursor stays. A pure insertion or
+   * deletion is moved to the start of its line if possible, so that it covers whole blocks. */
   replace(content: string): void {
     const [old, text] = [this.text, withLf(content)];
     let end = 0;
@@ -214,7 +214,7 @@ class SceneEditor {
     if (old !== text) this.view.dispatch({ changes, userEvent: "input.replace" });
   }
 
-  /** Connects the client to a new server, which does not have the text yet. */
+  /** Connects the language client to a new server, which does not have the text yet. */
   connected(): void {
     this.client.workspace.syncFiles();
     this.client.connect(connection);
@@ -231,7 +231,7 @@ class SceneEditor {
     return { line: line.number - 1, character: offset - line.from };
   }
 
-  /** Converts LSP edits of `doc`, by default the scene, to editor changes. */
+  /** Converts LSP edits of `doc`, by default the scene's text, to changes of the editor. */
   changes(edits: readonly TextEdit[], doc = this.view.state.doc): ChangeSet {
     const change = ({ range: { start, end }, newText }: TextEdit) =>
       ({ from: this.offset(start, doc), to: this.offset(end, doc), insert: newText });

@@ -1,5 +1,5 @@
-// The scene's file: either the host's, which other editors may change at the same time, or a local
-// file that the browser opens and saves.
+// The scene's file: either the file of the host, which other editors may change at the same time,
+// or a local file that the browser opens and saves.
 
 import { diffArrays } from "diff";
 import { invertedEffects, isolateHistory } from "@codemirror/commands";
@@ -11,9 +11,9 @@ import { Refusal, type HostedFile, type Saved } from "./protocol";
 import { say, unsay } from "./status";
 import { setText, visibleLine } from "./visible";
 
-/** Scene shown by a page without a file. */
+/** Text of the scene that a page without a file shows first. */
 const FIGURE = EXAMPLES.find(([name]) => name === "figure_9_9")?.[1] ?? EMPTY;
-/** File pickers; undefined in browsers without them. */
+/** The browser's file pickers; undefined in browsers without them. */
 const pickers: Partial<Pick<typeof window, `show${"Open" | "Save"}FilePicker`>> = window;
 const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": ".scn" as const } }] };
 
@@ -21,48 +21,48 @@ const SCENES = { types: [{ description: "Scenes", accept: { "text/plain": ".scn"
 class Scene {
   /** Content of the file when it was last read; null if there was no file. */
   seen: string | null = null;
-  /** Text that the page's text is based on. If the file has a different text, Save asks. */
+  /** Content of the file when editing began. If the file now differs from it, Save asks first. */
   base: string | null = null;
   /** Whether the file was removed after it was read. */
   isGone = false;
   handle: FileSystemFileHandle | null = null;
   copy: Scene | null = null; // the copy by which Save as has replaced this scene
-  /** Whether the host has no file for this scene yet, so that Save asks for a name. */
+  /** Whether the host has no file for the scene yet, so that Save asks for a name. */
   isNew = isServed;
-  /** Initial text, which need not be saved; null if the scene comes from a file. */
+  /** Initial text of a new scene, which need not be saved; null if the scene comes from a file. */
   untouched: string | null = null;
 
-  /** `of` is the scene that this copy replaces once the copy is saved. */
+  /** `of` is the scene that this one is a copy of. The copy replaces it as soon as it is saved. */
   constructor(public name = "scene.scn", readonly of: Scene | null = null) {}
 
   /** Last known content of the file, or the initial text if there is no file. */
   get held(): string { return this.seen ?? this.untouched ?? ""; }
 }
 
-/** Effect that replaces one scene by another. Undo reverts it. */
+/** Effect of a change that replaces one scene by another. Undo restores the first scene. */
 const turns = StateEffect.define<{ from: Scene; to: Scene }>();
 
 export const sceneHistory: Extension = invertedEffects.of(({ effects }) => effects
   .filter(it => it.is(turns)).map(({ value: { from, to } }) => turns.of({ from: to, to: from })));
 
-/** Time after which a save still in progress is reported, in milliseconds. */
+/** Time after which an unfinished save is reported, in ms. A usual save takes less. */
 const SLOW = 800;
 const LONE = /\r(?!\n)/; // a carriage return that ends no line
 const NOT_SAVED = "Nothing was saved, because there is no connection. The text stays here.";
 
-/** Maximum number of changed lines; above it, two texts count as wholly different. */
+/** Maximum number of differing lines to search for; with more, all lines count as differing. */
 const MOST_CHANGES = 3000;
 
-/** The host's file and local files; a static page has only local ones. */
+/** The host's file and local files. A page without a host has only local files. */
 class Files {
   onSaved: (text: string) => void = () => {};
   /** Called before another scene replaces the current one. */
   onLeave: () => void = () => {};
   /** Whether the host has sent its scene to this page. */
   isTold = false;
-  /** Text, with its base, that was restored before the host sent its scene. */
+  /** Text that was restored before the host sent its scene, and the file content it began from. */
   private early: { base: string | null | undefined; text: string } | null = null;
-  /** The host's scene, and (`at`) the scene that the page shows. */
+  /** The scene of the host's file; `at` is the scene that the page shows, which may be another. */
   private hosts = new Scene();
   at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
@@ -84,7 +84,7 @@ class Files {
     addEventListener("beforeunload", event => { if (this.isUnsaved) event.preventDefault(); });
   }
 
-  /** Replaces the shown scene by `to` with this text; Undo brings the old scene back. */
+  /** Replaces the shown scene by the scene `to` with this text. Undo restores the old scene. */
   private begin(text: string, to = new Scene()): void {
     if (!this.isTold) return say("Studio is not ready yet.", "warning");
     this.onLeave();
@@ -95,7 +95,7 @@ class Files {
       effects: turns.of({ from: this.at, to }) });
   }
 
-  /** Switches to the scene that the text belongs to after Undo, Redo or a new scene. */
+  /** Switches to the scene to which the text belongs after Undo, Redo or a new scene. */
   follow(transactions: readonly Transaction[]): void {
     for (const { effects } of transactions) for (const it of effects) {
       if (it.is(turns)) for (let at: Scene | null = it.value.to; at; at = at.copy) this.at = at;
@@ -111,10 +111,10 @@ class Files {
       && (isGone || seen === null || text !== withLf(seen) || LONE.test(seen));
   }
 
-  /** The text with the line ends of its file. */
+  /** The text with the line ends that its file has. */
   get textToSave(): string { return withEndsOf(this.at.held, editor.text); }
 
-  /** Restores a draft, or the scene of a link, for which `base` is undefined. */
+  /** Shows the text of a draft or of a link. For a link, `base` is undefined. */
   restore(text: string, base?: string | null, name = this.at.name): void {
     if (!this.isTold) {
       this.early = { base, text };
@@ -126,11 +126,11 @@ class Files {
     this.show();
   }
 
-  /** Handles a message about the host's file: the first, or after a reconnection or a change. */
+  /** Handles a message with the host's file: the first one, and one after each change. */
   hosted({ name, text, reason, saved }: HostedFile): void {
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
-    // If another scene is shown, changes of the host's file are handled once it is shown again.
+    // While another scene is shown, changes of the host's file wait until it is shown again.
     if (this.at !== this.hosts) return this.show();
     if (!this.isTold) {
       const [early, { view: { state: { selection } } }] = [editor.text, editor];
@@ -155,14 +155,14 @@ class Files {
     this.show();
   }
 
-  /** Handles a file that another program has changed, removed (`text` is null) or restored. */
+  /** Handles a change of the file by another program; `text` is null if it was removed. */
   private changed(text: string | null, reason?: string | null): void {
     const { seen, isGone } = this.at;
     this.at.isGone = text === null;
     if (text === null) {
       if (!isGone) this.tellGone(reason);
     } else if (text === seen) {
-      // The file is again what the page is based on, so there is nothing to decide.
+      // The file again has the content that the page is based on, so there is nothing to decide.
       this.conflict.close();
       if (isGone) say(`${this.shownName} is there again.`);
     } else if (editor.text === withLf(text) || (seen !== null && editor.text === withLf(seen))) {
@@ -175,7 +175,7 @@ class Files {
     this.show();
   }
 
-  /** Warns of lone carriage returns, which the page cannot show and Save replaces by LF. */
+  /** Warns of lone carriage returns, which the page cannot show. Save replaces them by LF. */
   private tellLone(): void {
     if (LONE.test(this.at.held)) say(`${this.shownName} has carriage returns `
       + "alone, which end no line in a scene; Save writes line feeds in their place.", "warning");
@@ -187,7 +187,7 @@ class Files {
       : `${this.shownName} is gone; Save writes it anew.`, "warning");
   }
 
-  /** Shows the file's name, and whether the text is unsaved. */
+  /** Shows the file's name, and whether the text has unsaved changes. */
   show(): void {
     setText(byId("file-name"), this.shownName);
     const { isUnsaved } = this;
@@ -204,7 +204,7 @@ class Files {
     });
   }
 
-  /** Runs `act` and reports why it failed, unless the user cancelled it. */
+  /** Runs `act`. If it fails, shows the reason, unless the user has cancelled it. */
   private async attempt(act: () => Promise<void>): Promise<void> {
     await act().catch(({ name, message }: Error) => {
       if (name !== "AbortError") say(message, "warning");
@@ -225,12 +225,12 @@ class Files {
     try {
       const answer = await connection.request<Saved>("studio/save", about);
       if (answer.ok) this.saved(scene, name, text);
-      // Another scene may have replaced this one during the request.
+      // Another scene may have replaced the saved one during the request.
       else if (this.at !== scene) throw new Refusal(0, `${name} is not saved: it was changed.`);
       else if (answer.text === null) this.changed(null);
       else this.ask(answer.text);
     } catch (error) {
-      // A restarted host does not know the files that it made before, so Save asks for a new name.
+      // A restarted host does not know the files that it created before, so Save asks for a name.
       scene.isNew ||= scene !== hosts && error instanceof Refusal && error.code !== 0;
       throw error instanceof Refusal ? error : new Error(NOT_SAVED);
     } finally { clearTimeout(slow); }
@@ -240,13 +240,13 @@ class Files {
     scene.seen = scene.base = text;
     Object.assign(scene, { name, isGone: false, isNew: false, untouched: null });
     if (scene.of === this.at) this.at = this.at.copy = scene;
-    // If the host has no file yet, this scene becomes the host's.
+    // If the host has no file yet, the saved scene becomes the host's.
     if (this.hosts.isNew) this.hosts = scene;
     say(`${visibleLine(name)} is saved.`);
     this.onSaved(text);
   }
 
-  /** Asks for a new file's name and saves it. The dialog stays open until saving succeeds. */
+  /** Asks for the name of a new file and saves it. The dialog stays open until saving succeeds. */
   private askName(scene: Scene): void {
     const dialog = byId<HTMLDialogElement>("name-dialog");
     const field = byId<HTMLInputElement>("name-field");
@@ -277,7 +277,7 @@ class Files {
     scene.handle ??= (await pickers.showSaveFilePicker?.(about)) ?? null;
     if (scene.handle === null) download(scene.name, text, "text/plain");
     else {
-      // The browser writes to a copy, which replaces the file when it is closed.
+      // The browser writes to a copy. When the copy is closed, it replaces the file.
       const file = await scene.handle.createWritable();
       await file.write(text);
       await file.close();
@@ -293,7 +293,7 @@ class Files {
 
   private async take(file: File, handle: FileSystemFileHandle | null): Promise<void> {
     try {
-      // Refuse invalid UTF-8: Save would change a text in another encoding.
+      // Invalid UTF-8 is refused, since Save would change a text in another encoding.
       const text = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true })
         .decode(await file.arrayBuffer());
       const scene = new Scene(file.name);
@@ -305,7 +305,7 @@ class Files {
     this.show();
   }
 
-  /** Shows how page and file differ and asks which to keep. Undo brings back the page's text. */
+  /** Shows how page and file differ, and asks which to keep. Undo restores the page's text. */
   private ask(theirs: string): void {
     const lines = difference(withLf(theirs), editor.text)
       .map(({ sign, text }) => create("div", CLASSES[sign], `${sign} ${text}`));
@@ -314,7 +314,7 @@ class Files {
     this.conflict.returnValue = "";
     this.conflict.onclose = () => {
       const { returnValue: choice } = this.conflict;
-      // Nothing was chosen: the base stays the older text, so the next save asks again.
+      // If nothing is chosen, the page stays based on the older text, so the next save asks again.
       if (choice === "") return;
       this.at.seen = this.at.base = theirs;
       if (choice === "page") void this.save();
@@ -325,7 +325,7 @@ class Files {
   }
 }
 
-/** Returns `text` with the line ends of `file`; a new line gets that of the line before it. */
+/** Returns `text` with the line ends of `file`. A new line ends as the line before it does. */
 export function withEndsOf(file: string, text: string): string {
   if (!file.includes("\r")) return text;
   const ends = file.match(/\r\n?|\n/g)?.map(end => end === "\r" ? "\n" : end) ?? [];
@@ -342,7 +342,7 @@ export function withEndsOf(file: string, text: string): string {
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
-/** Returns the range of lines from the first to the last difference, and two lines around it. */
+/** Compares two texts. Returns the lines from the first to the last difference, with two around. */
 export function difference(one: string, other: string): DifferenceLine[] {
   const lines = compared(one.split("\n"), other.split("\n"));
   const differs = ({ sign }: DifferenceLine) => sign !== " ";

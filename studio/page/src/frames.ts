@@ -1,5 +1,5 @@
-// Pictures of the newest text: first a coarse one, then finer ones, up to the scene's samples. A
-// newer text supersedes older ones; while it has errors, the last good text keeps its picture.
+// Pictures of the newest text: first a coarse one, then finer ones, up to the scene's own samples.
+// A newer text replaces older ones. While it has errors, the last good text keeps its picture.
 
 import type { Text } from "@codemirror/state";
 import { connection } from "./connection";
@@ -7,7 +7,7 @@ import { fromBase64 } from "./dom";
 import { editor } from "./editor";
 import { isSuperseded, type Frame } from "./protocol";
 
-/** Quality of a picture, the worst first. */
+/** Quality of a picture, from the worst to the best. */
 export type Fineness = "coarse" | "sharp" | "final";
 
 export interface Shown {
@@ -18,35 +18,35 @@ export interface Shown {
   version: number;
 }
 
-/** Maximum number of pixels of a coarse picture: a sixteenth of 1280 × 720. */
+/** Maximum number of pixels of a coarse picture, which is fast enough for each step of a drag. */
 const COARSE_PIXELS = 320 * 180;
 
-/** Maximum size of a canvas that all browsers support: number of pixels, and side in pixels. */
+/** Largest picture that all browsers can show: number of pixels, and pixels of a side. */
 const MOST = { pixels: 16_000_000, side: 8192 };
-/** Pause in the changes by a drag after which finer pictures are requested, in milliseconds. */
+/** Pause in a drag, in ms, before finer pictures are requested: a little over a screen refresh. */
 const HAND_RESTS = 20;
-/** If the last final picture took at most this long, in ms, the sharp picture is skipped. */
+/** If the last final picture took at most this time, in ms, no sharp one precedes the next. */
 const SOON = 200;
 
-/** Text that a requested picture shows, and the number of the request. */
+/** A requested picture: its text, and the number of the request. */
 interface Asked { doc: Text | null; generation: number }
 
 class Frames {
   onShow: (shown: Shown) => void = () => {};
-  /** Called with `good` or `broken` for the newest text, or with the error of the request. */
+  /** Called with the state of the newest text (`broken`: it has errors), or a request's error. */
   onState: (state: "good" | "broken" | Error) => void = () => {};
   /** Called when a drag ends. */
   onRest: () => void = () => {};
-  /** Current drag, or null. */
+  /** The drag that is under way; null if there is none. */
   dragging: object | null = null;
   /** Settles when the newest text's coarse picture has arrived or failed. */
   coarse: Promise<unknown> = Promise.resolve();
 
-  /** Picture shown, with its request; the text may have changed since. */
+  /** The shown picture and its request. The text may have changed since. */
   shown: Shown & Asked | null = null;
 
   private generation = 0;
-  /** Whether the newest text that was answered has errors. */
+  /** Whether the newest text about which the server has answered has errors. */
   private isBroken = false;
   private lastTook = Infinity;
 
@@ -82,7 +82,7 @@ class Frames {
     return editor.request<Frame | null>("pinhole/frame", { ...MOST, ...how });
   }
 
-  /** Shows a requested picture when it arrives; returns it if its text is still the newest. */
+  /** Shows a requested picture when it arrives. Returns it if its text is still the newest. */
   private async present(asked: Asked, fineness: Fineness,
     answer: Promise<Frame | null>): Promise<Frame | null> {
     const isNewest = () => asked.generation === this.generation;
@@ -95,7 +95,7 @@ class Frames {
         const before = { doc: null, generation: asked.generation - 1 };
         const isDone = this.shown?.fineness === "final"
           && this.shown.generation === before.generation;
-        // The picture of the last good text is still finished; further errors do not restart it.
+        // The last good text's picture is still finished. Further errors do not begin it again.
         if (isFirst && !isDone) void this.present(before, "final", this.ask({ last: true }));
         return null;
       }
@@ -119,7 +119,7 @@ class Frames {
   }
 }
 
-/** Decodes a PNG; `ImageDecoder` is a few milliseconds faster than `createImageBitmap`. */
+/** Decodes a PNG. `ImageDecoder` is a few milliseconds faster than `createImageBitmap`. */
 async function decoded(data: Uint8Array<ArrayBuffer>): Promise<ImageBitmap> {
   const how = { type: "image/png", colorSpaceConversion: "none" } as const;
   if (!("ImageDecoder" in window)) return createImageBitmap(new Blob([data], how), how);

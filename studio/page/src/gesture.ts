@@ -1,4 +1,4 @@
-// A gesture: many small changes of the text (by a drag, a slider or a colour picker) that a single
+// A gesture: many small changes of the text, by a drag, a slider or a colour picker, that a single
 // Undo reverts. The changed numbers are highlighted.
 
 import { history, historyField, isolateHistory } from "@codemirror/commands";
@@ -6,14 +6,14 @@ import { Annotation, ChangeSet, Compartment, EditorState, StateField, type Chang
   Extension, type Range, type Text, type TransactionSpec } from "@codemirror/state";
 import { Decoration, EditorView, type DecorationSet } from "@codemirror/view";
 
-/** Marks a change of a gesture as the gesture's `first`, or as one of the `next`. */
+/** Marks a change of the text as the first or a later one of a gesture (a drag, for example). */
 const step = Annotation.define<"first" | "next">();
 
-/** Pause in typing that begins a new undo step, in milliseconds. */
+/** Pause in typing, in ms, after which Undo separates further typing; CodeMirror's default. */
 const TYPING_PAUSE = 500;
 const touched = Decoration.mark({ class: "touched" });
 
-/** Highlights what a gesture changed last, until the text changes again. */
+/** Highlights what a drag or slider changed last, until the text changes in another way. */
 const touchedField = StateField.define<DecorationSet>({
   create: () => Decoration.none,
   update(marks, transaction) {
@@ -28,14 +28,14 @@ const touchedField = StateField.define<DecorationSet>({
   provide: field => EditorView.decorations.from(field),
 });
 
-/** Compartment of the history, by which `rewrite` replaces the history. */
+/** Part of the editor's configuration that contains the undo history, so it can be replaced. */
 const kept = new Compartment();
 
 function grouped(past: Extension = []): Extension {
   let last = 0;
   return [
     history({
-      // This delay joins all changes except isolated ones, whose time counts as 0.
+      // The delay is so long that only isolated changes and `joinToEvent` divide changes for Undo.
       newGroupDelay: 1e11,
       joinToEvent: (transaction, isAdjacent) => transaction.annotation(step) === "next"
         || (isAdjacent && Date.now() - last < TYPING_PAUSE),
@@ -48,20 +48,20 @@ function grouped(past: Extension = []): Extension {
   ];
 }
 
-/** Returns a history that groups typing by pauses and makes each gesture one undo step. */
+/** Returns an undo history that joins typing without pauses, and each gesture, to one change. */
 export function gestureHistory(): Extension { return [kept.of(grouped()), touchedField]; }
 
-/** Changes the text and replaces its history by `past`, or by an empty one. */
+/** Changes the text, and replaces the undo history by `past` or by an empty one. */
 export function rewrite(view: EditorView, change: TransactionSpec, past: Extension = []): void {
   view.dispatch({ effects: kept.reconfigure([]) });
   view.dispatch(change);
   view.dispatch({ effects: kept.reconfigure(grouped(past)) });
 }
 
-/** A gesture. Its result depends only on the text at its start and on its last change. After a
- *  change of the text by something else, it changes nothing more. */
+/** Changes of the text by a drag or slider. The result depends only on the text at the start and on
+ * the last change. If something else changes the text, no further change is made. */
 export class Gesture {
-  /** Text at the start, text now, and (`written`) the changes from one to the other. */
+  /** Text at the start; `current` is the text now, and `written` the changes between the two. */
   readonly base: Text;
   private current: Text;
   private written: ChangeSet;
@@ -94,7 +94,7 @@ export class Gesture {
     this.current = view.state.doc;
   }
 
-  /** Ends the gesture. If the text is the initial one again, the history forgets the gesture. */
+  /** Ends the gesture. If the text is the initial one again, no trace of it stays in Undo. */
   end(): void {
     if (this.over) return;
     if (this.isAlone && this.current.eq(this.base)) return this.cancel();
@@ -102,7 +102,7 @@ export class Gesture {
     if (this.current !== this.base) this.view.dispatch({ annotations: isolateHistory.of("after") });
   }
 
-  /** Reverts the gesture without a trace in Undo or Redo; after foreign changes, only ends it. */
+  /** Reverts the gesture, without a trace in Undo. If the text changed otherwise, only ends it. */
   cancel(): void {
     if (this.over) return;
     if (!this.isAlone) return this.end();

@@ -1,4 +1,4 @@
-// Widgets in the text: values that the server computed, and a swatch before each colour.
+// Additions shown in the text: values that the server has computed, and a swatch at each colour.
 
 import { StateEffect, StateField, type Text } from "@codemirror/state";
 import { Decoration, EditorView, WidgetType, type Command,
@@ -9,7 +9,7 @@ import { create, newestOf } from "./dom";
 import { editor } from "./editor";
 import { Gesture } from "./gesture";
 
-/** Matches a colour literal, call or name at the start of a text. */
+/** Matches a colour at the start of a text: a code, a call of `rgb`, or a name. */
 const COLOR = /^(?:#[\da-fA-F]+|rgb\s*\([^)]*\)|\w+)/;
 const colorAt = (doc: Text, at: number) => COLOR.exec(doc.sliceString(at, at + 200))?.[0] ?? "";
 const setHints = StateEffect.define<DecorationSet>();
@@ -25,7 +25,7 @@ class HintWidget extends WidgetType {
   constructor(private readonly text: string) { super(); }
   override eq(other: HintWidget): boolean { return other.text === this.text; }
   toDOM(): HTMLElement { return create("span", "hint", this.text); }
-  // A click on the hint acts as a click at its position in the text.
+  // A click on the hint sets the cursor, as a click on the text would.
   override ignoreEvent(): boolean { return false; }
 }
 
@@ -39,7 +39,7 @@ class SwatchWidget extends WidgetType {
   toDOM(view: EditorView): HTMLElement {
     const input = create("input", "swatch");
     input.type = "color";
-    // The Tab key skips swatches; Alt-Enter opens the swatch of the colour at the cursor.
+    // The Tab key skips swatches. Alt-Enter opens the swatch of the colour at the cursor.
     input.tabIndex = -1;
     let gesture: Gesture | null = null;
     let work = Promise.resolve();
@@ -54,7 +54,7 @@ class SwatchWidget extends WidgetType {
     return input;
   }
 
-  // Keep the element when the colour changes, because an open picker belongs to it.
+  // The element stays when the colour changes, because an open colour picker belongs to it.
   override updateDOM(dom: HTMLElement): boolean {
     const input = dom as HTMLInputElement;
     input.value = this.color;
@@ -65,7 +65,7 @@ class SwatchWidget extends WidgetType {
   override ignoreEvent(): boolean { return true; }
 }
 
-/** Opens the picker of the colour at the cursor. Returns whether there is such a colour. */
+/** Opens the colour picker at the cursor. Returns whether there is a colour at the cursor. */
 export const openSwatch: Command = view => {
   const { state: { doc, selection: { main } }, dom } = view;
   const swatch = [...dom.querySelectorAll<HTMLInputElement>(".swatch")].find(it => {
@@ -77,7 +77,7 @@ export const openSwatch: Command = view => {
   return swatch !== undefined;
 };
 
-/** Requests the hints and swatches of the current text; called after a pause in changes. */
+/** Requests the hints and colours of the current text. It is called after a pause in changes. */
 export async function refreshHints(): Promise<void> {
   const { doc } = editor.view.state;
   const [hints, colors] = await Promise.all([
@@ -98,7 +98,7 @@ export async function refreshHints(): Promise<void> {
   editor.view.dispatch({ effects: setHints.of(Decoration.set(decorations, true)) });
 }
 
-/** Replaces the colour at `offset` by `picked` (`#rrggbb`), in the notation of the old colour. */
+/** Replaces the colour at `offset` by `picked` (`#rrggbb`), spelled in the old colour's form. */
 async function pick(offset: number, picked: string, gesture: Gesture): Promise<void> {
   const written = colorAt(gesture.base, offset);
   const channel = (at: number) => parseInt(picked.slice(at, at + 2), 16) / 255;
@@ -107,7 +107,7 @@ async function pick(offset: number, picked: string, gesture: Gesture): Promise<v
   const range = editor.range(offset, offset + length);
   const ways = await editor.askCurrent<ColorPresentation[]>(
     "textDocument/colorPresentation", { color, range });
-  // The first notation that the server lists is that of the written colour.
+  // Of the new colour's possible forms, the server lists the form of the old colour first.
   const way = ways?.[0];
   if (way !== undefined) gesture.write({ from: offset, to: offset + written.length,
     insert: way.label });

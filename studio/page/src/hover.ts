@@ -1,4 +1,4 @@
-// Names the object under the pointer in the footer, and outlines it.
+// Shows the name of the object under the pointer in the footer, and draws its outline.
 
 import { newestOf } from "./dom";
 import { editor } from "./editor";
@@ -7,7 +7,7 @@ import { picture } from "./picture";
 import type { Pick, Point, Samples } from "./protocol";
 import { point as tell } from "./status";
 
-/** Position of the pointer on the stage, in screen pixels; null if it is elsewhere. */
+/** Position of the pointer over the picture, in screen pixels; null if it is elsewhere. */
 let place: Point | null = null;
 
 picture.stage.addEventListener("pointermove", event => {
@@ -20,7 +20,7 @@ picture.stage.addEventListener("pointerleave", () => {
   void hover(null);
 });
 
-/** Updates what is under the pointer, because the picture may have changed. */
+/** Finds again what is under the pointer, because the picture may have changed. */
 export function hoverAgain(): void { if (place !== null) void hover(picture.toPicture(place)); }
 
 const hover = newestOf(async (at: Point | null) => {

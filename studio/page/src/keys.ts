@@ -1,4 +1,4 @@
-// Keyboard control of the picture; it works unless the focus is in a text field.
+// Keyboard control of the picture. It works unless the focus is in a text field.
 
 import { byId } from "./dom";
 import { Drag } from "./drag";
@@ -9,33 +9,33 @@ import { selection } from "./selection";
 import { say } from "./status";
 import { tools, type Tool } from "./tools";
 
-/** Step of an arrow key, in pixels of the picture. The Control key divides it by 10. */
+/** Step of an arrow key, in pixels of the picture; with Control, a tenth for fine movements. */
 const KEY_STEP = 10;
-/** Pause that ends a drag by arrow keys or the wheel, in milliseconds. */
+/** Pause, in ms, that ends a drag by keys or wheel; longer than between repeats of a held key. */
 const KEY_PAUSE = 500;
 
 const ARROWS: Record<string, Point> =
   { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** Elements that use all keys (`TEXT`), or the arrow keys, Space and Escape (`CONTROL`). */
+/** Elements that use all keys (`TEXT`), or only arrow keys, Space and Escape (`CONTROL`). */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
 const SAVE = ["Control+s", "Control+Shift+s"]; // work in `TEXT`, too
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
-/** Returns the name of a pressed key in the notation of `data-key`. */
+/** Returns the name of a pressed key as the attribute `data-key` spells it. */
 function nameOf({ key, ctrlKey, metaKey, shiftKey }: KeyboardEvent): string {
   if (!ctrlKey && !metaKey) return key;
   return `Control+${shiftKey ? "Shift+" : ""}${key.toLowerCase()}`;
 }
 
-/** Returns the control of a key, or undefined. The active constraint's key belongs to `free`. */
+/** Returns the element that a key operates. The key of the active constraint switches it off. */
 function controlOf(key: string): HTMLElement | undefined {
   const controls = [...document.querySelectorAll<HTMLElement>("[data-key]")];
   const found = controls.find(it => it.dataset["key"]?.split(" ").includes(key));
   return found?.matches("[name=along]:checked") ? byId("free") : found;
 }
 
-/** Whether the space bar is held, so that drags pan the picture. */
+/** Whether the space bar is held. A drag then pans the picture. */
 export let space = false;
 let drag: Drag | null = null;
 let pause = 0;
@@ -48,7 +48,7 @@ picture.onDolly = turned => {
   rest();
 };
 picture.stage.addEventListener("focusout", event => {
-  // Moving the focus from one handle to another does not end a drag.
+  // If the focus moves from one handle to another, the drag continues.
   if (event.relatedTarget instanceof Node && picture.stage.contains(event.relatedTarget)) return;
   endKeys();
   freeSpace();
@@ -78,7 +78,7 @@ function down(event: KeyboardEvent): void {
     drag ??= begin(on);
     drag?.by([arrow[0] * step, arrow[1] * step]);
   } else if (whole === "Escape") {
-    // This also cancels a released drag that still waits for the server.
+    // Escape also cancels a drag that was released but still waits for the server.
     if (frames.dragging instanceof Drag) frames.dragging.cancel();
     else selection.select(null);
     drag = null;
@@ -112,12 +112,12 @@ function freeSpace(): void {
 
 function ofCamera(handle: Tool): Drag {
   const { size: [width, height] } = picture;
-  // A roll turns about the centre, so its handle has to be beside the centre.
+  // A roll turns the camera about the centre, so its handle must be beside the centre.
   const at: Point = [handle === "roll" ? 0.75 * width : width / 2, height / 2];
   return new Drag(at, () => ({ object: null, handle, at }));
 }
 
-/** Begins a drag of the focused handle, or else of the selected object, or of the camera. */
+/** Begins a drag: of the focused handle, or else of the selected object or of the camera. */
 function begin(focused: Element): Drag | null {
   const { tool } = tools;
   const isHandle = focused.closest(".handle") !== null;

@@ -1,4 +1,4 @@
-// Syntax highlighting by word lists; the server highlights names by their meaning.
+// Syntax highlighting by lists of words. The server then highlights names by their meaning.
 
 import { StreamLanguage, syntaxHighlighting } from "@codemirror/language";
 import { classHighlighter } from "@lezer/highlight";
@@ -6,7 +6,7 @@ import { classHighlighter } from "@lezer/highlight";
 export const NUMBER = /(?:\d[\d_]*(?:\.[\d_]*)?|\.\d[\d_]*)(?:[eE][-+]?\d[\d_]*)?/;
 const words = (...lists: string[]) => new Set(lists.join(" ").split(" "));
 
-// The words of the language. A test compares them with the schema.
+// The words of the language. A test compares them with the language's schema.
 const KINDS = words("image camera sampler sphere triangle box checkerboard");
 const FIELDS = words(
   "width height background",
@@ -65,5 +65,5 @@ export const sceneLanguage = StreamLanguage.define<State>({
     closeBrackets: { brackets: ["(", "{"] }, indentOnInput: /^\s*\}$/ },
 });
 
-/** Highlighting by CSS classes, whose colours are in editor.css. */
+/** Marks words with CSS classes, whose colours are in editor.css. */
 export const sceneHighlighting = syntaxHighlighting(classHighlighter);

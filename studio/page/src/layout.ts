@@ -1,4 +1,4 @@
-// The layout: the divider between text and picture, the phone's tabs, the menus, and the theme.
+// The layout: the divider between text and picture, tabs on a phone, the menus, and the theme.
 
 import { Compartment } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** Minimum and maximum share of the page's width (on narrow screens, height) for the text, in %. */
+/** Least share of the text, and of the picture, in the page, in %, so that neither vanishes. */
 const LEAST = 20;
 const MOST = 80;
 
@@ -29,7 +29,7 @@ divider.addEventListener("pointerdown", event => {
   divider.setPointerCapture(event.pointerId);
   event.preventDefault();
   const { left, top, width, height } = panes.getBoundingClientRect();
-  // On narrow screens the picture is above the text, so the text's share counts from below.
+  // On a narrow screen, the picture is above the text, so the text's share counts from below.
   const move = ({ clientX, clientY }: PointerEvent) =>
     share(100 * (isNarrow.matches ? 1 - (clientY - top) / height : (clientX - left) / width));
   const before = Number(divider.getAttribute("aria-valuenow"));
@@ -75,7 +75,7 @@ for (const menu of menus) {
   });
 }
 
-// The theme follows the system until the user chooses one. Its colours are variables of page.css.
+// The theme follows the system until the user chooses one. Its colours are defined in page.css.
 const systemIsDark = matchMedia("(prefers-color-scheme: dark)");
 const editorTheme = new Compartment();
 const colors = () => remembered("theme") ?? (systemIsDark.matches ? "dark" : "light");

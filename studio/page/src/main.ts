@@ -1,4 +1,4 @@
-// The page of Pinhole Studio: a text and its picture. This module connects the parts.
+// The page of Pinhole Studio: a text and its picture. This module connects all other modules.
 
 import { session, takeToken } from "./address";
 import { redo, redoDepth, undo, undoDepth } from "@codemirror/commands";
@@ -26,7 +26,7 @@ import { mapSliders, refreshSliders, stop } from "./sliders";
 import * as status from "./status";
 import { setText } from "./visible";
 
-/** Delay after the last change before hints, sliders and objects are requested, in ms. */
+/** Delay after a change, in ms, before hints, sliders and objects are requested: a typing pause. */
 const REST = 150;
 
 editor.extend([keymap.of([fixKey, { key: "Alt-Enter", run: openSwatch }]), numberControls,
@@ -72,7 +72,7 @@ function changed(): void {
   void refreshOutlines();
   files.show();
   draftChanged();
-  // Hints, sliders and objects are not needed during a drag.
+  // Hints, sliders and objects are not updated during a drag.
   if (frames.dragging === null) rested();
   status.changed();
 }
@@ -117,13 +117,13 @@ editor.onNotification = (method, params) => {
   if (method === "studio/file") void hosted(params);
 };
 
-/** File that the host sent during a drag; it is handled when the drag ends. */
+/** File that the host has sent during a drag. It is handled when the drag ends. */
 let waiting: HostedFile | null = null;
 
 async function hosted(file: HostedFile): Promise<void> {
   await linked;
   const first = !files.isTold;
-  // A number that is playing counts as a drag and would delay the file for ever.
+  // Playing stops: a playing slider counts as a drag, so it would delay the file for ever.
   stop();
   waiting = frames.dragging === null ? null : file;
   if (waiting !== null) return;
@@ -143,7 +143,7 @@ addEventListener("hashchange", async () => {
 });
 byId("undo").addEventListener("click", () => undo(editor.view));
 byId("redo").addEventListener("click", () => redo(editor.view));
-// The editor creates only the visible lines, so printing needs a copy of the whole text.
+// The editor creates elements only for visible lines, so printing needs a copy of the text.
 addEventListener("beforeprint", () => {
   picture.fit();
   setText(byId("print-text"), `${files.at.name}, ${new Date().toLocaleString()}\n\n${editor.text}`);

@@ -1,4 +1,4 @@
-// Changing a number in the text by a drag with the Alt key held, or by a slider below the number.
+// Changes of a number in the text, by a drag with the Alt key or by a slider below the number.
 
 import { syntaxTree } from "@codemirror/language";
 import { StateEffect, StateField, type Extension } from "@codemirror/state";
@@ -10,13 +10,13 @@ import { Gesture } from "./gesture";
 import { NUMBER } from "./language";
 import type { Limits } from "./protocol";
 
-/** Number literal from its sign to `to`; its unit, if any, reaches to `end`. */
+/** A number in the text, from its sign at `from` to `to`. Its unit, if any, reaches to `end`. */
 interface Literal { from: number; to: number; end: number; value: number }
 
-/** Screen pixels of a horizontal drag per step of the number. */
+/** Pixels of a horizontal drag per step of the number; with fewer, it would be hard to control. */
 const DRAG_PIXELS = 4;
 
-/** Matches text that ends with a sign of a number, as opposed to a subtraction. */
+/** Matches text at whose end a `-` is the sign of a number rather than a subtraction. */
 const SIGN = /(?:^|[-+*/=(,{]|\b(?:y|roll|spin))\s*-$/;
 
 export function literalAt(at: number): Literal | null {
@@ -34,32 +34,32 @@ export function literalAt(at: number): Literal | null {
     end: node.to, value };
 }
 
-/** Returns the limits of the number at an offset, or null if it has none. */
+/** Requests the limits of the number at an offset; null if there is no number. */
 function limitsOf(at: number): Promise<Limits | null> {
   return editor.ask("pinhole/limits", { position: editor.position(at) });
 }
 
-/** Changes a number within limits from the server, as one gesture. */
+/** Changes a number within its limits, so that a single Undo reverts all the changes. */
 export class Turn {
   readonly gesture = new Gesture(editor.view);
 
   constructor(private readonly literal: Literal, private readonly limits = limitsOf(literal.to)) {}
 
-  /** Sets the number, rounded and clamped to its limits, to what `value` returns for its step. */
+  /** Sets the number to what `value` returns for its step, rounded and clamped to its limits. */
   async set(value: (step: number) => number): Promise<void> {
     const { from, to } = this.literal;
     const limits = await this.limits;
     if (limits === null) return;
     const { least, most, step, decimals } = limits;
     const right = Math.min(most ?? Infinity, Math.max(least ?? -Infinity, value(step)));
-    // Adding 0 turns −0 into 0, which is printed without a sign.
+    // Adding 0 turns −0 into 0, which has no sign.
     this.gesture.write({ from, to, insert: String(Number(right.toFixed(decimals)) + 0) });
   }
 
   end(): void { void this.limits.then(() => this.gesture.end()); }
 }
 
-/** Slider of a number that may vanish from the text. Changes until release are one `Turn`. */
+/** Slider of a number in the text. One Undo reverts all changes until the slider is released. */
 export class Dial {
   readonly range = create("input");
   turn: Turn | null = null;
@@ -68,7 +68,7 @@ export class Dial {
   constructor(readonly literal: () => Literal | null) {
     const { range } = this;
     range.type = "range";
-    // After Escape, the browser goes on dragging until the pointer is released; ignore that.
+    // After Escape, the browser continues the drag until the pointer is released; this is ignored.
     let isOff = false;
     range.addEventListener("input", () => isOff ? this.show() : void this.set(Number(range.value)));
     range.addEventListener("change", () => this.end());
@@ -95,7 +95,7 @@ export class Dial {
     frames.released(this);
   }
 
-  /** Shows the number unless it is being changed. Returns its literal, or null if it is gone. */
+  /** Shows the number unless it is being changed. Returns its literal; null if it is deleted. */
   show(): Literal | null {
     const found = this.literal();
     if (found === null || this.turn !== null || this.limits === null) return found;
@@ -107,14 +107,14 @@ export class Dial {
 
 const openSlider = StateEffect.define<number | null>();
 
-/** Offset of the number whose slider is open; null if none is. */
+/** Offset of the number whose slider is open; null if no slider is open. */
 const sliderField = StateField.define<number | null>({
   create: () => null,
   update(open, transaction) {
     const { changes, docChanged, effects, selection } = transaction;
     const next = effects.findLast(it => it.is(openSlider));
     if (next !== undefined) return next.value;
-    // Typing closes the slider; the slider's own changes do not.
+    // Typing closes the slider. Changes by the slider itself do not.
     const isTyped = docChanged && transaction.isUserEvent("input");
     return open === null || isTyped || selection !== undefined ? null : changes.mapPos(open, -1);
   },
@@ -127,7 +127,7 @@ const show = (pos: number | null) => editor.view.dispatch({ effects: openSlider.
 /** Limits of the number whose slider was opened last. */
 let opened: Limits | null = null;
 
-/** Requests limits and opens the slider of the number at `at`, if the cursor is still there. */
+/** Requests the limits of the number at `at`. If the cursor is still there, opens its slider. */
 async function open(at: number): Promise<void> {
   opened = await limitsOf(at + 1);
   if (opened !== null && atCursor()?.from === at) show(at);
@@ -162,7 +162,7 @@ function createSlider(): TooltipView {
   } };
 }
 
-/** Changes `literal` by the pointer's horizontal movement. Returns false if `literal` is null. */
+/** Changes `literal` while the pointer moves sideways. Returns false if `literal` is null. */
 function scrub(event: PointerEvent, literal: Literal | null): boolean {
   if (literal === null) return false;
   event.preventDefault();
@@ -178,7 +178,7 @@ function scrub(event: PointerEvent, literal: Literal | null): boolean {
   return true;
 }
 
-/** Changes `literal` by one step in a direction, ±1. Returns false if `literal` is null. */
+/** Changes `literal` by one step up (1) or down (−1). Returns false if `literal` is null. */
 function turnOnce(literal: Literal | null, direction: number): boolean {
   if (literal === null) return false;
   const turn = new Turn(literal);
@@ -197,7 +197,7 @@ export const numberControls: Extension = [
       const at = view.posAtCoords({ x: event.clientX, y: event.clientY });
       return scrub(event, at === null ? null : literalAt(at));
     },
-    // Stop the editor from starting a selection when the Alt key is held.
+    // While the Alt key is held, a press must not begin a selection.
     mousedown: event => event.altKey,
     click({ altKey }, { state }) {
       const literal = state.selection.main.empty && !altKey ? atCursor() : null;

@@ -10,14 +10,14 @@ import type { ListedObject, Overlays } from "./protocol";
 import { selection } from "./selection";
 import { setText } from "./visible";
 
-/** Maximum number of objects that the description for screen readers names. */
+/** Maximum number of objects in the picture's description; a longer one tires a listener. */
 const DESCRIBED = 6;
 
 let described = "";
 
-/** Describes the visible objects and their places for screen readers; announces changes. */
+/** Describes the visible objects and their places for screen readers. Announces changes. */
 function describe(objects: readonly ListedObject[]): void {
-  // Objects with the same description of place are listed together.
+  // Objects at the same place are listed together.
   const there: Record<string, string[]> = {};
   for (const { label, place } of objects.slice(0, DESCRIBED)) {
     (there[place ?? ""] ??= []).push(label);
@@ -34,7 +34,7 @@ function describe(objects: readonly ListedObject[]): void {
   picture.canvas.setAttribute("aria-label", text);
 }
 
-/** Lists the objects of the current text, with names and places, unless a drag is under way. */
+/** Lists the objects of the current text with names and places, unless a drag is under way. */
 export async function listObjects(): Promise<void> {
   if (frames.dragging !== null || connection.state !== "open") return;
   const about = { object: selection.index };
@@ -44,7 +44,7 @@ export async function listObjects(): Promise<void> {
   describe(objects);
 }
 
-/** Requests the shown overlays, one request at a time, after the coarse picture has arrived. */
+/** Requests the shown overlays after the coarse picture has arrived, one request at a time. */
 export const refreshOutlines = newestOf<void>(async () => {
   for (let its; its !== frames.coarse; await its) its = frames.coarse;
   const shown = [selection.index, overlays.hovered].filter(it => it !== null);
@@ -53,7 +53,7 @@ export const refreshOutlines = newestOf<void>(async () => {
   const { doc } = editor.view.state;
   const about = { object: selection.index, only: overlays.needsAll ? null : shown };
   const answer = await editor.ask<Overlays>("pinhole/overlays", about);
-  // If the text has errors, the picture shows the last good text; nothing can be dragged.
+  // If the text has errors, the picture shows the last good text, and nothing can be dragged.
   overlays.isTrue = answer !== null;
   if (answer !== null && editor.view.state.doc === doc) overlays.data = answer;
   overlays.draw();

@@ -1,28 +1,28 @@
-// Drawings over the picture: optional layers, and the selected and the hovered object.
+// Drawings over the picture: optional layers, and outlines of the selected and the hovered object.
 
 import { byId, createSvg, remember, remembered } from "./dom";
 import { picture } from "./picture";
 import type { Overlays, Point, Polyline, Samples } from "./protocol";
 import { setText } from "./visible";
 
-/** Optional layers, named as their checkboxes in the menu. */
+/** Names of the optional layers. Their checkboxes in the menu have the same names. */
 export type Layer = "outlines" | "vanishing" | "horizon" | "axis" | "grid" | "near" | "samples";
 
 const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 
-/** Minimum zooms, in screen pixels per pixel, at which the grid and a pixel's samples are drawn. */
+/** Minimum zoom for the pixel grid and for samples, in screen pixels per pixel; chosen by eye. */
 const GRID_ZOOM = 6;
 const SAMPLES_ZOOM = 4;
-/** Distance of arrows from the stage's border, in screen pixels. */
+/** Distance of arrows from the border of the picture's area, in screen pixels; chosen by eye. */
 const EDGE = 14;
 
 class OverlayLayer {
-  /** Overlays of the newest text, or of the last good text. */
+  /** Overlays of the newest text or, if that has errors, of the last text without errors. */
   data: Overlays | null = null;
   /** Whether `data` belongs to the current text. */
   isTrue = true;
   hovered: number | null = null;
-  /** Called when more overlays are to be drawn, which `data` may lack. */
+  /** Called when overlays must be drawn that `data` may not contain. */
   onNeed: () => void = () => {};
   selected: number | null = null;
   private samples: { pixel: Point; samples: Samples } | null = null;
@@ -41,10 +41,10 @@ class OverlayLayer {
 
   isOn(layer: Layer): boolean { return boxes.some(it => it.name === layer && it.checked); }
 
-  /** Whether an enabled layer needs data from the server. */
+  /** Whether any enabled layer needs data from the server. */
   get needsAny(): boolean { return this.needsAll || this.isOn("horizon") || this.isOn("near"); }
 
-  /** Whether an enabled layer needs data about all objects. */
+  /** Whether any enabled layer needs data about all objects. */
   get needsAll(): boolean { return this.isOn("outlines") || this.isOn("vanishing"); }
 
   hover(hovered: number | null): void {
@@ -85,12 +85,12 @@ class OverlayLayer {
     if (this.isOn("samples")) this.drawSamples();
   }
 
-  /** Marks a point and its coordinates; if it is outside, an arrow at the border points to it. */
+  /** Marks a point and its coordinates. If it is out of view, an arrow points to it. */
   private mark(point: Point, name: string, text: string): void {
     const [x, y] = picture.toScreen(point);
     const { clientWidth: width, clientHeight: height } = picture.stage;
     const [middleX, middleY] = [width / 2, height / 2];
-    // Distance from the centre, relative to the border's: above 1, the point is outside.
+    // Distance from the centre relative to the border's distance; above 1, the point is outside.
     const out = Math.max(Math.abs(x - middleX) / (middleX - EDGE),
       Math.abs(y - middleY) / (middleY - EDGE));
     const part = Math.max(1, out);
@@ -106,7 +106,7 @@ class OverlayLayer {
     this.svg.append(...twice(shape, name), label);
   }
 
-  /** Yields messages that explain why enabled layers are not visible. */
+  /** Yields messages that say why enabled layers are not visible. */
   private *unseen(data: Overlays): Generator<string> {
     const { zoom } = picture;
     if (this.isOn("grid") && zoom < GRID_ZOOM) yield "The pixel grid shows when you zoom in.";
@@ -134,12 +134,12 @@ class OverlayLayer {
   }
 }
 
-/** Returns a light line over a dark one, so that one is visible on any background. */
+/** Returns a light line over a dark one. One of them is visible on any background. */
 function twice(shape: Record<string, string>, name: string): SVGElement[] {
   return ["under ", ""].map(it => createSvg("path", { ...shape, class: `line ${it}${name}` }));
 }
 
-/** Returns the lines between the visible pixels. */
+/** Returns the grid lines between the pixels that are visible. */
 function grid(): Polyline[] {
   const { stage, size } = picture;
   const [left, top] = picture.toPicture([0, 0]);

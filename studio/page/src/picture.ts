@@ -1,19 +1,19 @@
-// The picture: a canvas in the stage, with a view that can be panned, and zoomed up to pixels.
+// The picture: a canvas in an area (the stage) in which it can be panned and zoomed.
 
 import { byId } from "./dom";
 import type { Shown } from "./frames";
 import type { Point } from "./protocol";
 
-/** Minimum zoom, in screen pixels per pixel, at which pixels are drawn as sharp squares. */
+/** Minimum zoom, in screen pixels per pixel, at which pixels are sharp squares; chosen by eye. */
 const SQUARES = 3;
 const MOST_ZOOM = 64;
-/** Margin between the whole picture and the stage's border, in screen pixels. */
+/** Margin around the whole picture in its area, in screen pixels, so that its edge is visible. */
 const MARGIN = 12;
 
 class Picture {
-  /** Called when the view or the picture's size has changed. */
+  /** Called when the zoom, the position or the size of the picture has changed. */
   onView: () => void = () => {};
-  /** Called when the wheel moves the camera; `turned` is 1 for 300 pixels of scrolling. */
+  /** Called when the wheel moves the camera. `turned` is 1 for 300 pixels of scrolling. */
   onDolly: (turned: number) => void = () => {};
   size: [number, number] = [1280, 720];
   zoom = 1;
@@ -31,7 +31,7 @@ class Picture {
     stage.addEventListener("wheel", event => {
       event.preventDefault();
       if (event.buttons !== 0) return; // a drag is under way
-      // With the Shift key, browsers report the movement as `deltaX`.
+      // While the Shift key is held, browsers report the wheel's movement as `deltaX`.
       const turned = (event.deltaY || event.deltaX) / (event.deltaMode === 0 ? 300 : 10);
       if (event.shiftKey) this.onDolly(turned);
       else this.zoomBy(2 ** -turned, this.local(event));
@@ -60,23 +60,23 @@ class Picture {
   /** Whether no picture has been shown yet. */
   get isEmpty(): boolean { return this.canvas.dataset["fineness"] === undefined; }
 
-  /** Converts a point of the picture to screen pixels from the stage's top left corner. */
+  /** Converts a point of the picture to screen pixels from the top left corner of its area. */
   toScreen([x, y]: Point): Point { return [this.left + x * this.zoom, this.top + y * this.zoom]; }
 
   toPicture([x, y]: Point): Point {
     return [(x - this.left) / this.zoom, (y - this.top) / this.zoom];
   }
 
-  /** Returns an event's position in screen pixels from the stage's top left corner. */
+  /** Returns an event's position, in screen pixels from the top left corner of the stage. */
   local(event: { clientX: number; clientY: number }): Point {
     const { left, top } = this.stage.getBoundingClientRect();
     return [event.clientX - left, event.clientY - top];
   }
 
-  /** SVG transform from the picture's pixels to the stage. */
+  /** SVG transform from pixels of the picture to screen pixels. */
   get matrix(): string { return `matrix(${this.zoom} 0 0 ${this.zoom} ${this.left} ${this.top})`; }
 
-  /** Zooms so that the whole picture fits the stage, as large as possible. */
+  /** Zooms so that the whole picture is visible, as large as possible. */
   fit(): void {
     const { clientWidth, clientHeight } = this.stage;
     const [width, height] = this.size;
@@ -85,7 +85,7 @@ class Picture {
     this.fitted = true;
   }
 
-  /** Zooms so that one pixel of the picture is one device pixel of the screen. */
+  /** Zooms so that one pixel of the picture is one pixel of the screen. */
   actualSize(): void { this.center(1 / devicePixelRatio); }
 
   zoomBy(factor: number, about?: Point): void {
@@ -103,7 +103,7 @@ class Picture {
     this.place();
   }
 
-  /** Centres the picture in the stage at a zoom, in screen pixels per pixel. */
+  /** Centres the picture in its area, at a zoom given in screen pixels per pixel. */
   private center(zoom: number): void {
     const [width, height] = this.size;
     this.zoom = zoom;

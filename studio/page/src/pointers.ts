@@ -1,5 +1,5 @@
-// Mouse, pen and touch on the picture: a press begins a drag, two fingers pan and zoom, and a drag
-// with the space bar held pans.
+// Mouse, pen and touch on the picture: a press begins a drag, and two fingers pan and zoom the
+// picture. While the space bar is held, a drag pans the picture.
 
 import { followPointer } from "./dom";
 import { Drag, type Held } from "./drag";
@@ -10,13 +10,13 @@ import type { Overlays, Pick, Point } from "./protocol";
 import { selection } from "./selection";
 import { tools, type Tool } from "./tools";
 
-/** Maximum movement of a click, in screen pixels; a larger movement is a drag. */
+/** Maximum movement of a click, in screen pixels; a hand is never quite still. More is a drag. */
 const CLICK = 4;
 
-/** Tools of the middle (1) and the right (2) mouse button. */
+/** Tools that the middle (1) and the right (2) mouse button use, whichever tool is chosen. */
 const BUTTONS: Record<number, Tool> = { 1: "pan", 2: "orbit" };
 
-/** Cancels the current drag by a mouse button or a finger. */
+/** Cancels the drag that is under way with a mouse button or a finger. */
 let giveUp = (): void => {};
 /** Last position of each pressed pointer, by its id. */
 const places = new Map<number, Point>();
@@ -34,7 +34,7 @@ function press(event: PointerEvent): void {
   stage.setPointerCapture(event.pointerId);
   stage.focus({ preventScroll: true }); // touch would leave the focus in the text
   endKeys();
-  // A second finger cancels the drag of the first; both together zoom.
+  // A second finger cancels the drag of the first. Both fingers together zoom.
   if (places.size > 1) return giveUp();
   if (space) return;
   tools.held = event;
@@ -53,7 +53,7 @@ function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | nu
   const { zoom } = picture;
   const move = (next: PointerEvent) => {
     tools.held = next;
-    // Use the pointer's screen movement, because the page may have moved the picture meanwhile.
+    // The movement is measured on the screen, because the picture may have moved meanwhile.
     const [dx, dy] = [next.clientX - event.clientX, next.clientY - event.clientY];
     moved ||= Math.hypot(dx, dy) > CLICK;
     if (moved) drag.to([start[0] + dx / zoom, start[1] + dy / zoom]);
@@ -61,12 +61,12 @@ function follow(event: PointerEvent, start: Point, hold: () => Promise<Held | nu
   giveUp = followPointer(event, move, () => drag.end(), () => drag.cancel());
 }
 
-/** Selects the object at `point` and returns its centre handle, or null without an object. */
+/** Selects the object at `point` and returns its centre handle; null if there is no object. */
 async function grab(point: Point): Promise<Held | null> {
   const { choices } = selection;
   const pick = await editor.ask<Pick>("pinhole/pick", { point });
   const object = pick?.object ?? null;
-  // If the user selected something before the answer came, that selection is kept.
+  // If the user has selected something before the answer came, that selection stays.
   if (choices === selection.choices) selection.select(object);
   if (object === null) return null;
   const only = [object.index];
@@ -77,7 +77,7 @@ async function grab(point: Point): Promise<Held | null> {
   return { object: object.index, handle: middle.handle, at: middle.at };
 }
 
-/** Pans the picture with one pressed pointer, or pans and zooms it with two. */
+/** Pans the picture with one pressed pointer; pans and zooms it with two. */
 function shift(event: PointerEvent): void {
   const before = places.get(event.pointerId);
   if (before === undefined) return;

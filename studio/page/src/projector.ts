@@ -1,4 +1,4 @@
-// A window for a projector, which shows only the picture. It gets pictures from the page's tab.
+// A window for a projector, which shows only the picture. The page's tab sends it the pictures.
 
 import { inAddress } from "./address";
 import { byId, remember, remembered } from "./dom";
@@ -9,14 +9,14 @@ const KEY = "projector";
 const of = inAddress(KEY);
 export const isProjector = of !== null;
 
-/** Name of this tab's broadcast channel; a reload keeps it. */
+/** Stored name of the tab's broadcast channel. Projector windows find it after a reload. */
 const known = remembered(KEY, "sessionStorage");
 const name = of ?? known ?? `${Date.now()}-${Math.random().toString(36).slice(2)}`;
 const channel = new BroadcastChannel(`pinhole-${name}`);
 /** Whether a projector window has requested pictures from this tab. */
 let isFed = known !== null;
 
-/** Sends a picture to the projector windows, if one has requested pictures. */
+/** Sends a picture to the projector windows, if any window has requested pictures. */
 export function feedProjectors(shown: Shown): void { if (isFed) channel.postMessage(shown); }
 
 if (isProjector) {

@@ -1,11 +1,11 @@
-// The results of the methods `pinhole/…` and `studio/…`; docs/protocol.md describes them.
+// Results of the methods `pinhole/…` and `studio/…`, which docs/protocol.md describes.
 
 import type { Range, TextEdit } from "vscode-languageserver-protocol";
 
-/** A point of the picture, in its pixels, from the top left corner. */
+/** A point of the picture, in pixels from its top left corner. */
 export type Point = readonly [number, number];
 
-/** A line through points in order. */
+/** A line through several points, in their order. */
 export type Polyline = readonly Point[];
 
 export interface Frame { version: number; width: number; size: [number, number]; png: string }
@@ -18,7 +18,7 @@ export interface SceneObject {
 
 export interface Handle { handle: string; at: Point | null; label: string }
 export interface DrawnObject extends SceneObject { outline: Polyline[]; handles: Handle[] }
-/** An object with a description of its place in the picture, null for some checkerboards. */
+/** An object, with words for its place in the picture; null for boards of unknown place. */
 export interface ListedObject extends SceneObject { place: string | null }
 
 export interface Overlays {
@@ -31,55 +31,55 @@ export interface Overlays {
 
 export interface Pick {
   object: SceneObject | null;
-  /** The pixel and a description of what it shows; both null outside the picture. */
+  /** The pixel, and a description of what it shows. Both are null outside of the picture. */
   pixel: Point | null; text: string | null;
 }
 
-/** Constraint of a drag: one axis of the world, or (`floor`) a plane of constant y. */
+/** Axis along which an object is dragged, or (`floor`) the horizontal plane. */
 export type Along = "x" | "y" | "z" | "floor";
 
 export interface Dragged {
   edits: TextEdit[];
   values: string[];
-  /** Names of other fields that change as a consequence, such as `camera.lookat`. */
+  /** Names of other fields that change, too, such as `camera.lookat`. */
   also?: string[];
 }
 
-/** Range, step and decimals of a number; `ends` are the ends of its slider. */
+/** Range, step and number of decimals of a number. `ends` are the two ends of its slider. */
 export interface Limits {
   least: number | null; most: number | null; step: number; decimals: number; ends: [number, number];
 }
-/** A `let` definition. `limits` is null unless it is a number or an angle; `note` says why the
- *  comment behind it is not taken as a range. */
+/** A definition with `let`. `limits` is null if the value is not a number or an angle. `note` says
+ * why the comment after it does not give the slider's range. */
 export interface Slider { name: string; range: Range; limits: Limits | null; note: string | null }
 
-/** The edits that add a block, its object's name, and where to put the cursor in the block. */
+/** Edits that add a block, the name of its object, and an offset in the block for the cursor. */
 export interface Added { edits: TextEdit[]; name: string | null; cursor: number }
 export interface Samples { points: Point[]; colors: string[]; color: string }
 
-/** The host's file; `text` is null if it does not exist or cannot be read. */
+/** The host's file. `text` is null if the file does not exist or cannot be read. */
 export interface HostedFile {
   name: string;
   text: string | null;
-  /** Reason why there is no text, if something other than a file has the path. */
+  /** Reason why there is no text, for example because the path is a folder. */
   reason?: string | null;
   saved: boolean;
-  /** Unsaved drafts, the newest first; sent only to a new page. */
+  /** Unsaved drafts, the newest first. They are sent only to a page that has just connected. */
   drafts?: Draft[];
 }
 
-/** Unsaved text, with the key of its page and the text it is based on; `time` is in seconds. */
+/** Unsaved text with the key of its page. `base` is the file it began from; `time` is in s. */
 export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
-/** Whether the file was saved; if not, `text` is the file's current content. */
+/** Whether the file was saved. If not, `text` is the file's current content. */
 export type Saved = { ok: true } | { ok: false; text: string | null };
 
-/** Error response from the server. */
+/** Error with which the server answers a request. */
 export class Refusal extends Error {
   constructor(readonly code: number, message: string) { super(message); }
 }
 
-/** Returns whether the server cancelled the request in favour of a newer one. */
+/** Returns whether the server has cancelled the request because of a newer one. */
 export function isSuperseded(error: unknown): boolean {
   return error instanceof Refusal && (error.code === -32800 || error.code === -32801);
 }

@@ -1,5 +1,5 @@
-// Sanitizes the HTML that the language client makes of the server's Markdown, which may quote any
-// text of a scene: only plain formatting passes.
+// Cleans the HTML that the language client makes of the server's Markdown. It may quote any text of
+// a scene, so only plain formatting is kept.
 
 import { visible } from "./visible";
 
@@ -8,7 +8,7 @@ const ALLOWED = new Set(["H1", "H2", "H3", "P", "CODE", "PRE", "EM", "STRONG", "
 
 /** Reduces HTML to plain formatting. Links become their text; other elements, their source. */
 export function sanitized(html: string): string {
-  // The parsed document has no window, so nothing in it runs or loads.
+  // The parsed document has no window, so nothing in it is run or loaded.
   const { body } = new DOMParser().parseFromString(html, "text/html");
   const clean = document.createElement("div");
   copy(body, clean);

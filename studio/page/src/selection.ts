@@ -1,5 +1,5 @@
-// The selection: the object whose block has the cursor. Its handles are over the picture. The menu
-// lists all objects. Also adds, duplicates and deletes objects.
+// The selection: the object in whose block the cursor is. Its handles are drawn over the picture.
+// The menu lists all objects. This module also adds, duplicates and deletes objects.
 
 import { isolateHistory } from "@codemirror/commands";
 import type { ChangeDesc } from "@codemirror/state";
@@ -12,25 +12,25 @@ import { tools } from "./tools";
 import type { Added, DrawnObject, Handle, Point, SceneObject } from "./protocol";
 import { say } from "./status";
 
-/** Minimum distance between two handles along x or y, in screen pixels; larger for touch. */
+/** Minimum distance between two handles, in screen pixels: the size of a handle for the pointer. */
 const APART = matchMedia("(pointer: coarse)").matches ? 45 : 25;
 
-/** Offsets in screen pixels to try for a handle that overlaps another, the shortest first. */
+/** Offsets, in screen pixels, tried in turn to keep a handle from overlapping another one. */
 const ASIDE: Point[] = [];
 for (let x = -60; x <= 60; x += 6) for (let y = -60; y <= 60; y += 6) ASIDE.push([x, y]);
 ASIDE.sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
-/** An object, and its block's range in the text; changes of the text move the range. */
+/** An object with its block's range in the text, which follows changes of the text. */
 interface Placed { object: SceneObject; from: number; to: number }
 
 class Selection {
-  /** Selected object; undefined if none is. */
+  /** The selected object; undefined if none is selected. */
   selected: Placed | undefined;
   onChange: () => void = () => {};
-  /** Counts selections, so that a late answer can detect a newer selection. */
+  /** Number of selections made so far. It shows if a newer one was made before an answer came. */
   choices = 0;
   private placed: Placed[] = [];
-  /** Chosen object, one of those in its block; null selects nothing until the cursor moves. */
+  /** Object chosen in a repeated block; null if the user chose to select nothing. */
   private chosen: SceneObject | null | undefined;
   private readonly handles = byId("handles");
   private readonly menu = byId<HTMLSelectElement>("objects");
@@ -57,7 +57,7 @@ class Selection {
     this.menu.replaceChildren(new Option("No object", ""), ...options);
   }
 
-  /** Moves the blocks' ranges with a change, until the objects of the new text are known. */
+  /** Adapts the blocks' ranges to a change, until the objects of the new text are known. */
   mapped(changes: ChangeDesc): void {
     for (const it of this.placed) {
       it.from = changes.mapPos(it.from, 1);
@@ -66,7 +66,7 @@ class Selection {
     this.follow();
   }
 
-  /** Selects the object whose block the cursor was moved into. */
+  /** Selects the object into whose block the cursor was moved. */
   cursorMoved(): void {
     this.choices++;
     if (this.chosen === null) this.chosen = undefined;
@@ -78,7 +78,7 @@ class Selection {
     this.choices++;
     this.chosen = object;
     if (object === null) return this.follow();
-    // The server's list is limited, so this object may be missing from it.
+    // The server lists only a limited number of objects, so this one may be missing.
     const isListed = this.placed.some(it => it.object.index === object.index);
     if (!isListed) this.placed.push(this.place(object));
     this.name();
@@ -92,14 +92,14 @@ class Selection {
     return { object, from: editor.offset(start), to: editor.offset(end) };
   }
 
-  /** Selects the object at the cursor. Unless `isByCursor`, the selected block stays selected. */
+  /** Selects the object at the cursor. Unless `isByCursor`, a selected block stays selected. */
   private follow(isByCursor = false): void {
     const { head } = editor.view.state.selection.main;
     const there = this.placed.filter(it => it.from < it.to);
     const { from = 0, to = 0 } = this.selected ?? {};
     const kept = isByCursor || from === to ? [] : there.filter(it => it.from === from);
     const touching = kept.length > 0 ? kept : there.filter(it => it.from <= head && head <= it.to);
-    // Between two touching blocks, take the second; in a repeated block, the chosen object.
+    // Between two blocks that touch, takes the second; in a repeated block, the chosen object.
     const first = touching.find(it => head < it.to) ?? touching[0];
     const isChosen = ({ from, object: { indices } }: Placed) => from === first?.from
       && String(indices) === String(this.chosen?.indices);
@@ -125,21 +125,21 @@ class Selection {
     tools.offer(this.index !== null, hasFloor);
   }
 
-  /** Overlay of the selected object, if it is known for the current text. */
+  /** Outline and handles of the selected object, if they are known for the current text. */
   get drawn(): DrawnObject | undefined {
     const { data, isTrue } = overlays;
     const { line } = editor.position(this.selected?.from ?? 0);
-    // Until the objects of a new text are listed, this index may belong to another object.
+    // Until the objects of a new text are listed, the index may belong to another object.
     return isTrue ? data?.objects.find(it => it.index === this.index
       && it.range.start.line === line) : undefined;
   }
 
-  /** Places the selected object's handles over the picture. */
+  /** Places the handles of the selected object over the picture. */
   draw(): void {
     const object = this.drawn;
     const shown = object?.handles.filter(it => it.at !== null) ?? [];
     const names = JSON.stringify([object?.index, object?.label, ...shown.map(it => it.handle)]);
-    // Keep the elements while the names stay the same: a held handle must not be replaced.
+    // While the handles' names stay the same, the elements stay: one may be held by the pointer.
     if (names !== this.handles.dataset["names"]) this.handles.replaceChildren(
       ...shown.map(it => this.createHandle(object as DrawnObject, it)));
     this.handles.dataset["names"] = names;
@@ -160,7 +160,7 @@ class Selection {
     return button;
   }
 
-  /** Returns the handle of `element`, or for null the first handle, of the selected object. */
+  /** Returns the selected object's handle that `element` shows, or its first handle for null. */
   held(element: Element | null): Held | null {
     const name = element?.closest<HTMLElement>(".handle")?.dataset["handle"];
     const object = this.drawn;
@@ -171,7 +171,7 @@ class Selection {
   }
 }
 
-/** Returns a position near a handle's point where it does not overlap those in `taken`. */
+/** Returns a position near a handle's point that is far enough from the positions in `taken`. */
 function apart([x, y]: Point, taken: readonly Point[]): Point {
   const isFree = ([x, y]: Point) =>
     taken.every(it => Math.max(Math.abs(x - it[0]), Math.abs(y - it[1])) >= APART);
@@ -189,13 +189,13 @@ byId("delete").addEventListener("click", remove);
 async function add(about: object): Promise<void> {
   const added = await editor.askCurrent<Added>("pinhole/add", about);
   if (added === null) return say("Nothing was added: the text has errors, or has changed.");
-  // The cursor is inside the new block, so the object is selected once it is listed.
+  // The cursor is put into the new block, so the object is selected as soon as it is listed.
   editor.view.dispatch({ changes: editor.changes(added.edits), scrollIntoView: true,
     selection: { anchor: added.cursor }, annotations: isolateHistory.of("full") });
   say(`${added.name ?? "A copy"} is added.`);
 }
 
-/** Deletes the selected block, and its line if nothing else is on it. */
+/** Deletes the selected block, together with its line if nothing else is on the line. */
 function remove(): void {
   const { view, view: { state: { doc } } } = editor;
   const found = selection.selected;

@@ -1,4 +1,4 @@
-// Sharing: a link that contains the scene, and downloads. Nothing is sent to a server.
+// Sharing: a link that contains the scene itself, and downloads. A link sends nothing to a server.
 
 import { addressWith, inAddress } from "./address";
 import { byId, download, fromBase64 } from "./dom";
@@ -8,7 +8,7 @@ import { files } from "./files";
 import { say } from "./status";
 import { setText } from "./visible";
 
-/** Maximum length of a scene in a link, in characters. A longer scene gets no link. */
+/** Maximum length of a scene in a link, in characters; browsers limit the length of addresses. */
 const LONGEST = 1_000_000;
 const KEY = "scene";
 const NO_COPY = "The browser does not let the page copy: copy the selected link yourself.";
@@ -33,10 +33,10 @@ async function unpacked(text: string): Promise<string> {
   }
 }
 
-/** Compressed scene that was last read from the address. */
+/** Compressed scene that was last read from the page's address. */
 let known: string | null = null;
 
-/** Returns the scene in the page's address, or null if it has none or was read before. */
+/** Returns the scene in the page's address. Returns null if there is none or it was read before. */
 export async function sceneInAddress(): Promise<string | null> {
   const held = inAddress(KEY);
   if (held === null || held === known) return null;
@@ -49,7 +49,7 @@ export async function sceneInAddress(): Promise<string | null> {
   }
 }
 
-/** Shows the progress of a download; `share` is from 0 to 1. */
+/** Shows the progress of a download. `share` is the finished fraction of the work, from 0 to 1. */
 export function showProgress(share: number): void {
   byId<HTMLProgressElement>("progress").value = share;
   setText(byId("percent"), `${Number((100 * share).toPrecision(3))} %`);

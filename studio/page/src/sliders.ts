@@ -1,4 +1,4 @@
-// Sliders for all numbers and angles defined by `let`. One at a time can play to and fro.
+// Sliders for all numbers and angles defined by `let`. One slider at a time can play, i.e. move.
 
 import type { ChangeDesc } from "@codemirror/state";
 import { byId, create, createButton } from "./dom";
@@ -8,14 +8,14 @@ import { Dial, literalAt } from "./numbers";
 import type { Slider } from "./protocol";
 import { setText } from "./visible";
 
-/** Time in which a playing number moves from one end to the other, in milliseconds. */
+/** Time in which a playing slider moves from one end to the other, in ms; slow enough to watch. */
 const PLAY = 4000;
 
 type Row = ReturnType<typeof createRow>;
 let rows: Row[] = [];
 let playing: Row | null = null;
 
-/** Moves the sliders' offsets with a change of the text, and shows the new numbers. */
+/** Adapts the sliders' offsets in the text to a change of the text, and shows the new numbers. */
 export function mapSliders(changes: ChangeDesc): void {
   for (const row of rows) {
     row.at = changes.mapPos(row.at, -1);
@@ -30,10 +30,10 @@ function show({ dial, value }: Row): void {
   value.title = written;
 }
 
-/** Requests the sliders of the current text, after a pause. */
+/** Requests the sliders of the current text. It is called after a pause in changes. */
 export async function refreshSliders(): Promise<void> {
   const sliders = await editor.askCurrent<Slider[]>("pinhole/sliders", {});
-  // While a slider is being moved, all rows are kept.
+  // While a slider is being moved, no row is replaced.
   if (sliders === null || rows.some(row => row.dial.turn)) return;
   if (sliders.some(({ name }, i) => rows[i]?.name !== name) || sliders.length < rows.length) {
     rows = sliders.map(({ name }) => createRow(name));
@@ -50,7 +50,7 @@ export async function refreshSliders(): Promise<void> {
   });
 }
 
-/** Creates a slider's row; `row.at` is the offset of the number in the text. */
+/** Creates the row of a slider. Its field `at` is the offset of the number in the text. */
 function createRow(name: string) {
   const dial: Dial = new Dial(() => literalAt(row.at + 1));
   dial.range.setAttribute("aria-label", name);
@@ -62,7 +62,7 @@ function createRow(name: string) {
   return row;
 }
 
-/** Stops the playing number, if any. */
+/** Stops the slider that is playing, if there is one. */
 export function stop(): void {
   const row = playing;
   playing = null;
@@ -77,7 +77,7 @@ document.addEventListener("keydown", event => {
   stop();
 }, true);
 
-/** Plays a number to and fro from its current value; stops it if it is already playing. */
+/** Moves a slider to and fro from its current value. If it is already playing, stops it. */
 function play(row: Row): void {
   const isNew = playing !== row;
   stop();
@@ -95,11 +95,11 @@ function play(row: Row): void {
     range.value = String(least + (most - least) * (part > 1 ? 2 - part : part));
     const next = Number(range.value);
     await dial.set(next);
-    // If the scene has an error, the number returns to its last good value and stops.
+    // If the scene has an error, the number returns to its last valid value, and playing stops.
     const isBroken = await frames.coarse === null;
     if (isBroken && playing === row) await dial.set(good);
     good = next;
-    // A drag, Undo or another change of the text also stops it.
+    // A drag, Undo or another change of the text also stops playing.
     if (isBroken || frames.dragging !== dial || !dial.turn?.gesture.isAlone) stop();
     else requestAnimationFrame(() => void go());
   };

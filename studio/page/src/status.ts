@@ -18,17 +18,17 @@ export function say(text: string, tone: "plain" | "warning" = "plain"): void {
   said.dataset["tone"] = tone;
 }
 
-/** Removes the message `text` if it is still shown. */
+/** Removes the message `text` from the status line if it is still shown. */
 export function unsay(text: string): void { if (byId("said").textContent === text) say(""); }
 
-/** Removes the message after a change of the text, unless the message is a warning. */
+/** Removes the message after a change of the text. A warning stays. */
 export function changed(): void { if (byId("said").dataset["tone"] !== "warning") say(""); }
 
 export function picture([width, height]: [number, number], fineness: Fineness): void {
   setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
 }
 
-/** Marks the picture as outdated, with the reason. If `why` is null, removes the mark. */
+/** Marks the picture as outdated and shows the reason `why`. If it is null, removes the mark. */
 export function stale(why: string | null): void {
   const note = byId("stale");
   note.hidden = why === null;
@@ -36,7 +36,7 @@ export function stale(why: string | null): void {
   byId("stage").toggleAttribute("data-stale", why !== null);
 }
 
-/** Shows what is wrong with the connection, and whether the text is kept meanwhile. */
+/** Shows what is wrong with the connection, and that the text is stored if `hasText`. */
 export function connection(state: ConnectionState | "hanging", hasText: boolean): void {
   const isKept = hasText && state !== "connecting" && state !== "open";
   byId("connection-bar").hidden = state === "open";

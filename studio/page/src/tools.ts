@@ -1,23 +1,23 @@
-// Tools for drags on the picture, and the constraint for drags of objects.
+// Tools, which say what a drag on the picture does, and the axis or plane along which objects move.
 
 import { byId } from "./dom";
 import { picture } from "./picture";
 import type { Along } from "./protocol";
 import { setText } from "./visible";
 
-/** What a drag does: `move` moves an object; all other tools change the camera. */
+/** What a drag does. `move` moves an object; all other tools change the camera. */
 export type Tool = "move" | "orbit" | "pan" | "dolly" | "roll" | "view_distance" | "look";
 
-/** Step of drags of objects, in screen pixels; there is none while Control is held. */
+/** Step of an object's drag, in screen pixels: coarse enough for round numbers in the text. */
 const STEP = 8;
 const radios = (name: string) =>
   [...document.querySelectorAll<HTMLInputElement>(`input[name=${name}]`)];
 
 class Tools {
   tool: Tool = "move";
-  /** Keys held during a drag: Shift lifts the constraint, Control the step. */
+  /** Keys held in a drag: Shift frees it from its axis or plane, Control from its step. */
   held = { shiftKey: false, ctrlKey: false };
-  /** Constraint that the user chose (`""` is none); undefined until then. */
+  /** Axis or plane that the user chose for drags (`""` is none); undefined before any choice. */
   private chosen: Along | "" | undefined;
   private hasFloor = false;
 
@@ -32,19 +32,19 @@ class Tools {
       (this.chosen = input.value as Along | ""));
   }
 
-  /** Shows the constraints if an object is selected. `hasFloor` makes `floor` the default. */
+  /** Shows the axes and planes if an object is selected. `hasFloor` makes `floor` the default. */
   offer(isSelected: boolean, hasFloor: boolean): void {
     this.hasFloor = hasFloor;
     byId("along").hidden = !isSelected;
     for (const input of radios("along")) input.checked = input.value === this.kept;
   }
 
-  /** Constraint of drags without the Shift key; `""` is none. */
+  /** Axis or plane of drags without the Shift key; `""` is none. */
   private get kept(): Along | "" { return this.chosen ?? (this.hasFloor ? "floor" : ""); }
 
   get along(): Along | undefined { return this.held.shiftKey ? undefined : this.kept || undefined; }
 
-  /** Step of a drag in pixels of the picture; undefined while Control is held. */
+  /** Step of a drag, in pixels of the picture; undefined while the Control key is held. */
   get step(): number | undefined { return this.held.ctrlKey ? undefined : STEP / picture.zoom; }
 }
 

@@ -9,10 +9,10 @@ const code = (character: string): string => `\\u{${character.codePointAt(0)?.toS
 /** Returns `text` with invisible characters replaced by codes such as `\u{202e}`. */
 export function visible(text: string): string { return text.replace(INVISIBLE, code); }
 
-/** Returns `text` as one line: replaces also line breaks and tabs by codes. */
+/** Returns `text` as one line. Line breaks and tabs also become codes such as `\u{a}`. */
 export function visibleLine(text: string): string { return visible(text).replace(BREAKS, code); }
 
-/** Sets an element's text unless it is already the same. The text is never parsed as HTML. */
+/** Sets an element's text if it differs from the current one. It is never parsed as HTML. */
 export function setText(element: Element, text: string): void {
   const shown = visible(text);
   if (element.textContent !== shown) element.textContent = shown;

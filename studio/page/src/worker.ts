@@ -1,5 +1,5 @@
-// The engine in a web worker, which exchanges JSON texts with the page. Between slices of work it
-// reads new messages, so that a newer change supersedes a frame. Its greeting says it is ready.
+// The engine (the language server) in a web worker. It exchanges JSON texts with the page. Between
+// slices of work it reads new messages, so that a newer change can replace the work on an old one.
 
 import init, { Engine } from "pinhole-engine";
 
@@ -10,7 +10,7 @@ function run(engine: Engine): void {
     for (const text of texts) postMessage(text);
     if (isPlanned || !engine.isBusy()) return;
     isPlanned = true;
-    // Messages that arrive before this one are handled before the next slice.
+    // Messages that arrive before this one are handled before the next slice of work.
     slices.port2.postMessage(null);
   };
   slices.port1.onmessage = () => {
@@ -21,7 +21,7 @@ function run(engine: Engine): void {
   say([engine.greeting()]);
 }
 
-// An unhandled rejection would not be reported to the page; an exception in a timer is.
+// The page learns of an exception in a timer, but not of an unhandled rejection.
 const fail = (error: unknown) => setTimeout(() => { throw error; });
 const wasm = new URL("pinhole_bg.wasm", import.meta.url);
 init({ module_or_path: wasm }).then(() => run(new Engine()), fail);

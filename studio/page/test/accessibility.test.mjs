@@ -1,5 +1,5 @@
-// Accessibility: an audit of WCAG AA by axe in both themes, on a phone and a desktop, and the
-// keyboard.
+// Tests of accessibility: the program axe checks the rules of WCAG AA in both themes, on a phone
+// and a desktop. The page is also used by keyboard alone.
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -99,7 +99,7 @@ try {
     }
   }
   await page.mouse.up();
-  // Keeping 200 bytes of each of 10 000 pictures would exceed this.
+  // If 200 bytes of each of 10 000 pictures were kept, the limit would be exceeded.
   const after = await memory();
   for (const of of ["heap", "host"]) if (after[of] - before[of] > 2) throw new Error(`memory grows: ${JSON.stringify(before)} before, ${JSON.stringify(after)} after ${pictures} pictures`);
 

@@ -1,5 +1,5 @@
-// Drafts: unsaved text survives a reload, a crash of the host, another port, and a save by another
-// program.
+// Tests of drafts: unsaved text survives a reload, a crash of the host, another port, and a save by
+// another program.
 
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";

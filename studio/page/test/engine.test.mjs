@@ -1,4 +1,4 @@
-// The WebAssembly engine without a page: its pictures equal the program's, pixel by pixel.
+// Tests of the WebAssembly engine without a page: its pictures equal the program's in each pixel.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";

@@ -157,7 +157,7 @@ test("a late answer to Save belongs to the scene that was saved", async t => {
   assert.equal(await page.textContent("#file-state"), "not saved");
   await page.keyboard.press("Control+s");
   await page.waitForSelector("#name-dialog[open]");
-  // This is the name of the host's scene, which already exists.
+  // The name is that of the host's scene, which already exists.
   await page.fill("#name-field", "scene.scn");
   await page.keyboard.press("Enter");
   await page.waitForFunction(() => /is there already/.test(document.querySelector("#name-problem").textContent));

@@ -1,4 +1,4 @@
-// The page that `grade -o` writes, opened as a local file.
+// Tests of the page that `grade -o` writes, opened as a local file.
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";

@@ -1,4 +1,4 @@
-// Editing in the picture: objects and the camera are moved, and the text follows.
+// Tests of editing in the picture: objects and the camera are moved, and the text follows.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

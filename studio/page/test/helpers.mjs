@@ -128,7 +128,7 @@ export async function finished(page) {
   await page.waitForFunction(() => document.querySelector("canvas").dataset.fineness === "final", null, { timeout: 15_000 });
 }
 
-/** Acts, and waits for the finished picture of the resulting text. */
+/** Calls `act`, and waits for the finished picture of the resulting text. */
 export async function andFinished(page, act) {
   const before = await version(page);
   await act();
@@ -198,7 +198,7 @@ export async function choose(page, tool) {
   await page.evaluate(tool => document.querySelector(`input[name=tool][value=${tool}]`).click(), tool);
 }
 
-/** Chooses the constraint of drags of objects. */
+/** Chooses the axis or plane along which drags move objects. */
 export async function hold(page, along) {
   await page.check(`input[name=along][value="${along}"]`, { force: true });
 }

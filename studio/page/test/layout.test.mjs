@@ -284,7 +284,7 @@ test("the reference of the language is in the page", async t => {
   await menu(page, "Help", "#language");
   const said = await page.textContent("#language-dialog");
   for (const word of ["checkerboard", "centroid", "fov"]) assert.ok(said.includes(word), word);
-  // Its figures are shown, each with a text for screen readers.
+  // The figures of the reference are shown, each with a text for screen readers.
   const figures = await page.$$eval("#language-dialog img", all => all.map(it => [it.naturalWidth > 0, it.alt.length > 20, it.getBoundingClientRect().right < innerWidth]));
   assert.ok(figures.length > 2 && figures.flat().every(Boolean), String(figures));
   await page.keyboard.press("Escape");

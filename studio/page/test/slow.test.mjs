@@ -1,5 +1,5 @@
-// A slow host: drags are still carried out, a note says that the page waits, and every picture is
-// finished in the end.
+// Tests with a slow host: drags are still carried out, a note says that the page waits, and every
+// picture is finished in the end.
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

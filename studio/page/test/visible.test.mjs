@@ -1,4 +1,4 @@
-// Invisible characters in names and messages are shown as codes everywhere.
+// Tests that invisible characters in names and messages are shown as codes everywhere.
 
 import assert from "node:assert/strict";
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";

@@ -1,4 +1,4 @@
-//! Tests of the `pinhole` binary as a user runs it: arguments, files, output and exit status.
+//! Tests of the program `pinhole` as a user runs it: arguments, files, output and exit status.
 
 mod render;
 mod sheet;
@@ -38,8 +38,8 @@ fn ctrl_c_keeps_the_hard_cases_measured_so_far() {
     assert!((1..1_000_000_000).contains(&asked), "{asked}");
     let people = interrupted(&mut folder.command(line), 1500).errors;
     assert!(people.contains("S1a  rays that nearly touch a sphere"));
-    // On a busy machine, the interrupted table may lack some cases. The number of all cases, which
-    // determines the total in the message, is therefore taken from another run.
+    // On a busy machine, the interrupted table may lack some cases. Therefore, the total in the
+    // expected message comes from another run, whose table has all cases.
     let all = folder
         .done("report --numerics --inputs 1 --format json")
         .json();

@@ -1,4 +1,4 @@
-//! Tests of `pinhole render`: crops and temporary files.
+//! Tests of the command `pinhole render`: crops and temporary files.
 
 use super::*;
 
@@ -32,7 +32,8 @@ fn temporary_files_of_killed_runs_are_removed_by_the_next_run() {
         left += u32::from(is_writing());
     }
     assert!(left > 0, "no run was killed while it wrote");
-    // A temporary file that belongs to another output is not removed.
+    // The temporary file belongs to another output file, `b.exr`, so this render must not remove
+    // it.
     folder.write(".pinhole-b.exr-abcdef.tmp", "");
     folder.done(line);
     assert_eq!(

@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Returns [`folder`] with two more scenes: `b.scn` has another size, `wrong.scn` has errors.
+/// Returns the folder of [`folder`] with two more scenes: `b.scn` has another size, and `wrong.scn`
+/// has errors.
 fn folder_with_more_scenes() -> Folder {
     let folder = folder();
     folder.write(
@@ -36,11 +37,11 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
         let (w, h) = picture.dimensions();
         let part = image::imageops::crop_imm(&sheet, x, y, w, h).to_image();
         assert!(part == *picture, "at {x}, {y}");
-        // The picture's name is printed below it, so there are dark pixels.
+        // The name of the picture is printed below it, so there are dark pixels.
         let name = image::imageops::crop_imm(&sheet, x, y + h, 20, 20).to_image();
         assert!(name.pixels().any(|pixel| pixel.0[0] < 99), "at {x}, {y}");
     }
-    // The scene's warning is printed once, although a sweep reads the scene several times.
+    // The scene's warning is printed only once, although a sweep reads the scene several times.
     folder.write(
         "w.scn",
         "camera { eye (0, 0, 5) lookat (0, 0, 0) } sphere Far { center (99, 0, 0) } sphere for i < 1 { center (0, 0, 0) }",
@@ -51,16 +52,16 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
         .matches("warning[pinhole::unused_index]")
         .count();
     assert_eq!((said.status, told), (0, 1), "{}", said.errors);
-    // Only `check` reports objects outside of the picture. In a sweep of a camera past objects, the
-    // warning would be printed for every scene.
+    // Only `check` warns of objects outside of the picture. A sweep that moves the camera past
+    // objects would print the warning for every scene.
     for (command, told) in [("check", 1), ("render", 0), ("inspect", 0), ("probe", 0)] {
         let rest = if command == "probe" { " 1 1" } else { "" };
         let said = folder.run(&format!("{command} w.scn{rest}"));
         let found = said.errors.matches("pinhole::outside_picture").count();
         assert_eq!(found.min(1), told, "{command}: {}", said.errors);
     }
-    // In a sheet of sweeps of two scenes, captions show the scenes' names. The pictures of both
-    // rows are equal here, but their captions differ.
+    // A sheet of sweeps of two scenes shows the scenes' names in captions. In this sheet, the
+    // pictures in both rows are equal, but their captions differ.
     folder.write("other.scn", folder.read("b.scn"));
     folder.done("sheet b.scn other.scn --columns 2 --sweep S.radius=1..2/2 -o rows.png");
     let rows = open("rows.png");
@@ -69,7 +70,7 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
     // A picture one pixel wide leaves no room for any letter of its name.
     folder.done("sheet b.scn --set image.width=1 --set image.height=1 -o dot.png");
     assert_eq!(open("dot.png").dimensions(), (25, 47));
-    // With `--width`, each picture of the sweep equals that of a scene of that width.
+    // With `--width`, each picture of the sweep is equal to the picture of a scene with that width.
     folder.done("sheet b.scn --width 20 --sweep S.center=(0,0,0)..(1,2,0)/3 -o swept.png");
     let swept = open("swept.png");
     for (i, x, y) in [

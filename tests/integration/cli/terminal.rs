@@ -1,4 +1,4 @@
-//! Untrusted texts reach a terminal without their control characters.
+//! Tests that untrusted texts reach a terminal without their control characters.
 
 use std::process::Stdio;
 
@@ -8,11 +8,11 @@ use super::{SCENE, folder};
 #[cfg(unix)]
 use crate::program::Outcome;
 
-/// Control characters that would set the terminal's title, colour the text, and reverse its
+/// Control characters that would set the terminal's title, colour the text, or reverse its
 /// direction.
 const CONTROLS: &str = "\x1b]0;pwn\x07 \u{9b}31m \u{202e}txet";
 
-/// Asserts that the message `errors` has the characters of [`CONTROLS`] only as escapes.
+/// Asserts that the message `errors` contains the characters of [`CONTROLS`] only as escapes.
 fn assert_escaped(errors: &str, what: &str) {
     assert!(errors.contains("\\u{202e}txet"), "{what}: {errors:?}");
     let is_control = |c: char| (c.is_control() && c != '\n') || c == '\u{202e}';
@@ -42,8 +42,8 @@ fn messages_escape_control_characters_of_texts_names_and_pictures() {
         assert_ne!(said.status, 0, "{line:?}");
         assert_escaped(&said.errors, line);
     }
-    // The recipe (scene and overrides) that is stored in a picture is printed with the same
-    // escapes.
+    // A picture stores the recipe from which it was made: the scene and the overrides. The recipe
+    // is printed with the same escapes.
     let recipe = Recipe {
         scene: SCENE.to_owned(),
         overrides: vec![format!("Ball.radius={CONTROLS}")],
@@ -78,7 +78,8 @@ fn a_full_device_is_an_error_and_a_closed_pipe_is_not() {
         let said = to(full.unwrap().into());
         assert_eq!(said.status, 2, "{line}");
         assert!(said.errors.contains("cannot write to standard output"));
-        // The reader closes the pipe, as `head` does.
+        // The reading end of the pipe is closed, as the command `head` closes it after the lines
+        // that it needs.
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let said = to(writer.into());

@@ -1,5 +1,5 @@
-//! Transcripts of commands, in `tests/cli`. A line with `$` is a shell command. The lines below it
-//! are the expected standard output (`<`), standard error (`!`) and, unless it is 0, exit status
+//! Runs transcripts of commands in `tests/cli`. A line with `$` is a shell command. The lines below
+//! it are the expected standard output (`<`), standard error (`!`) and, unless it is 0, exit status
 //! (`=`). If the last line of an output has no line end, a `\` follows it. `#` begins a comment.
 //! Each transcript runs in its own folder, which has the scene in `a.scn`.
 //!

@@ -1,4 +1,5 @@
-//! Tests of `pinhole diff`: comparing two pictures, and judging a picture of a scene (`verdicts`).
+//! Tests of the command `pinhole diff`: comparing two pictures, and judging a picture of a scene
+//! (`verdicts`).
 
 mod verdicts;
 
@@ -44,8 +45,8 @@ fn save(folder: &Folder, name: &str, picture: impl Into<DynamicImage>) {
     picture.into().save(folder.path(name)).unwrap();
 }
 
-/// Runs `diff` for each row of `table`: its arguments, the exit status, and the expected start of
-/// the output. If the last begins with `…`, it is a part of the output instead.
+/// Runs `diff` for each row of `table`: the arguments, the exit status, and the expected start of
+/// the output. If the last cell begins with `…`, the output must contain it anywhere.
 #[track_caller]
 fn compare(folder: &Folder, table: &'static str) {
     for [compared, status, words] in rows(table) {
@@ -96,7 +97,7 @@ fn pictures_are_compared_by_content_across_formats() {
     for name in ["a.ppm", "a.bmp", "a.tiff", "a.webp", "b.jpg", "b.gif"] {
         save(&folder, name, picture.to_rgb8());
     }
-    // Half of the light of white is 187.5 as an sRGB byte. Opacity mixes linear light, so the
+    // Half of the light of white would be the sRGB byte 187.5. Opacity mixes linear light, so the
     // picture is read as 188.
     let half = ImageBuffer::from_pixel(96, 64, Rgba([65535u16, 65535, 65535, 32768]));
     save(&folder, "half.png", half);
@@ -123,7 +124,7 @@ fn pictures_are_compared_by_content_across_formats() {
 #[test]
 fn a_transfer_curve_other_than_srgb_gives_a_warning() {
     let folder = Folder::with([]);
-    // This returns an ICC profile with a single tag, the transfer curve `curve` of the red channel.
+    // Returns an ICC profile with a single tag: the transfer curve `curve` of the red channel.
     let profile = |curve: &[u8]| {
         let place = [144, curve.len() as u32].map(u32::to_be_bytes).concat();
         [&[0; 128], &1u32.to_be_bytes()[..], b"rTRC", &place, curve].concat()
@@ -171,7 +172,7 @@ fn standard_input_is_a_picture_or_a_scene() {
 fn different_sizes_are_reported_with_a_remedy() {
     let folder = folder();
     save(&folder, "b.png", image::RgbImage::new(48, 32));
-    // This picture is a crop of a render that is larger than the scene's picture.
+    // The crop comes from a picture that is rendered larger than the scene says.
     render(&folder, "-o c.png --set image.width=200 --crop 150,5,40,30");
     compare(
         &folder,

@@ -1,5 +1,5 @@
-//! Verdicts on a picture of a scene: right, right except for sampling noise, or wrong because of a
-//! named mistake.
+//! Tests of the verdicts on a picture of a scene: right, right except for sampling noise, or wrong
+//! because of a named mistake.
 
 use std::fs;
 
@@ -11,8 +11,8 @@ use crate::{program::Folder, table::rows};
 
 const RANDOM: &str = "--set sampler.method=random --set sampler.per_pixel=16";
 
-/// Rows of four columns: the arguments of `render`, the arguments of `diff`, the exit status, and
-/// the start of the first line of the output.
+/// Rows of four cells: the arguments of `render`, the arguments of `diff`, the exit status, and the
+/// start of the first line of the output.
 const VERDICTS: &str = "
     -> -> 0 -> right: equal to the exact picture
     -> --strict -> 0 -> right: no pixel differs by more than 0.5 steps
@@ -35,7 +35,7 @@ fn diff_prints_the_verdict_first() {
             render(&folder, &format!("-o {name} {rendered}"));
             let compared = format!("diff {name} a.scn {compared}");
             let text = folder.told(&compared, status.parse().unwrap());
-            // Floats are not rounded to 8-bit steps, so their verdict does not mention half a step.
+            // A picture of floats has no 8-bit steps, so its verdict does not mention half a step.
             let first = first.strip_suffix(" than 0.5 steps").unwrap_or(first);
             assert!(text.starts_with(first), "{rendered} {compared}: {text}");
         }
@@ -107,7 +107,8 @@ fn jpeg_compression_is_not_reported_as_wrong() {
 
 #[test]
 fn a_mistake_is_found_in_front_of_pixel_sized_squares() {
-    // Behind the box, the squares have about the size of a pixel.
+    // Behind the box, the squares of the board are about as large as a pixel, so their colours
+    // change from pixel to pixel. The wrong size of the box must be found nevertheless.
     let scene = "image { width 96 height 64 }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sampler { method exact }
@@ -132,7 +133,7 @@ fn objects_are_judged_by_their_own_pixels() {
     let found = json(&folder, "b.png a.scn");
     assert_eq!(found["mistakes"][0]["id"], "mirrored", "{found:#}");
     all_are(&found, false);
-    // A few pixels of the background are changed.
+    // Four pixels of the background are changed.
     let mut picture = open(&folder, "a.png").to_rgb8();
     for (x, y) in [(3, 3), (5, 3), (9, 4), (4, 7)] {
         picture.put_pixel(x, y, Rgb([(20 * x) as u8, 255, 7]));
@@ -158,12 +159,12 @@ fn a_scribbled_picture_is_wrong_and_not_noise() {
     assert_ne!(json(&folder, "b.png a.scn")["verdict"], "noise");
 }
 
-/// Function that changes a picture to imitate a mistake: it returns the new value of a pixel, given
-/// its old value and its row.
+/// Change of a picture that imitates a mistake. The function gets a pixel's value and row, and
+/// returns the pixel's new value.
 type Change = fn(Rgba<u8>, u32) -> Rgba<u8>;
 
-/// Obvious mistakes: the id that `diff` must report, and the change of every pixel that imitates
-/// it.
+/// Obvious mistakes: the name that `diff` must report, and the change of every pixel that imitates
+/// the mistake.
 const PLAIN: [(&str, Change); 7] = [
     ("black", |_, _| Rgba([0, 0, 0, 255])),
     ("one_colour", |_, _| Rgba([90, 120, 30, 255])),
@@ -194,7 +195,7 @@ fn an_obvious_defect_is_the_only_mistake_reported() {
         let ids: Vec<_> = mistakes.iter().map(|mistake| &mistake["id"]).collect();
         assert_eq!(ids, [id], "{found:#}");
     }
-    // In a picture that shows only background, the reported mistake is the camera.
+    // If a picture shows only background, the reported mistake is the camera.
     render(
         &folder,
         "-o b.png --set 'camera.lookat=(3, 30, 8)' --set image.background=navy",

@@ -1,4 +1,4 @@
-//! Compares editor answers with the files in `tests/editor`, where `$0` is the cursor.
+//! Compares the editor's answers with the files in `tests/editor`, in which `$0` is the cursor.
 
 use glam::dvec2;
 use pinhole::{
@@ -18,11 +18,12 @@ use crate::{
     snapshot::assert_answers,
 };
 
-/// Start of a text in which an object is dragged. The camera looks along −z.
+/// Start of each text in which an object is dragged. The camera looks along −z, so that the effect
+/// of a drag is easy to compute.
 const LEVEL: &str =
     "image { width 200 height 100 } camera { eye (0, 0, 10) direction (0, 0, -1) d 8 }\n";
 
-/// Start of a text in which the camera is dragged.
+/// Start of each text in which the camera is dragged. It contains something to look at.
 const SEEN: &str = "image { width 400 height 200 }\nsphere { center (0, 1, 0) }\ncheckerboard {}\n";
 
 /// Returns the labels of the completions `all`, grouped by their kind.
@@ -38,7 +39,7 @@ fn offered(all: &[Completion]) -> String {
     groups.collect::<Vec<_>>().join(" | ")
 }
 
-/// Returns `text` with `completion` inserted, and with `‹›` around its placeholders.
+/// Returns `text` after `completion` is inserted. The signs `‹›` enclose its placeholders.
 pub fn inserted(text: &str, completion: &Completion) -> String {
     let insert = completion.insert.iter().map(|piece| match piece {
         SnippetPart::Text(text) => text.clone(),
@@ -50,7 +51,7 @@ pub fn inserted(text: &str, completion: &Completion) -> String {
 }
 
 /// Returns the text with `‹›` around each use of the name at the offset `at`, and with `«»` around
-/// its definition. If the name cannot be changed, returns the reason.
+/// its definition. If the name cannot be renamed, returns the reason.
 fn uses(analysis: &Analysis<'_>, at: usize) -> String {
     let mut text = analysis.text().to_owned();
     let found = occurrences(analysis, at);
@@ -69,8 +70,8 @@ fn uses(analysis: &Analysis<'_>, at: usize) -> String {
     renamable(analysis, at).map_or_else(|why| why, |_| text)
 }
 
-/// Returns the signature of the call at the offset `at`, with `‹›` around the active parameter.
-/// Returns `None` if there is no call.
+/// Returns the signature of the call at the offset `at`, with `‹›` around the parameter that is
+/// being typed. Returns `None` if there is no call.
 fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
     let found = signature(analysis, at)?;
     let mut label = found.label;
@@ -81,7 +82,7 @@ fn called(analysis: &Analysis<'_>, at: usize) -> Option<String> {
     Some(label)
 }
 
-/// Formats document symbols: a line for each definition and block, with the fields of each block.
+/// Formats an outline: a line for each definition and block, and the fields of each block.
 fn outline(symbols: &[Symbol]) -> String {
     let shown = |symbol: &Symbol| format!("{:?} {} {}", symbol.kind, symbol.name, symbol.detail);
     let lines = symbols.iter().map(|symbol| {
@@ -91,7 +92,7 @@ fn outline(symbols: &[Symbol]) -> String {
     lines.collect::<Vec<_>>().join(" | ")
 }
 
-/// Returns the text after the drag `moved`, or the reason why the drag is refused.
+/// Returns the text after the drag `moved`. If the drag is refused, returns the reason.
 pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     let (sources, scene) = (sources(text), read(text));
     let alone = alone(&sources, &scene, moved.object);
@@ -99,9 +100,9 @@ pub fn dragged(text: &str, moved: &Drag<'_>) -> Result<String, String> {
     Ok(apply(&Fix::new("", dragged.edits), SourceId::File, text))
 }
 
-/// Applies a drag to `start` followed by `text`, and returns the part of the result after `start`.
-/// `words` are the handle, the coordinates of one or two points, and the axis or plane of the
-/// movement.
+/// Applies a drag to the text `start` followed by `text`, and returns the part of the result after
+/// `start`. `words` are the handle, the coordinates of one or two points, and the axis or plane of
+/// the movement.
 fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> String {
     let words: Vec<&str> = words.split(' ').collect();
     let point = |at: usize| dvec2(words[at].parse().unwrap(), words[at + 1].parse().unwrap());
@@ -123,9 +124,9 @@ fn after_drag(start: &str, text: &str, object: Option<usize>, words: &str) -> St
     }
 }
 
-/// Returns the answer to the query `question` about `text`. Brackets in `text` mark the span that
-/// the query is about; for example, that of a [`Color`] to be replaced. `other` is the query's
-/// second argument, such as the label of a completion; it is empty if the query has none.
+/// Returns the answer to the query `question` about `text`. If the query is about a part of the
+/// text, brackets enclose this part. `other` is the query's second argument, such as the label of a
+/// completion; it is empty if there is none.
 fn answer(question: &str, text: &str, other: &str) -> String {
     let at = text.find(['$', '[']).unwrap_or_default();
     let end = text.find(']').map_or(at, |end| end - 1);

@@ -1,4 +1,5 @@
-//! Random drags: a dragged handle appears at the pointer, and no drag makes a text invalid.
+//! Tests of random drags: a dragged handle appears at the pointer, and no drag makes a text
+//! invalid.
 
 use glam::{DVec2, DVec3, dvec2};
 use pinhole::{
@@ -44,7 +45,8 @@ fn any_scene() -> impl Strategy<Value = String> {
     })
 }
 
-/// Generates a point in, near, or very far from the picture, in fractions of the picture's size.
+/// Generates a point in, near, or very far from the picture. Its coordinates are fractions of the
+/// picture's width and height.
 fn any_point() -> impl Strategy<Value = (f64, f64)> {
     let part = || prop_oneof![8 => -0.5..1.5, 1 => Just(1e300), 1 => Just(-1e12)];
     (part(), part())
@@ -67,10 +69,10 @@ fn camera_of(scene: &Scene) -> CameraFacts {
     inspect(scene, &sources("").file).camera
 }
 
-/// Returns the position in the world of a handle of the first object. If the handle's position
-/// depends on the picture, returns that of the object itself. For a board, the handle is at the
-/// point above or below the intersection of the view axis with the board of `held`, the scene
-/// before the drag; returns this point at the board's new height.
+/// Returns the position in space of a handle of the first object. For a handle without a fixed
+/// position, such as one that depends on the camera, returns the object's centre. The handle of a
+/// checkerboard is above or below the point where the camera's view axis met the board before the
+/// drag; `held` is the scene before the drag.
 fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     match (scene.objects[0].shape, held.objects[0].shape) {
         (Shape::Sphere(sphere), _) => sphere.center,
@@ -95,18 +97,18 @@ fn handle_position(scene: &Scene, handle: &str, held: &Scene) -> DVec3 {
     }
 }
 
-/// Returns the direction, a unit vector in the picture, in which `point` is seen to move if it
-/// moves along the world's axis `axis`.
+/// Returns the direction in the picture, as a unit vector, in which `point` appears to move if it
+/// moves along the coordinate axis `axis`.
 fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     let camera = camera_of(scene);
     let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
     let (at, by) = (turned(point - camera.eye), turned(DVec3::AXES[axis]));
-    // This is the derivative of the projection (x/z, y/z) along the movement, multiplied by z².
+    // The result is the derivative of the projection (x/z, y/z) along the movement, times z².
     (by.truncate() * at.z - at.truncate() * by.z).normalize()
 }
 
-/// Returns the axis along which a handle moves. Returns `None` if it moves in a plane or by a rule
-/// of its own.
+/// Returns the axis along which a handle moves. Returns `None` if it moves in a plane or in another
+/// way.
 fn axis_of(handle: &str, word: &str) -> Option<usize> {
     let axis = match handle {
         "y" => "y",
@@ -116,14 +118,15 @@ fn axis_of(handle: &str, word: &str) -> Option<usize> {
     "xyz".find(axis).filter(|_| !axis.is_empty())
 }
 
-/// Returns whether the tip of a triangle's normal is seen within half a pixel of the point `to`. If
-/// the tip cannot reach the ray through `to`, the tip must be at the position nearest to that ray.
+/// Returns whether the tip of a triangle's normal appears within half a pixel of the point `to`. If
+/// the tip cannot reach the ray through `to`, its position must be the nearest to that ray.
 fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let camera = camera_of(scene);
     let (width, height) = (f64::from(scene.image.width), f64::from(scene.image.height));
     let across = (to - dvec2(width, height) / 2.0) * (camera.view_height / (height * camera.d));
     let ray = camera.u * across.x - camera.v * across.y - camera.w;
-    // The point may be so far away that the square of a coordinate would overflow.
+    // The division avoids an overflow: the point may be so far away that the square of a coordinate
+    // is infinite.
     let ray = (ray / ray.abs().max_element()).normalize();
     let center = triangle.centroid - camera.eye;
     let foot = ray * center.dot(ray) - center;
@@ -139,9 +142,9 @@ fn normal_points_to(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bo
     project(scene, tip).distance(goal) <= 0.5 + 1e-6
 }
 
-/// Returns whether the apex is seen from the centroid in the direction of the point `to`. Also
-/// returns `true` if the apex or `to` is less than a pixel from the centroid, since the direction
-/// is then uncertain.
+/// Returns whether the apex of a triangle appears in the direction of the point `to`, as seen from
+/// the centroid. Also returns `true` if the apex or `to` is less than a pixel from the centroid,
+/// because rounding then affects the direction too much.
 fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> bool {
     let middle = project(scene, triangle.centroid);
     let shown = overlays(scene, &ShownObjects::First(None));
@@ -153,8 +156,7 @@ fn apex_lies_towards(scene: &Scene, triangle: &CenteredTriangle, to: DVec2) -> b
         || (across.abs() <= 0.5 + 1e-6 && wanted.dot(found) > 0.0)
 }
 
-/// Projects a point of the world to the picture, with the camera data that `pinhole inspect`
-/// reports.
+/// Projects a point in space to the picture. Uses the camera data that `pinhole inspect` reports.
 fn project(scene: &Scene, point: DVec3) -> DVec2 {
     let camera = inspect(scene, &sources("").file).camera;
     let from_eye = point - camera.eye;
@@ -187,17 +189,17 @@ proptest! {
         let Ok(changed) = dragged(&text, &moved) else { return Ok(()) };
         let mut after = read(&changed);
         prop_assert_eq!(after.objects.len(), before.objects.len());
-        // The drag may also have changed the camera, if the moved value has a name that the camera
-        // uses.
+        // If the camera uses the name of the moved value, the drag has also changed the camera. The
+        // handle is compared with the pointer in the old camera, for which the drag was computed.
         after.camera = before.camera;
         let place = handle_position(&after, handle, &before);
         let found = project(&after, place);
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // A ray three quarters of a pixel inside of the silhouette hits the sphere, and one
-                // as far outside does not. If the centre is behind the eye, "inside" is the side
-                // away from the centre's projection.
+                // A ray that passes three quarters of a pixel inside of the silhouette hits the
+                // sphere, and a ray as far outside does not. If the centre is behind the eye, the
+                // inside is the side away from the centre's projection.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);
@@ -216,8 +218,9 @@ proptest! {
             }
             _ => match axis_of(handle, word) {
                 None => assert_near(found, to, &message),
-                // The handle comes as near to the pointer as its axis allows. The remaining offset
-                // is therefore perpendicular to the handle's movement in the picture.
+                // The handle comes as near to the pointer as its axis allows. So the vector from
+                // the pointer to the handle is perpendicular to the handle's movement in the
+                // picture.
                 Some(axis) => {
                     let left = (to - found).dot(direction_seen(&after, place, axis));
                     prop_assert!(left.abs() <= 0.5 + 1e-6, "{}: {} left", message, left);
@@ -226,7 +229,8 @@ proptest! {
         }
     }
 
-    /// A camera drag never makes a text invalid.
+    /// A drag of the camera never makes a text invalid. It keeps the objects and the image, and an
+    /// orbit also keeps the distance from the `lookat` point.
     #[test]
     fn a_camera_drag_keeps_objects_and_image_and_an_orbit_its_distance(
         text in any_scene(), from in any_point(), to in any_point(),
@@ -249,7 +253,7 @@ proptest! {
     }
 }
 
-/// Drags a handle five times. Returns the object's shape at first and after each drag.
+/// Drags a handle five times. Returns the shape of the object before the first drag and after each.
 fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
     let view = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }";
     let mut text = format!("{block} {view}");
@@ -277,14 +281,16 @@ fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
             along: None,
             step,
         };
-        // A drag is refused if a face would pass the opposite face. Then the text stays as it is.
+        // A drag that would move a face past the opposite face is refused, and the text stays as it
+        // is.
         text = dragged(&text, &moved).unwrap_or(text);
         shapes.push(read(&text).objects[0].shape);
     }
     shapes
 }
 
-/// Coordinates that the drag does not move keep their values, within rounding errors below 1e-12.
+/// Coordinates that the drag does not move keep their values, except for rounding errors below
+/// 1e-12.
 #[test]
 fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
     let steps = [None, Some(8.0), Some(3.0), Some(1.0)];
@@ -301,7 +307,8 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
             .iter()
             .flat_map(move |face| steps.map(|step| (text, face, step)))
     }) {
-        // Here, the centre and the size share a name, so a drag along y changes both.
+        // In a text that begins with `let`, the centre and the size use the same name, so a drag
+        // along y changes both.
         if text.starts_with("let") && handle.ends_with('y') {
             continue;
         }
@@ -352,7 +359,7 @@ fn dragging_one_handle_leaves_the_other_sides_and_edges_unchanged() {
         assert!(shapes[0] != shapes[5]);
     }
 
-    // A pan keeps the vector from the eye to the `lookat` point.
+    // A pan does not change the vector from the eye to the `lookat` point.
     let text =
         "sphere { center (0, 0, 0) } camera { eye (3, 3.55, 8) lookat (0.2, 0.8, 0.125) d 2.75 }";
     let ahead = |text: &str| {

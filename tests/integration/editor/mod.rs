@@ -1,4 +1,4 @@
-//! Tests of editor answers about a text with `$0` at the cursor, and of drags in the picture.
+//! Tests of the editor's answers about a text with `$0` at the cursor, and of drags in the picture.
 
 mod answers;
 mod drags;
@@ -10,7 +10,7 @@ use pinhole::{editor::Analysis, source::Sources};
 
 use crate::scenes::sources;
 
-/// Returns `text` without its `$0`, and the offset of the `$0`. Panics if there is none.
+/// Returns `text` without its `$0`, and the offset of the `$0`. Panics if there is no `$0`.
 fn cursor(text: &str) -> (Sources, usize) {
     let at = text.find("$0").expect("a cursor");
     let text = text.replacen("$0", "", 1);

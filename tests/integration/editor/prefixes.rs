@@ -1,5 +1,5 @@
-//! Reading or querying an incomplete or edited text never panics. Prefixes of every example are
-//! queried at their ends.
+//! Tests that reading or querying an incomplete or edited text never panics. Each beginning of
+//! every example is queried at its end.
 
 use crate::{
     effort::{Effort, sampled_and_exhaustive},
@@ -17,12 +17,13 @@ use pinhole::{
     source::{SourceId, Span},
 };
 
-/// Returns whether both ends of a span lie within the text and not inside of a character.
+/// Returns whether both ends of a span lie within the text and between two characters.
 fn is_place(text: &str, span: Span) -> bool {
     text.get(span.range()).is_some()
 }
 
-/// Runs every query about the offset `at`, and checks the properties that every client relies on.
+/// Sends every kind of query about the offset `at`, and checks properties on which every client
+/// relies.
 fn ask_at(analysis: &Analysis<'_>, at: usize) {
     let text = analysis.text();
     for completion in completions(analysis, at) {
@@ -44,12 +45,13 @@ fn ask_at(analysis: &Analysis<'_>, at: usize) {
     }
 }
 
-/// Runs every query about the whole text, and checks the properties that every client relies on.
+/// Sends every kind of query about the whole text, and checks properties on which every client
+/// relies.
 fn ask_about_all(analysis: &Analysis<'_>) {
     let text = analysis.text();
     let hints = hints(analysis, 0..text.len());
     for hint in hints {
-        // A hint in the middle of a line would misalign the formatter's columns.
+        // A hint in the middle of a line would shift the columns that the formatter aligns.
         let rest = text.get(hint.at..).expect("a place between characters");
         let is_end = rest
             .lines()
@@ -84,9 +86,9 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Queries each prefix of an example at its end, and the whole example at every offset. Also
-/// queries the example without a byte or a piece, as while a user rewrites a line. Examples have
-/// much in common, so in turn only the even or only the odd offsets of each are queried.
+/// Queries beginnings of an example at their ends, and the whole example at the same offsets: every
+/// second one, because the examples are similar. Also reads the example without one byte, and
+/// queries it without eight characters in a row, as it is while a user rewrites a line.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);
@@ -139,7 +141,7 @@ fn editor_requests_survive_malformed_texts() {
     for text in texts {
         let sources = sources(text);
         let analysis = Analysis::new(&sources);
-        // A client may send any offset, even one within a character or beyond the end of the text.
+        // A client may send any offset, even within a character or beyond the end of the text.
         for at in 0..text.len() + 3 {
             ask_at(&analysis, analysis.source().floor_char_boundary(at));
         }

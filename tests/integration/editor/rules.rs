@@ -1,4 +1,4 @@
-//! Rules that the editor answers about every block and every field must obey.
+//! Tests of rules that the editor's answers about every block and every field must obey.
 
 use std::time::{Duration, Instant};
 
@@ -78,8 +78,8 @@ fn hovering_a_mistake_shows_its_explain_page() {
     assert!(text.ends_with(&end), "{text}");
 }
 
-/// A single pass over the line takes a few hundredths of a second. A formatter that passes over the
-/// line once for each term took half a minute.
+/// Reading the line once takes a few hundredths of a second. If the formatter read the line again
+/// for each of its terms, it would take half a minute.
 #[test]
 fn formatting_a_long_line_takes_linear_time() {
     let text = format!("let b = {}1\n", "1+".repeat(100_000));

@@ -1,4 +1,4 @@
-//! The semantic tokens for highlighting agree with the syntax tree.
+//! Tests that the semantic tokens, by which editors colour words, agree with the syntax tree.
 
 use std::{collections::BTreeMap, fs};
 
@@ -72,14 +72,14 @@ fn collect_values(value: &Value<'_>, is_method: bool, words: &mut BTreeMap<Span,
     }
 }
 
-/// The editor derives semantic tokens from the positions of words. They agree with the syntax tree
-/// wherever the tree is certain.
+/// The editor derives the kinds of words from the positions of the words. In every text without
+/// syntax errors, the kinds must be those of the tree.
 #[test]
 fn semantic_tokens_agree_with_the_syntax_tree() {
     let mut files = 0;
     let folders = ["examples", "tests/diagnostics", "tests/syntax/ok"];
     for path in folders.into_iter().flat_map(scenes) {
-        // Fixtures that are not UTF-8 are skipped, since their text is read as empty.
+        // A file that is not UTF-8 is read as an empty text and therefore skipped.
         let text = fs::read_to_string(&path).unwrap_or_default();
         let Some(words) = tree_kinds(&text).filter(|words| !words.is_empty()) else {
             continue;

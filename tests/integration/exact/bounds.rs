@@ -1,4 +1,5 @@
-//! Error bounds of exact pixels (the distance to the true mean), certain bytes, memory and time.
+//! Tests of exact pixels: error bounds (the distance to the true mean), bytes that are certain in
+//! spite of the error bound, memory and time.
 
 use std::time::{Duration, Instant};
 
@@ -21,7 +22,8 @@ fn bounds_stay_below_1e_9_and_certify_nearly_all_bytes() {
     }
 }
 
-/// Within one pixel, the spheres intersect one another, and most of their silhouettes are hidden.
+/// The spheres intersect one another within one pixel, and most of their silhouettes are hidden.
+/// The error bound must still be at most 1e-9.
 #[test]
 fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {
     let heap = spheres(&mut Random::new(7), 40, 20.0, [2.0, 22.0]);
@@ -30,8 +32,8 @@ fn a_pixel_of_40_piercing_spheres_is_known_within_1e_9() {
     ));
 }
 
-/// The horizons of parallel boards coincide, and so do the edges that the triangles of a fan share.
-/// A pixel that these lines cross must not be subdivided endlessly.
+/// The horizons of parallel boards coincide, and so do the edges of neighbouring triangles in a
+/// fan. A pixel that these lines cross must not be subdivided endlessly.
 #[test]
 fn coincident_lines_are_known_within_1e_9() {
     let view = "image { width 48 height 27 }
@@ -61,7 +63,7 @@ fn ten_thousand_objects_are_known_within_1e_9() {
     ));
 }
 
-/// Silhouettes of spheres that nearly coincide are distinguished as closely as rounding allows.
+/// Silhouettes of spheres that nearly coincide are distinguished as far as rounding allows.
 #[test]
 fn nearly_coincident_outlines_are_known_and_add_up() {
     for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {
@@ -79,7 +81,7 @@ fn nearly_coincident_outlines_are_known_and_add_up() {
 }
 
 /// Many boxes are seen within a small part of one pixel, because they are far away or the view is
-/// wide. Only that part is subdivided, not the whole pixel.
+/// wide. The program must subdivide only this part, not the whole pixel.
 #[test]
 fn distant_crowds_in_part_of_a_pixel_are_known_within_1e_9() {
     for (distance, count) in [(1e3, 40), (1e5, 40), (1e5, 100)] {
@@ -117,9 +119,10 @@ fn memory(scene: &str, crop: &str) -> u64 {
     most >> 10
 }
 
-/// In the first scene, nearly everything is seen at one point of a pixel, so the number of
-/// unfinished parts of the pixel grows. Without a limit, they took 20 GB. In the second scene, 65
-/// 536 objects need memory themselves. A neighbouring pixel measures how much.
+/// Compares the memory for a hard pixel with that for an easy one; the hard pixel may take at most
+/// 128 MiB more. In the first scene, nearly everything is seen at one point of the hard pixel, so
+/// that the program subdivides the pixel very often; without a limit, this took 20 GB. In the
+/// second scene, the hard pixel shows 65 536 objects, and the easy pixel beside it shows none.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_pixel_takes_bounded_memory() {
@@ -154,9 +157,9 @@ fn a_pixel_takes_bounded_memory() {
 }
 
 /// Two hundred objects pass through the same few points of a pixel that covers half of all
-/// directions. Many of their curves are distinguished only in the highest precision. In a release
-/// build, a pixel takes at most a second. The limit here is longer, because tests are less
-/// optimised and run in parallel.
+/// directions. Many of their curves can be distinguished only in the highest precision. In an
+/// optimised build, a pixel takes at most a second. The test allows more time, because tests are
+/// less optimised and run in parallel.
 #[test]
 fn a_pixel_takes_bounded_time() {
     for seed in 0..4 {
@@ -194,8 +197,8 @@ fn a_pixel_takes_bounded_time() {
     }
 }
 
-/// In each scene of `tests/exact`, the error bounds are at most 1e-9, and pixels equal the mean of
-/// their quarters. A comment in the scene may limit this to a crop.
+/// In each scene of `tests/exact`, the error bounds are at most 1e-9, and each pixel is the mean of
+/// its four quarters. A comment in the scene may limit the test to a part of the picture.
 #[test]
 fn hard_scene_files_are_known_within_1e_9() {
     for path in scenes("tests/exact") {
@@ -208,7 +211,7 @@ fn hard_scene_files_are_known_within_1e_9() {
     }
 }
 
-/// If the error bound of a pixel is large, the interval of the mean ± the bound still stays between
+/// Even if the error bound of a pixel is large, the interval of its mean ± the bound stays between
 /// the darkest and the brightest colour that the pixel can show.
 #[test]
 fn uncertain_pixels_stay_within_the_range_of_their_colours() {

@@ -1,13 +1,14 @@
-//! The exact picture of a board where the rays of a pixel run along a diagonal of its squares.
-//! There, squares contribute most to a pixel even if they are too small to be visible.
+//! Tests of exact pictures of a checkerboard if the rays of a pixel run along a diagonal of its
+//! squares. All squares on a diagonal have the same colour. Therefore, the pixel may differ from
+//! the mean of both colours even if the squares are too small to be visible.
 
 use super::*;
 
-/// Compares pixels of black and white boards with values from independent computations, within the
-/// errors of these values. The view plane distance `d` is so tiny that all rays nearly lie in one
-/// vertical plane, which meets the board in a diagonal of its squares. The board is symmetric about
-/// this diagonal, except for rounding errors of the eye's coordinates. Two of the values are sums
-/// of millions of terms, computed with 40 digits for d = 0.
+/// Compares pixels of black and white boards with values that were computed independently. The last
+/// two cells of a row are the value and its own error. The view plane distance `d` is so tiny that
+/// nearly all rays lie in one vertical plane, which meets the board in a diagonal of its squares.
+/// In the first two rows, this diagonal has only black squares. In the others, the values are sums
+/// of millions of terms, computed with 40 digits for the limit d = 0.
 #[test]
 fn independently_known_pixels_lie_within_the_bound() {
     for [image, camera, board, x, y, truth, off] in rows("
@@ -27,8 +28,9 @@ fn independently_known_pixels_lie_within_the_bound() {
 
 sampled_and_exhaustive!(extreme_lenses_do_not_hang);
 
-/// The camera's numbers are so large that the sums over the lines between squares might not end.
-/// The pixels must be computed in a short time, however large their error bounds are.
+/// The numbers of the cameras are so large that sums over the lines between squares could take
+/// almost endless time. The pixels must be computed quickly, even if their error bounds become
+/// large.
 fn extreme_lenses_do_not_hang(effort: Effort) {
     for text in effort.of([
         "camera { eye (-24.8, 13.6, -14.3) direction (-0.6542553237278188, 0, -0.5082900613062609) d 1e80 }

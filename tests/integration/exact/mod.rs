@@ -1,5 +1,5 @@
-//! Compares the exact picture with closed forms, with its double-resolution version, with samples,
-//! and with rational arithmetic.
+//! Compares exact pictures with closed formulas, with pictures of twice the resolution, with
+//! samples, and with rational arithmetic.
 
 mod board;
 mod bounds;
@@ -33,8 +33,8 @@ fn part(scene: &Scene, area: Area) -> Exact {
     render_exact(&World::new(scene), area, &Control::default()).unwrap()
 }
 
-/// Returns generated scenes in which all numbers have ordinary magnitudes. Their pictures have the
-/// size `size`, in pixels.
+/// Generates scenes in which all numbers have ordinary magnitudes. Their pictures have the size
+/// `size`, in pixels.
 fn ordinary(size: [u32; 2], seed: u64) -> impl Iterator<Item = Scene> {
     generated(Numbers::Wild(0), size, seed).map(|(_, scene)| scene)
 }
@@ -45,21 +45,22 @@ pub fn pixel(picture: &Exact, x: u32, y: u32) -> ([f64; 3], f64) {
     (picture.film.pixel(x, y), bound.into())
 }
 
-/// Returns the largest absolute difference between corresponding channels of two pixels.
+/// Returns the largest absolute difference between two pixels in one of the three channels.
 pub fn difference(one: [f64; 3], other: [f64; 3]) -> f64 {
     let differences = [0, 1, 2].map(|channel| (one[channel] - other[channel]).abs());
     differences.into_iter().fold(0.0, f64::max)
 }
 
-/// Asserts that each pixel of a scene is, within the error bounds, the mean of its four quarters:
-/// the pixels of the picture at twice the resolution.
+/// Asserts that each pixel of a scene is the mean of its four quarters, within the error bounds.
+/// The quarters are the pixels of the picture at twice the resolution.
 #[track_caller]
 fn assert_adds_up(scene: &Scene) {
     assert_part_adds_up(scene, whole(scene));
 }
 
-/// Asserts that each pixel of `area` is, within the error bounds, the mean of its four quarters:
-/// the pixels of the picture at twice the resolution. Returns the exact picture of `area`.
+/// Asserts that each pixel of `area` is the mean of its four quarters, within the error bounds. The
+/// quarters are the pixels of the picture at twice the resolution. Returns the exact picture of
+/// `area`.
 #[track_caller]
 fn assert_part_adds_up(scene: &Scene, area: Area) -> Exact {
     let fine = resized(scene.clone(), 2 * scene.image.width, 2 * scene.image.height);
@@ -95,11 +96,13 @@ fn assert_known(text: &str) {
     assert!(bound <= 1e-9, "{bound:e}\n{text}");
 }
 
-/// Asserts that an exact picture agrees with a render of `samples` random samples per pixel.
+/// Asserts that an exact picture agrees with a render of the scene with `samples` random samples
+/// per pixel.
 fn assert_agrees_with_samples(scene: &Scene, computed: &Exact, samples: u64) {
     let scene = with_samples(scene, Method::Random, Count::PerPixel(samples));
     let sampled = sampled(&scene);
-    // For a channel from 0 to 1 with mean m, the variance of the mean of n samples is at most
+    // Let m be the mean of a channel, whose values are from 0 to 1. The variance of the mean of n
+    // samples is then at most
     //     v = m·(1 − m)/n.
     // By Bernstein's inequality, the mean of n independent samples differs from m by more than
     // `most(v)` with a probability of at most 10⁻¹⁰.

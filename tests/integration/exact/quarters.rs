@@ -1,4 +1,4 @@
-//! Compares the exact picture with itself at twice the resolution, and with samples.
+//! Compares exact pictures with exact pictures of twice the resolution, and with samples.
 
 use super::*;
 
@@ -18,8 +18,8 @@ fn generated_scenes_add_up_by_quarters_and_agree_with_samples() {
     }
 }
 
-/// Rows of tilted triangles lie in one pixel. Their planes intersect all over the pixel, but no
-/// triangle hides another.
+/// Rows of tilted triangles lie in one pixel. The planes of the triangles intersect everywhere in
+/// the pixel, but the triangles themselves are side by side and do not hide one another.
 #[test]
 fn quarters_add_up_for_tilted_triangles_side_by_side() {
     let mut random = Random::new(71);
@@ -40,8 +40,8 @@ fn quarters_add_up_for_tilted_triangles_side_by_side() {
     }
 }
 
-/// Boxes and triangles intersect along segments. Each segment ends where one of the two objects
-/// ends.
+/// Boxes and triangles intersect in segments. Each segment ends at an edge of one of the two
+/// objects, because the objects intersect only partly.
 #[test]
 fn quarters_add_up_for_partly_piercing_objects() {
     let mut random = Random::new(72);
@@ -66,7 +66,7 @@ fn quarters_add_up_for_partly_piercing_objects() {
 
 sampled_and_exhaustive!(quarters_add_up_for_extreme_cameras);
 
-/// Tests the scene of figure 9.9 with cameras whose numbers are extreme.
+/// Uses the scene of figure 9.9 with cameras whose numbers are extreme.
 fn quarters_add_up_for_extreme_cameras(effort: Effort) {
     let figure = example_text("figure_9_9").replace("checkerboard ", "checkerboard Floor ");
     let size = ["image.width=24", "image.height=16"];
@@ -98,8 +98,8 @@ fn quarters_add_up_for_extreme_cameras(effort: Effort) {
     }
 }
 
-/// A sphere passes through a face of the box, and the eye is hardly above the plane of the face.
-/// The circle in which the two intersect is therefore seen as an ellipse that is nearly a line.
+/// A sphere intersects a face of the box in a circle. The eye is hardly above the plane of the
+/// face, so that the circle appears as an ellipse that is nearly a line.
 #[test]
 fn quarters_add_up_where_a_circle_is_seen_edge_on() {
     let face = "box { min (-100, -50, -100) max (100, 0, 100) color black }";
@@ -122,8 +122,8 @@ fn quarters_add_up_where_a_circle_is_seen_edge_on() {
             assert!(bound <= 1e-9, "{eye}: {bound:e}");
         }
     }
-    // The expected value was computed with 50 digits, as an integral along x that is split where
-    // the silhouette crosses the sides of the pixel.
+    // The expected value was computed with 50 digits, as an integral along x. The integral is split
+    // where the silhouette crosses the sides of the pixel.
     let scene = view("(0.26249413893393775, 3.1572076715858895e-08, 3)", 1, face);
     let ([red, ..], bound) = pixel(&exact(&scene), 0, 0);
     let off = (red - 0.500_000_064_227_617_3).abs();

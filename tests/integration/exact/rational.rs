@@ -1,4 +1,5 @@
-//! Compares pixels of the board with rational arithmetic, which has no rounding errors.
+//! Compares pixels of exact pictures of a checkerboard with rational arithmetic, which has no
+//! rounding errors.
 
 use std::{array, iter::successors};
 
@@ -7,29 +8,29 @@ use dashu_ratio::RBig;
 
 use super::{exact, pixel, read};
 
-/// Camera with rational axes, above a board at height 0 whose squares have side 1.
+/// A camera with rational axes, above a checkerboard at height 0 whose squares have side 1.
 struct RationalView {
     eye: [RBig; 3],
-    /// The camera's unit axes: right, up, and back (against the view direction).
+    /// Unit axes of the camera: right, up, and back, i.e. against the view direction.
     axes: [[RBig; 3]; 3],
     d: RBig,
 }
 
-/// Linear form a·X + b·Y + c, as `[a, b, c]`, for points (X, Y) of the view plane.
+/// A linear form a·X + b·Y + c, stored as `[a, b, c]`. The point (X, Y) is in the view plane.
 type Linear = [RBig; 3];
 type Polygon = Vec<[RBig; 2]>;
 
 impl RationalView {
-    /// Returns one component (`axis` of the world) of the ray through the point (X, Y) of the view
-    /// plane, as a linear form of (X, Y).
+    /// Returns one component of the ray through the point (X, Y) of the view plane, as a linear
+    /// form of X and Y. `axis` is the index of the component.
     fn ray(&self, axis: usize) -> Linear {
         let [right, top, back] = [0, 1, 2].map(|of| self.axes[of][axis].clone());
         [right, top, -(back * &self.d)]
     }
 
-    /// Returns linear forms N and L. The ray through a point of the view plane hits the board at
-    /// the coordinate N/L along `axis`, which is 0 for x or 2 for z. L is positive below the
-    /// horizon.
+    /// Returns two linear forms N and L such that the ray through a point of the view plane hits
+    /// the board at the coordinate N/L. `axis` is the index of the coordinate: 0 for x, or 2 for z.
+    /// L is positive below the horizon.
     fn place(&self, axis: usize) -> [Linear; 2] {
         let below = self.ray(1).map(|factor| -factor);
         let along = self.ray(axis);
@@ -37,8 +38,8 @@ impl RationalView {
         [place, below]
     }
 
-    /// Returns the share of white in a pixel below the horizon. A square is white if the sum of its
-    /// two indices is even.
+    /// Returns the white fraction of a pixel below the horizon. A square of the board is white if
+    /// the sum of its two indices is even.
     fn white(&self, pixel: &Polygon) -> RBig {
         let [across, along] = [self.place(0), self.place(2)];
         let mut white = RBig::ZERO;
@@ -61,7 +62,8 @@ fn value([a, b, c]: &Linear, [x, y]: &[RBig; 2]) -> RBig {
     a * x + b * y + c
 }
 
-/// Returns the indices of the rows, or columns, of squares that a polygon overlaps.
+/// Returns the indices of the rows, or columns, of squares that a polygon in the view plane
+/// overlaps.
 fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> {
     let places = polygon
         .iter()
@@ -71,8 +73,8 @@ fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> 
     successors(Some(first.clone()), |n| (n < last).then(|| n + IBig::ONE)).collect()
 }
 
-/// Returns the part of a polygon where the board coordinate N/L is from `n` to `n + 1`, which is
-/// the polygon's part in one row or column of squares.
+/// Returns the part of a polygon within one row or column of squares, i.e. where the board
+/// coordinate N/L is from `n` to `n + 1`.
 fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     let line = |n: IBig| -> Linear {
         let n = RBig::from(n);
@@ -82,8 +84,8 @@ fn strip([place, below]: &[Linear; 2], n: &IBig, polygon: &Polygon) -> Polygon {
     cut(&cut(polygon, &line(n.clone())), &beyond)
 }
 
-/// Returns the part of `polygon` in which the linear form `line` is not negative, by the algorithm
-/// of Sutherland and Hodgman (1974).
+/// Returns the part of `polygon` in which the linear form `line` is not negative. Uses the
+/// algorithm of Sutherland and Hodgman (1974).
 fn cut(polygon: &Polygon, line: &Linear) -> Polygon {
     let mut rest = Vec::new();
     for (i, to) in polygon.iter().enumerate() {
@@ -112,8 +114,8 @@ fn area(polygon: &Polygon) -> RBig {
     twice / RBig::from(2)
 }
 
-/// Some cameras are level. Others look down to the right, along (48, −25, −36)/65, either unrolled
-/// or rolled by the angle whose cosine is 3/5. All listed pixels are below the horizon.
+/// Some cameras are level. Others look down to the right, along (48, −25, −36)/65. They are
+/// unrolled, or rolled by the angle whose cosine is 3/5. All compared pixels are below the horizon.
 #[test]
 fn board_pixels_agree_with_rational_arithmetic() {
     let (width, height) = (64u32, 48u32);
@@ -151,7 +153,7 @@ fn board_pixels_agree_with_rational_arithmetic() {
             axes: axes.clone(),
             d: rational(d),
         };
-        // `view_height` is 2, and rows are counted from the top of the picture.
+        // The camera's `view_height` is 2, and rows are counted from the top of the picture.
         let pitch = RBig::from(2) / RBig::from(height);
         let [left, top] = [width, height].map(|size| RBig::from(size) / RBig::from(2));
         for at in pixels.split(' ') {

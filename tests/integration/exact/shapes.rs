@@ -6,7 +6,7 @@ use super::*;
 
 const AHEAD: &str = "eye (0, 0, 0) direction (0, 0, -1) d 1";
 
-/// Asserts that a white object covers the share `expected` of a picture of one pixel.
+/// Asserts that a white object covers the fraction `expected` of a picture of one pixel.
 #[track_caller]
 fn assert_coverage(camera: &str, object: &str, expected: f64) {
     let scene = read(&format!(
@@ -22,16 +22,16 @@ fn assert_coverage(camera: &str, object: &str, expected: f64) {
 
 #[test]
 fn half_plane_coverage_matches_the_closed_form() {
-    // The view plane has the distance 1 and shows x from −1 to 1. The box's right edge is seen at x
-    // = edge/4, or at edge/5 if the right face is not visible.
+    // The view plane has the distance 1 and shows x from −1 to 1. The right edge of the box appears
+    // at x = edge/4, or at edge/5 if the right face is not visible.
     for edge in [-3.5f64, -0.25, 0.0, 1.0, 3.0] {
         let object = format!("box {{ min (-100, -100, -5) max ({edge}, 100, -4) color white }}");
         let expected = 0.5 + edge / if edge < 0.0 { 10.0 } else { 8.0 };
         assert_coverage(AHEAD, &object, expected);
         assert_coverage(&format!("{AHEAD} roll 90deg"), &object, expected);
     }
-    // A plane surface whose edge passes through the pixel's centre covers half of the pixel, at any
-    // roll.
+    // If the edge of a plane surface passes through the pixel's centre, the surface covers half of
+    // the pixel, whatever the roll is.
     for object in list(
         "
         box { min (-100, -100, -5) max (0, 100, -4) color white }
@@ -45,9 +45,9 @@ fn half_plane_coverage_matches_the_closed_form() {
     }
 }
 
-/// The silhouette of a sphere of radius R is an ellipse of the area πR²√C/(z² − R²)^(3/2). Here, c
-/// is the vector from the eye to the centre, z the centre's depth, and C = c·c − R². If the centre
-/// is on the view axis, the ellipse is a circle.
+/// The silhouette of a sphere of radius R is an ellipse of the area πR²√C/(z² − R²)^(3/2). In this
+/// formula, z is the depth of the centre, and C = c·c − R², where c is the vector from the eye to
+/// the centre. If the centre is on the view axis, the ellipse is a circle.
 #[test]
 fn sphere_coverage_matches_the_area_of_an_ellipse() {
     for (x, y, z, radius) in [
@@ -69,17 +69,18 @@ fn sphere_coverage_matches_the_area_of_an_ellipse() {
 
 #[test]
 fn board_coverage_from_above_matches_the_closed_form() {
-    // From height 1, the pixel shows the area [−1, 1]² of the board: 2 × 2 squares of side 1, or
-    // more of smaller squares.
+    // From the height 1, the pixel shows the area [−1, 1]² of the board: 2 × 2 squares of side 1,
+    // or more squares if they are smaller.
     for (eye, square, expected) in [
         ("(0, 1, 0)", 1.0, 0.5),
         ("(0, 1, 0)", 0.125, 0.5),
-        // Let s be 1 and −1 in alternate squares along an axis. Squares are white where s(x)·s(z)
-        // is 1. The pixel shows x from −3/4 to 5/4 and z from −1/2 to 3/2, two squares along each
-        // axis, so both integrals of s are 0.
+        // Let s be 1 and −1 in alternate squares along an axis. A square is white if s(x)·s(z) = 1.
+        // The pixel shows x from −3/4 to 5/4 and z from −1/2 to 3/2. This is a whole period of s
+        // along each axis, so both integrals of s are 0, and half of the pixel is white.
         ("(0.25, 1, 0.5)", 1.0, 0.5),
-        // The pixel shows x from −1/2 to 1, where the integral of s (see above) is 1 − 1/2, and z
-        // from −1/4 to 5/4, where it is −1/4 + 1 − 1/4. The area shown is (3/2)².
+        // Let s be 1 and −1 in alternate squares along an axis. The pixel shows x from −1/2 to 1,
+        // where the integral of s is 1 − 1/2, and z from −1/4 to 5/4, where it is −1/4 + 1 − 1/4.
+        // The area of this part of the board is (3/2)².
         ("(0.25, 0.75, 0.5)", 1.0, 0.5 + 0.5 * (0.5 * 0.5) / 2.25),
     ] {
         let camera = format!("eye {eye} direction (0, -1, 0) up (0, 0, -1) d 1");
@@ -90,13 +91,13 @@ fn board_coverage_from_above_matches_the_closed_form() {
 
 #[test]
 fn nearly_vertical_lines_are_known_and_add_up() {
-    // The camera looks at an edge of the box, which runs along the middle column. The silhouette of
-    // a sphere crosses that edge.
+    // The camera looks at an edge of the box, which runs along the middle of the picture. The
+    // silhouette of a sphere crosses this edge.
     for [camera, objects] in rows("
         eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3 -> sphere { center (-1, 2, -1.5) radius 1.5 color white } box { min (1, -2, -1) max (2, -1.5, 0) color white }
         eye (1, 3.5, 7.5) lookat (-1.5, 1, 1) d 1 -> box { min (-1.5, 0, -1) max (-0.5, 3, 1) color white } sphere { center (-1, 1, 1) radius 1.5 color black }
     ") {
-        // If the number of columns is odd, the edge runs through the middle of pixels.
+        // If the number of columns is odd, the edge of the box runs through the middle of pixels.
         for (width, height) in [(4, 3), (12, 9), (64, 36), (13, 7)] {
             let text = format!("image {{ width {width} height {height} }} camera {{ {camera} }} {objects}");
             let bound = assert_part_adds_up(&read(&text), Area::whole(width, height)).bound();

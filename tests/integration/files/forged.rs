@@ -1,13 +1,13 @@
-//! Untrusted names and texts cannot forge a line, a table cell or a spreadsheet formula, and cannot
-//! control a terminal.
+//! Tests that untrusted names and texts cannot forge a line of output, a table cell or a
+//! spreadsheet formula, and cannot control a terminal.
 
 use std::fs;
 
 use super::{SCENE, folder, hostile::run_with_deadline};
 use crate::program::Folder;
 
-/// The program `script` provides the terminal, if it is installed. A pipe receives the text
-/// unchanged.
+/// The system's command `script`, if it is installed, imitates a terminal. In a pipe, the text is
+/// not changed.
 #[test]
 fn scene_text_is_escaped_on_a_terminal_and_unchanged_in_a_pipe() {
     let hostile = "sphere  {} // \u{1b}]0;x\u{7} \u{9b}2J \u{202e}\n";
@@ -166,7 +166,7 @@ fn csv_cells_never_start_a_spreadsheet_formula() {
         let mut table = csv::Reader::from_reader(csv.as_bytes());
         let cells = table.records().next().unwrap().unwrap();
         assert!(cells[2].parse::<f64>().is_ok(), "{row}");
-        // The table's column of students contains the file's name.
+        // The table's column with the students contains the name of the file.
         assert_eq!(cells[0], cells[6], "{row}");
     }
 }

@@ -1,5 +1,5 @@
-//! Special files at the paths that a command reads or writes. The command refuses them at once,
-//! with a message of one line, and changes no other file.
+//! Tests with special files, such as pipes, at the paths that a command reads or writes. The
+//! command refuses them at once, with a message of one line, and changes no other file.
 
 use std::{
     fs,
@@ -27,7 +27,7 @@ const HOSTILE: [(&str, &str); 9] = [
     ("nothing", "there is no such file or folder"),
 ];
 
-/// Creates a special file of the kind `what` under a name in a folder.
+/// Creates a special file of the kind `what`, with the name `name`, in a folder.
 fn create_special_file(what: &str, name: &str, folder: &Folder) {
     let path = &folder.path(name);
     match what {
@@ -47,7 +47,8 @@ fn create_special_file(what: &str, name: &str, folder: &Folder) {
     }
 }
 
-/// Returns the path and kind of every entry below a folder, with its link target or its content.
+/// Returns the path and kind of every entry below a folder, together with the target of a link or
+/// the content of a file.
 fn entries(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -70,7 +71,7 @@ fn entries(folder: &Path) -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// Runs a command, and kills it if it has not ended after ten seconds.
+/// Runs a command. Kills it if it has not ended after ten seconds.
 #[track_caller]
 pub(super) fn run_with_deadline(folder: &Folder, arguments: &[&str]) -> Outcome {
     let mut command = command(folder.path("").as_path(), arguments);
@@ -79,7 +80,7 @@ pub(super) fn run_with_deadline(folder: &Folder, arguments: &[&str]) -> Outcome 
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // The command takes at most a second on an idle machine.
+    // On an idle machine, the command takes at most a second. The limit allows for a busy one.
     let end = Instant::now() + Duration::from_secs(10);
     while child.try_wait().unwrap().is_none() {
         if Instant::now() > end {
@@ -176,9 +177,9 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
         ("link to a file outside", ""),
         ("link to a folder outside", ""),
     ]) {
-        // By default, the output of these commands is named after the scene.
+        // By default, the output of `render` and `watch` is named after the scene.
         let lines = ["render b.scn", "watch b.scn"].map(|line| (line, "b.png"));
-        // These commands write files into an output folder.
+        // The commands `grade` and `report` write their files into an output folder.
         let grade = "grade a.scn a.png -o out";
         let report = "report a.scn -o out --samples 1 --runs 1 --methods sobol";
         let both = "report a.scn b.scn -o out --samples 1 --runs 1 --methods sobol";
@@ -202,8 +203,8 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
                 "link to a folder outside" => symlink(outside.path("deep"), &path).unwrap(),
                 _ => create_special_file(what, name, &folder),
             }
-            // A folder is in the way only if the path names a file; a missing path is never in the
-            // way.
+            // In two cases, there is nothing in the way of the command: nothing exists at the path,
+            // or the path is `out/b`, where `report` needs a folder, and there is one.
             if what == "nothing" || (what, name) == ("folder", "out/b") {
                 continue;
             }
@@ -337,7 +338,8 @@ fn render_never_overwrites_its_own_input() {
     }
 }
 
-/// A link to the input is created after the program has checked the output path.
+/// The test creates a link to the input at the output path only after the program has checked this
+/// path.
 #[test]
 fn a_link_created_while_rendering_cannot_redirect_output_onto_an_input() {
     for (line, input, target, about) in [

@@ -1,5 +1,5 @@
-//! Interruptions of writing: another program saves the same file, the folder is read-only, or the
-//! process is killed.
+//! Tests of interrupted writing: another program saves the same file, the folder is read-only, or
+//! the process is killed.
 
 use std::{
     fs,
@@ -26,7 +26,7 @@ fn a_concurrent_save_of_another_program_is_never_overwritten() {
     let theirs = pinhole::scene::SMALLEST;
     for command in ["fmt a.scn", "check --fix a.scn"] {
         let mut left = 0;
-        // With some of these delays, the program has read the file but has not written it yet.
+        // With some of the delays, the program has already read the file but not yet written it.
         for delay in 0..40 {
             let folder = Folder::with([("a.scn", &*long), ("theirs", theirs)]);
             let child = spawned(&folder, command);
@@ -48,7 +48,8 @@ fn a_concurrent_save_of_another_program_is_never_overwritten() {
     }
 }
 
-/// Id of a user and group other than root (`nobody`).
+/// Id of a user and of a group without special rights (`nobody`), as which a command runs if root
+/// runs the tests.
 const USER: u32 = 65534;
 
 fn is_root() -> bool {
@@ -56,8 +57,8 @@ fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|found| found.uid() == 0)
 }
 
-/// Makes the subfolder `closed` read-only. If root runs the tests, gives the scene in it and the
-/// home folder to [`USER`].
+/// Makes the subfolder `closed` read-only. If root runs the tests, makes [`USER`] the owner of the
+/// scene in it and of the home folder.
 fn give_to_user(folder: &Folder) {
     for (name, mode) in [
         ("", 0o755),
@@ -99,7 +100,7 @@ fn a_file_in_a_read_only_folder_is_written_in_place() {
             let mode = fs::metadata(&state).unwrap().permissions().mode();
             assert_eq!(mode & 0o777, 0o700);
         } else {
-            // A backup copy cannot be made, because its folder cannot be created.
+            // No backup copy can be made, because its folder cannot be created.
             let told = "error: cannot write to closed/a.scn: its permissions, or those of its folder, do not allow that\n";
             assert_eq!((said.status, &*said.errors), (2, told));
             assert_eq!(text, "sphere  {}\n");
@@ -135,7 +136,7 @@ fn a_killed_new_command_leaves_a_complete_file_or_none() {
     assert!(absent > 0 && present > 0, "{absent} {present}");
 }
 
-/// The process is killed at various times, from before it writes until it has answered.
+/// The process is killed at various times, from before it begins to write until it has answered.
 #[test]
 fn a_killed_first_save_leaves_a_complete_file_or_none() {
     use crate::studio::client::Studio;
@@ -207,8 +208,8 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
         let is_whole = text == old || text == new || copies.iter().any(is_copied);
         assert!(is_whole, "{delay}");
         left += copies.len();
-        // A killed run may leave a backup copy of the file. The next run that formats this file
-        // mentions the copy; a run that formats another file of the same name does not.
+        // A killed run may leave a backup copy of the file. The next run that formats the same file
+        // mentions the copy; a run that formats another file with an equal name does not.
         for (line, is_named) in [
             ("fmt closed/a.scn", true),
             ("fmt --check other/a.scn", false),
@@ -222,8 +223,8 @@ fn a_killed_in_place_write_leaves_the_file_or_its_copy_complete() {
     assert!(left > 0, "no try was in time");
 }
 
-/// A user may be allowed to write to a file but not to restore its group. The new group then does
-/// not get the rights of the old one.
+/// A user may be allowed to write to a file of a group to which the user does not belong. The
+/// rewritten file then gets another group, which must not get the rights of the old one.
 #[test]
 fn rewriting_a_file_grants_no_rights_to_another_group() {
     use std::os::unix::fs::MetadataExt;
@@ -231,7 +232,7 @@ fn rewriting_a_file_grants_no_rights_to_another_group() {
     if !is_root() {
         return;
     }
-    // A user may give a file to one of the user's supplementary groups, but to no other group.
+    // A user may give a file to a supplementary group of the user, but to no other group.
     for (owner, groups, after) in [
         (1234, "--groups=1235", (USER, 1235, 0o660)),
         (USER, "--clear-groups", (USER, USER, 0o600)),

@@ -1,5 +1,5 @@
-//! Files are written completely or not at all, and only to the intended places. Commands never wait
-//! for special files.
+//! Tests that files are written completely or not at all, and only to the intended places. Commands
+//! never wait for special files, such as pipes.
 
 #[cfg(unix)]
 mod forged;
@@ -20,14 +20,14 @@ camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }
 sphere Ball { center (-1, 1, 0) }
 ";
 
-/// Returns a folder with [`SCENE`] in `a.scn` and `b.scn`, and its picture in `a.png`.
+/// Returns a folder with [`SCENE`] in `a.scn` and `b.scn`, and with the scene's picture in `a.png`.
 fn folder() -> Folder {
     let folder = Folder::with([("a.scn", SCENE), ("b.scn", SCENE)]);
     folder.told("render a.scn", 0);
     folder
 }
 
-/// Writes `content` to a path as if the user had named that path.
+/// Writes `content` to a path that the user of a command has named. An existing file is replaced.
 fn write(path: &Path, content: &[u8]) -> io::Result<()> {
     files::write(path, Purpose::Named, &AtomicBool::new(false), |out| {
         out.write_all(content)
@@ -117,7 +117,7 @@ fn a_new_file_appears_complete_and_replaces_nothing() {
     assert_eq!(folder.read("a"), b"new");
     let error = new("there").unwrap_err();
     assert_eq!(error.kind(), io::ErrorKind::AlreadyExists);
-    // Writing a new file also fails if another program creates one of this name meanwhile.
+    // Writing a new file also fails if another program creates a file of this name meanwhile.
     let path = folder.path("b");
     let late = files::write(&path, Purpose::New, &AtomicBool::new(false), |out| {
         folder.write("b", "theirs");
@@ -164,7 +164,7 @@ fn a_file_changed_since_it_was_read_is_not_overwritten() {
             let changed = || {
                 files::write(&path, purpose, &AtomicBool::new(false), |out| {
                     // The other program changes the file during the first write. The second write
-                    // finds it already changed.
+                    // finds the file already changed.
                     if number == 0 {
                         meanwhile();
                     }
@@ -199,8 +199,8 @@ fn a_folder_replaced_by_an_outward_link_is_not_followed() {
                 original: &original,
             };
             let purpose = [Purpose::Within(within), Purpose::Private(within), again][number];
-            // While the file is written, its folder is moved, with the unfinished file in it, and a
-            // link takes its place.
+            // During the write, the folder is moved together with the unfinished file, and a link
+            // takes the folder's place.
             let (inner, moved) = (folder.path("out/b"), outside.path("b"));
             let written = files::write(&path, purpose, &AtomicBool::new(false), |out| {
                 fs::rename(&inner, &moved)?;
@@ -232,7 +232,7 @@ fn drafts_are_readable_only_by_their_user() {
     files::keep(&path, "old").unwrap();
     let modes = || ["state", "state/drafts", "state/drafts/a.json"].map(mode);
     assert_eq!(modes(), [0o700, 0o700, 0o600]);
-    // The file becomes private even if everybody can read the folder and the file that is replaced.
+    // The new file becomes private, even if everybody can read the folder and the old file.
     set("state/drafts", 0o755);
     set("state/drafts/a.json", 0o644);
     files::keep(&path, "new").unwrap();

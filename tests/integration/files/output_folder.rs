@@ -1,4 +1,4 @@
-//! Output folders: a command replaces only files that a command has written there.
+//! Tests of output folders: a command replaces only files that a command has written there.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use pinhole::files::OutputFolder;
 use super::folder;
 use crate::program::{Folder, names};
 
-/// Commands that fill the folder `out`, each with some of the files that it writes there.
+/// Commands that write into the folder `out`, each with some of the files that it writes there.
 const COMMANDS: [(&str, &[&str]); 3] = [
     (
         "grade a.scn a.png -o out",
@@ -36,7 +36,7 @@ fn own_output_files_are_replaced_and_listed_with_their_hashes() {
         }
         let checked = folder.shell("cd out; sha256sum --check --strict --quiet .pinhole");
         assert_eq!((checked.status, &*checked.errors), (0, ""), "{list}");
-        // The command writes a removed file again, and leaves another file in the folder alone.
+        // The command writes a removed file again, and does not touch foreign files in the folder.
         fs::remove_file(folder.path(&format!("out/{}", files[0]))).unwrap();
         folder.write("out/other.html", "mine");
         folder.told(command, 0);
@@ -62,7 +62,8 @@ fn foreign_or_changed_output_files_are_refused_before_anything_is_written() {
             fs::remove_dir_all(folder.path("out")).unwrap();
             folder.told(command, 0);
             folder.write(&path, "changed");
-            // The changed file is huge, which shows that the program does not read it to its end.
+            // The changed file is huge. The test would take very long if the program read the file
+            // to its end.
             let huge = fs::OpenOptions::new().write(true).open(folder.path(&path));
             huge.unwrap().set_len(1 << 40).unwrap();
             assert!(folder.told(command, 2).contains("was changed since"));
@@ -90,7 +91,8 @@ fn concurrent_runs_both_list_their_files() {
     assert!(list.contains("  a\n") && list.contains("  b/c\n"), "{list}");
 }
 
-/// If every file is written again with the same content, the list of files is not written.
+/// If a command writes every file with the same content as before, it does not write its list of
+/// files.
 #[cfg(unix)]
 #[test]
 fn an_unchanged_file_list_is_not_rewritten() {
@@ -104,8 +106,8 @@ fn an_unchanged_file_list_is_not_rewritten() {
         out.write(&[("a".to_owned(), "text".to_owned())]).unwrap();
     };
     write();
-    // The hard link keeps the old file's inode in use, so a new file would have another inode
-    // number.
+    // The hard link keeps the inode of the old file in use. A rewritten file would therefore have
+    // another inode number.
     fs::hard_link(folder.path("out/.pinhole"), folder.path("first")).unwrap();
     let before = inode();
     write();

@@ -1,4 +1,4 @@
-//! Tests of the comparison of two pictures, besides those of `diff`.
+//! Tests of comparing two pictures in the library. The tests of `diff` cover the command.
 
 use pinhole::{
     color::srgb_to_linear,
@@ -14,7 +14,7 @@ fn film(pixels: &[[f64; 3]]) -> Film {
     Film::from_fn(pixels.len() as u32, 1, |x, _| pixels[x as usize]).unwrap()
 }
 
-/// Returns the linear light of an 8-bit sRGB value, in steps from 0 to 255.
+/// Returns the linear light of an 8-bit sRGB value, which is given as a number from 0 to 255.
 fn light(steps: f64) -> f64 {
     srgb_to_linear(steps / 255.0)
 }
@@ -33,7 +33,8 @@ fn pixels_within_the_tolerance_plus_the_bound_compare_equal() {
     for (other, bound, is_equal, undecided) in [
         (&bright, None, false, 0),
         (&bright, Some([1e-3]), true, 1),
-        // A pixel without a difference is undecided if its error bound exceeds the tolerance.
+        // A pixel without a difference is undecided if its error bound is greater than the
+        // tolerance.
         (&dark, Some([1e-3]), true, 1),
         (&dark, Some([1e-6]), true, 0),
     ] {

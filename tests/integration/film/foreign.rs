@@ -1,4 +1,5 @@
-//! Picture files as beginners' programs write them, and files that shells and systems damaged.
+//! Tests with picture files as beginners' programs write them, and with files that shells or
+//! systems have damaged.
 
 use std::io::Cursor;
 
@@ -6,11 +7,11 @@ use exr::prelude::{Image, SpecificChannels, WritableImage};
 use image::{ImageFormat, Rgb, RgbImage};
 use pinhole::film::{Coding, read_picture};
 
-/// Picture of two rows with three pixels each, as text.
+/// A picture of two rows with three pixels each, in the text form of the format PPM.
 const TEXT: &str = "P3\n3 2\n255\n1 2 3 4 5 6 7 8 9\n10 11 12 13 14 15 16 17 18\n";
 
-/// Returns the picture of [`TEXT`] in binary form. Its values 10 and 13 are the bytes of a line
-/// feed and a carriage return.
+/// Returns the picture of [`TEXT`] in binary form. Two of its values, 10 and 13, are the bytes of a
+/// line feed and a carriage return, which text modes change.
 fn bytes() -> Vec<u8> {
     let numbers: Vec<u8> = (1..=18).collect();
     [b"P6\n3 2\n255\n", &numbers[..]].concat()
@@ -21,7 +22,8 @@ fn utf16(text: &str, mark: &[u8], bytes: fn(u16) -> [u8; 2]) -> Vec<u8> {
     mark.iter().copied().chain(text).collect()
 }
 
-/// Returns `bytes` as a C library on Windows writes them in text mode: a CR before each LF.
+/// Returns `bytes` as a C library on Windows writes them in text mode, i.e. with a carriage return
+/// before each line feed.
 fn in_text_mode(bytes: &[u8]) -> Vec<u8> {
     let written = |&byte: &u8| match byte {
         b'\n' => vec![b'\r', b'\n'],
@@ -87,7 +89,7 @@ fn binary_pnm_reencoded_as_utf8_is_read() {
     assert!(said.contains("as `>` of PowerShell 7 does"), "{said}");
 }
 
-/// Reading a truncated file fails, or yields all pixels of the whole file.
+/// Reading a truncated file either fails or yields all pixels of the whole file.
 #[test]
 fn a_truncated_picture_file_never_reads_as_a_different_picture() {
     let picture = RgbImage::from_fn(24, 20, |x, y| {

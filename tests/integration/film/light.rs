@@ -1,4 +1,4 @@
-//! The light of a pixel: the mean of its samples, and its encoding as bytes.
+//! Tests of the light of a pixel: the mean of its samples, and its encoding as bytes.
 
 use pinhole::{
     color::{Color, half_byte},
@@ -46,12 +46,12 @@ fn a_mean_equals_the_quotient_in_extended_precision() {
 #[test]
 fn a_mean_is_rounded_once() {
     // The sum is 3 · 0.1 + 7 · 0.3. As doubles, 0.1 is 0.1000000000000000055511151231257827, and
-    // 0.3 is 0.299999999999999988897769753748. The exact mean is therefore 0.24 within 6e-18, which
-    // is a quarter of the distance between neighbouring doubles.
+    // 0.3 is 0.299999999999999988897769753748. So the exact mean differs from 0.24 by at most
+    // 6e-18, which is a quarter of the distance between neighbouring doubles.
     let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
     assert_eq!(found, [0.24; 3]);
-    // One of 2^53 samples is black, so the mean is exactly 1 − 2^−53. If samples were added one by
-    // one, rounding would lose the black one.
+    // One of 2^53 samples is black, so the mean is exactly 1 − 2^−53. If the samples were added one
+    // by one, rounding would lose the black one.
     let found = mean([((1 << 53) - 1, [1.0; 3]), (1, [0.0; 3])].into_iter());
     assert_eq!(found, [1.0 - f64::EPSILON / 2.0; 3]);
 }

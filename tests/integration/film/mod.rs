@@ -1,4 +1,4 @@
-//! Picture files: their contents, and the refusal of damaged or oversized files.
+//! Tests of picture files: their contents, and the refusal of damaged or oversized files.
 
 mod compare;
 mod foreign;
@@ -20,7 +20,7 @@ use png::{BitDepth, ColorType};
 
 use crate::images::png;
 
-/// Returns a film whose colours range from dark to light.
+/// Returns a picture whose colours range from dark to light.
 fn film(width: u32, height: u32) -> Film {
     Film::from_fn(width, height, |x, y| {
         let light = f64::from(y * width + x) / f64::from(width * height - 1).max(1.0);
@@ -29,7 +29,7 @@ fn film(width: u32, height: u32) -> Film {
     .unwrap()
 }
 
-/// Encodes the linear light of a channel by the definition of sRGB, to a number from 0 to 1.
+/// Encodes the linear light of a channel by the definition of sRGB. Both numbers are from 0 to 1.
 fn encoded(light: f64) -> f64 {
     if light <= 0.003_130_8 {
         12.92 * light
@@ -52,7 +52,7 @@ fn png_bytes(film: &Film, recipe: &Recipe) -> Vec<u8> {
     bytes
 }
 
-/// Returns the kind and the content of each chunk of a PNG file.
+/// Returns the type and the content of each chunk of a PNG file.
 fn chunks(png: &[u8]) -> Vec<(&str, &[u8])> {
     let mut rest = &png[8..];
     iter::from_fn(|| {
@@ -73,8 +73,8 @@ fn a_png_is_truecolour_with_no_unexpected_chunks() {
     let mut kinds: Vec<_> = chunks.iter().map(|(kind, _)| *kind).collect();
     kinds.dedup();
     assert_eq!(kinds, ["IHDR", "sRGB", "iTXt", "IDAT", "IEND"]);
-    // The header contains the width, the height, 8 bits per channel, truecolour, and no
-    // interlacing.
+    // The header contains the width, the height, 8 bits per channel, and the codes for RGB colours
+    // and for no interlacing.
     assert_eq!(chunks[0].1, [0, 0, 0, 31, 0, 0, 0, 17, 8, 2, 0, 0, 0]);
     let read = image::load_from_memory(&png).unwrap().into_rgb8();
     for (x, y, pixel) in read.enumerate_pixels() {
@@ -124,7 +124,7 @@ fn a_recipe_beyond_the_text_limit_is_left_out() {
     assert!(!many.fits());
 }
 
-/// The message of a decoder may quote a part of the file, which can have any length.
+/// A decoder's message may quote a part of the file, which can have any length.
 #[test]
 fn picture_errors_are_at_most_300_characters_long() {
     let long = "x".repeat(5000);
@@ -141,7 +141,7 @@ fn picture_errors_are_at_most_300_characters_long() {
         "\u{89}PNG\r\n\u{1a}\nLONG",
     ];
     for head in heads {
-        // The head is encoded in Latin-1, where each character is one byte.
+        // The head is encoded in Latin-1, in which each character is one byte.
         let bytes: Vec<u8> = head
             .replace("LONG", &long)
             .chars()
@@ -159,8 +159,9 @@ fn a_damaged_png_never_yields_a_changed_recipe() {
     for length in 0..idat {
         assert!(matches!(read_recipe(&png[..length]), Err(NotOurs::Damaged)));
     }
-    // No wrong bit causes a panic. In the header, the checksum reveals a wrong bit. After the
-    // scene, nothing is read, so a wrong bit there has no effect.
+    // No flipped bit may cause a panic. A flipped bit in the header must be detected by the
+    // checksum. A flipped bit after the scene has no effect, because the rest of the file is not
+    // read.
     for bit in 0..8 * png.len() {
         let mut flipped = png.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
@@ -172,7 +173,7 @@ fn a_damaged_png_never_yields_a_changed_recipe() {
     }
 }
 
-/// Returns the start of a PNG file that has text chunks with these keywords and texts.
+/// Returns the start of a PNG file that has text chunks with the given keywords and texts.
 fn carrying<'a>(texts: impl Iterator<Item = (&'a str, &'a [u8])>) -> Vec<u8> {
     let mut png = SIGNATURE.to_vec();
     for (keyword, text) in texts {
@@ -200,12 +201,12 @@ fn recipes_with_too_many_or_non_utf8_overrides_are_refused() {
         told.ends_with("an override that is not UTF-8 text"),
         "{told}"
     );
-    // Text chunks of other programs may have any content.
+    // Text chunks of other programs may have any content, even invalid UTF-8.
     let foreign = ("Comment", &b"\xff"[..]);
     assert!(read_recipe(&carrying([foreign, scene].into_iter())).is_ok());
 }
 
-/// The tests of `diff` cover all formats except these two.
+/// The tests of `diff` cover all formats except lossy WebP and the text form of PNM.
 #[test]
 fn a_lossy_webp_and_a_plain_pnm_are_read() {
     let webp = b"RIFF\x22\0\0\0WEBPVP8 \x16\0\0\0\x30\x01\0\x9d\x01\x2a\x01\0\x01\0\x0e\xc0\xfe\x25\xa4\0\x03\x70\0\0\0\0";
@@ -231,8 +232,9 @@ fn every_8_and_16_bit_srgb_value_decodes_to_its_linear_light() {
     }
 }
 
-/// The rounding of an EXR's colours does not depend on channels that are not read, such as opacity
-/// or another layer. One file has 16-bit opacity, the other a 16-bit green channel.
+/// The program detects from an EXR's colours whether they were rounded. Channels that are not read,
+/// such as opacity or another layer, must not affect this. One file has 16-bit opacity, the other a
+/// 16-bit green channel.
 #[test]
 fn unused_exr_channels_do_not_affect_the_detected_rounding() {
     for (file, rounding) in [
@@ -253,7 +255,7 @@ fn a_small_file_of_a_huge_picture_is_refused() {
     assert!(bytes.len() < 1 << 20);
     let large = "it has 20000 × 20000 pixels, which are decoded to more than the 268435456 bytes that are read";
     assert_eq!(read_picture(&bytes).unwrap_err().to_string(), large);
-    // The limit counts four channels per pixel. Each has the size of the file's channels.
+    // The limit on memory counts four channels per pixel, each as large as the file's channels.
     for (depth, size) in [(BitDepth::One, 4 * 6), (BitDepth::Sixteen, 8 * 6)] {
         let bytes = png(
             [3, 2],
@@ -297,7 +299,7 @@ fn an_exr_stores_means_as_floats_and_the_position_of_the_crop() {
         let mut bytes = Cursor::new(Vec::new());
         write_exr(&film, part, whole, &mut bytes).unwrap();
         let bytes = bytes.into_inner();
-        // A film of 32-bit floats yields the same bytes.
+        // A picture of 32-bit floats yields the same bytes.
         let floats: Film<[f32; 3]> =
             Film::from_fn(33, 70, |x, y| film.pixel(x, y).map(|light| light as f32)).unwrap();
         let mut same = Cursor::new(Vec::new());

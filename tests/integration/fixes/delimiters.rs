@@ -1,4 +1,4 @@
-//! If a brace or a parenthesis is missing, the first diagnostic is about it, and no fix removes
+//! Tests that the first diagnostic is about a missing brace or parenthesis, and that no fix removes
 //! anything that the author wrote.
 
 use std::{collections::BTreeSet, fs};
@@ -8,7 +8,8 @@ use pinhole::{diagnostic::Applicability, scene};
 use super::diagnostics;
 use crate::scenes::{scenes, sources};
 
-/// Scenes with other mistakes besides a missing delimiter, most of them in the heads of blocks.
+/// Scenes that have other mistakes besides the missing delimiter, most of them in the heads of
+/// blocks.
 const WITH_MISTAKES: [&str; 3] = [
     "\
 camera { eye (0, 3, 8)  lookat (0, 1, 0) }
@@ -38,8 +39,8 @@ cube for i < 3 and j < 3 { center (i, j, 0) }
 ",
 ];
 
-/// Codes, without `pinhole::`, of the diagnostics about delimiters. If a delimiter is missing from
-/// a scene, the first diagnostic must have one of these codes.
+/// Codes of the diagnostics about delimiters, without the prefix `pinhole::`. If a scene lacks a
+/// delimiter, its first diagnostic must have one of these codes.
 const OF_DELIMITERS: [&str; 7] = [
     "unclosed_block",
     "unopened_block",
@@ -50,8 +51,9 @@ const OF_DELIMITERS: [&str; 7] = [
     "nested_braces",
 ];
 
-/// Returns whether a text keeps all its characters, in order, when the fixes of its diagnostics are
-/// applied, as far as their applicability is at most `most`. White space is not compared.
+/// Returns whether all characters of a text remain, in order, when the fixes of its diagnostics are
+/// applied. White space is not compared. `most` limits which fixes are applied: only safe ones, or
+/// also others.
 fn keeps_all(text: &str, most: Applicability) -> bool {
     let fixed = scene::fix_all(&sources(text), most).text;
     let mut left = fixed.chars();

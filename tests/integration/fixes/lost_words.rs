@@ -1,6 +1,6 @@
-//! Checks that safe fixes keep every number and every name. A name may be replaced by a similar
-//! known name. Only keywords, units and punctuation may be added. A separate scanner reads the
-//! words of a text, including those in comments, so that lost comments are noticed.
+//! Checks that safe fixes keep every number and every name. A fix may replace a name by a similar
+//! known name, and may add only keywords, units and punctuation. A separate scanner reads the words
+//! of a text, also those in comments, so that it notices lost comments.
 
 use pinhole::{
     diagnostic::Applicability,
@@ -12,8 +12,8 @@ use pinhole::{
 
 use crate::random::Random;
 
-/// Spellings of units, separated by spaces, each with the factor that converts a number in the
-/// unit: lengths to metres, angles to degrees or radians.
+/// Spellings of units, separated by spaces. The factor beside them converts a length to metres, or
+/// an angle to degrees or radians.
 const UNITS: [(&str, f64); 9] = [
     ("cm", 0.01),
     ("mm", 0.001),
@@ -26,7 +26,7 @@ const UNITS: [(&str, f64); 9] = [
     ("grad grads gon", 0.9),
 ];
 
-/// Numbers and names of a text, in order. A number is multiplied by the factor of its unit.
+/// Numbers and names of a text, in order. Each number is multiplied by the factor of its unit.
 #[derive(Debug, Default)]
 struct Words {
     numbers: Vec<f64>,
@@ -34,11 +34,12 @@ struct Words {
 }
 
 impl Words {
-    /// Reads the words of `text`. If `is_two`, a field's name that is joined with its value is read
-    /// as two words: `radius2`, or `centerball` if the whole text `all` contains the word `ball`.
+    /// Reads the words of `text`. With `is_two`, a field's name that is written together with its
+    /// value, such as `radius2`, is read as two words. So is `centerball`, but only if `ball` is
+    /// also a word in the whole text `all`.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
-        // Zero-width characters are not part of a number.
+        // A zero-width character is not part of a number.
         let text = &text.replace('\u{200b}', "");
         let mut rest = text.as_str();
         let mut is_number_before = false;
@@ -58,7 +59,7 @@ impl Words {
                         .find(|c: char| !(is_letter(c) || c.is_ascii_digit()))
                         .unwrap_or(rest.len()),
                 };
-                // The `x` in `0.5x1.5x2` multiplies and is skipped.
+                // In `0.5x1.5x2`, the `x` means multiplication and is skipped.
                 let is_times = rest.starts_with(['x', 'X'])
                     && starts_number(&rest[1..])
                     && text[..text.len() - rest.len()].ends_with(|c: char| c.is_ascii_digit());
@@ -90,9 +91,9 @@ impl Words {
     }
 }
 
-/// Returns the length of a field's name that is joined with a value, as in `radius2`, or as in
-/// `centerball` if the whole text `all` contains the word `ball`. Returns `None` if `word` is
-/// itself a field's name or does not start with one.
+/// Returns the length of a field's name at the start of `word` that is joined with a value.
+/// Examples are `radius2`, and `centerball` if the whole text `all` contains the word `ball`.
+/// Returns `None` if `word` is itself a field's name or does not start with one.
 fn joined_field(word: &str, all: &str) -> Option<usize> {
     if BLOCKS.iter().any(|block| block.field(word).is_some()) {
         return None;
@@ -119,7 +120,7 @@ fn is_letter(c: char) -> bool {
     c.is_alphabetic() || c == '_'
 }
 
-/// Returns the length in bytes of the number at the start of a text.
+/// Returns the length, in bytes, of the number at the start of a text.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let is_digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
@@ -201,9 +202,10 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
     if !lost.is_empty() && !is_listed {
         complaints.push(format!("numbers are lost: {lost:?}"));
     }
-    // If two words in a row form a known word when they are joined, as `look at` does, the words
-    // alone do not tell whether a fix joined them. For the last four such pairs of the text, both
-    // answers are tried. The combination with the fewest lost and added names counts.
+    // Two words in a row, such as `look at`, may form a known word, `lookat`, if they are joined.
+    // The words alone do not show whether a fix has joined them. For the last four pairs of this
+    // kind in the text, both possibilities are tried. Of all combinations, the one with the fewest
+    // lost and added names counts.
     const WAYS: i32 = 1 << 4;
     let read = |of| [true, false].map(|is_two| words(of, is_two).names);
     let (before, after) = (read(text), read(&fixed.text));
@@ -239,9 +241,9 @@ pub fn fix_safely(text: &str) -> (String, Vec<String>) {
 }
 
 /// Returns the names of `before` that are not in `after`, and the names of `after` that are not in
-/// `before`. Two words in a row may have been joined by a fix. The bits of `joins`, from the lowest
-/// on, say for each such pair whether it counts as joined, from the last pair of the text on. The
-/// sign of `joins` says it for all further pairs.
+/// `before`. Pairs of words in `before` that would form a known word, such as `look at`, are
+/// numbered from the end of the text. Bit k of `joins` says whether a fix is assumed to have joined
+/// pair k; the sign bit applies to all further pairs.
 fn unmatched_names(
     before: &[String],
     after: &[String],
@@ -278,14 +280,14 @@ fn unmatched_names(
             at.map(|at| new.remove(at)).is_none()
         });
     }
-    // The fix of `let Ball = sphere {` makes it a block, so it removes the word `let`.
+    // The fix of `let Ball = sphere {` makes it a block, and so removes the word `let`.
     names.retain(|name| name != "let");
     new.retain(|name| !keywords().any(|word| word == name));
     (names, new)
 }
 
-/// Calls `is_tried` with `count` texts, each made from one of `texts` by one to four random
-/// mistakes. They are the same in every run.
+/// Calls `is_tried` with `count` texts. Each is made from one of `texts` by one to four random
+/// mistakes. The texts are equal in every run.
 pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     let mut random = Random::new(1);
     for _ in 0..count {
@@ -297,8 +299,8 @@ pub fn slips(texts: &[String], count: usize, mut is_tried: impl FnMut(&str)) {
     }
 }
 
-/// Returns `text` with one random mistake: a piece is removed, doubled, moved, misspelled or
-/// replaced, or something is inserted next to it.
+/// Returns `text` with one random mistake: a word, number or sign is removed, doubled, moved,
+/// misspelled or replaced, or something is inserted beside it.
 fn slip(text: &str, random: &mut Random) -> String {
     const OTHERS: [&str; 72] = [
         "radius",

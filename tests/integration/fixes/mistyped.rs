@@ -1,4 +1,4 @@
-//! Systematic mistakes in correct scenes: each fix removes its problem and adds no new error.
+//! Tests systematic mistakes in correct scenes. Each fix removes its problem and adds no new error.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use pinhole::syntax::tokens::{Lexer, TokenKind};
 use super::{Trial, diagnostics};
 use crate::scenes::{examples, sources};
 
-/// Scene with the parts of the language that the examples do not use.
+/// A scene with those parts of the language that the examples do not use.
 const SCENE: &str = "\
 camera { eye (0, 2, 8)  lookat (0, 1, 0)  hfov 60deg  near 1  far 100 }
 sampler { method sobol  total 1_000_000 }
@@ -30,7 +30,7 @@ fn tokens(text: &str) -> Vec<Range<usize>> {
     tokens.map(|token| token.start..token.end).collect()
 }
 
-/// In each text, one token is missing, doubled, or replaced or followed by another token.
+/// In each text, one token is missing, doubled or replaced, or another token follows it.
 #[test]
 fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
     let others = "radius 2 , = ( ) { } let red - * deg # \" ;".split(' ');
@@ -44,7 +44,8 @@ fn fixes_of_syntax_slips_remove_their_problem_and_add_no_error() {
             let twice = format!("{token} {token}");
             for slip in ["", &twice, other, &format!("{token} {other}")] {
                 let wrong = format!("{}{slip}{}", &text[..start], &text[end..]);
-                // A missing value of a field is found only when the tree is lowered to a scene.
+                // The parser does not report a missing value of a field. Only the translation to a
+                // scene does.
                 trial.apply_fixes(&sources(&wrong), |d, _| {
                     d.is_of_syntax && d.code != "pinhole::missing_value"
                 });

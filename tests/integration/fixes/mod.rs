@@ -1,4 +1,4 @@
-//! Fixes that diagnostics offer: each removes its problem and adds no new error.
+//! Tests of the fixes that diagnostics offer. Each removes its problem and adds no new error.
 
 mod answers;
 mod delimiters;
@@ -21,7 +21,7 @@ fn diagnostics(sources: &Sources) -> Vec<Diagnostic> {
     scene::read(sources).diagnostics
 }
 
-/// Returns the sources after applying `fix` to the file and to the `--set` arguments.
+/// Returns the sources after `fix` is applied to the file and to the `--set` arguments.
 fn with_fix(sources: &Sources, fix: &Fix) -> Sources {
     let sets = sources.sets();
     let sets = sets.map(|(id, set)| apply(fix, id, set.text()));
@@ -29,7 +29,7 @@ fn with_fix(sources: &Sources, fix: &Fix) -> Sources {
     Sources::new(Source::from_text("a.scn", file)).with_sets(sets)
 }
 
-/// Counts diagnostics by code and message. Spaces in quoted texts are ignored.
+/// Counts diagnostics with equal code and message. Spaces in quoted texts are ignored.
 fn counted<'d>(
     diagnostics: impl IntoIterator<Item = &'d Diagnostic>,
 ) -> BTreeMap<(&'d str, String), usize> {
@@ -44,7 +44,7 @@ fn said(diagnostic: &Diagnostic) -> (&str, String) {
     (&diagnostic.code, diagnostic.message.replace(' ', ""))
 }
 
-/// Number of fixes that were applied, and complaints about their effects.
+/// Number of fixes that a test has applied, and complaints about their effects.
 #[derive(Default)]
 struct Trial {
     fixes: usize,
@@ -52,7 +52,7 @@ struct Trial {
 }
 
 impl Trial {
-    /// Applies each fix of the problems that `is_meant` selects. Adds a complaint if the problem
+    /// Applies each fix of the problems that `is_meant` selects. Records a complaint if the problem
     /// remains or another one appears.
     fn apply_fixes(
         &mut self,

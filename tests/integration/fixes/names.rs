@@ -1,5 +1,5 @@
-//! A suggested name is valid in the place where it is suggested. The tests misspell every name of
-//! the language and of the text in every way, in every place.
+//! Tests that a suggested name is valid where it is suggested. The tests misspell every name of the
+//! language and of the text in many ways, in every place.
 
 use pinhole::schema::{BLOCKS, CONSTANTS, FUNCTIONS, css, method_names};
 
@@ -34,7 +34,7 @@ const PLACES: [&str; 22] = [
 
 const LETS: &str = "let number = 2\nlet angle = 30deg\nlet vector = (1, 2, 3)\nlet shade = red\nlet pair = (red, blue)\nlet negative = -2\nlet k1 = 7\n";
 
-/// Returns misspellings of a name: a letter is dropped, doubled, swapped or changed, or letters are
+/// Returns misspellings of a name. A letter is dropped, doubled, swapped or changed, or letters are
 /// capitalized.
 fn mistyped(name: &str) -> Vec<String> {
     let mut slips = vec![
@@ -75,7 +75,8 @@ fn suggested_names_are_valid_where_they_are_suggested() {
     names.extend(CONSTANTS.iter().flat_map(|(name, ..)| mistyped(name)));
     names.extend(method_names().step_by(3).flat_map(mistyped));
     names.extend(["line", "in", "ff0000", "po", "sin"].map(str::to_owned));
-    // These are calls with arguments of each type, and with each number of arguments.
+    // The values are calls of each function with arguments of each type, and with each number of
+    // arguments.
     for function in FUNCTIONS {
         let arguments = [
             "",
@@ -174,7 +175,7 @@ fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
         "k2",
         "negativ",
     ] {
-        // The test leaves out values that contradict other values of a block.
+        // Values that contradict other values of a block are left out.
         let values = values
             .into_iter()
             .filter(|value| !value.starts_with('(') || *value == "(1, 1, 9)");
@@ -183,7 +184,7 @@ fn suggested_fields_and_targets_are_valid_where_they_are_suggested() {
             trial.apply_fixes(&sources, |problem, _| is_meant(problem));
         }
     }
-    // A field that the block lacks is an error.
+    // A field that the language does not have in the block is an error.
     assert!(!diagnostics(&sources(&scene).with_sets(["Bal.size=3"])).is_empty());
     trial.finish_with_more_than(500);
 }

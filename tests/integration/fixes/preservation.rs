@@ -1,5 +1,5 @@
-//! Safe fixes keep what the author wrote. The texts are every example and fixture with random
-//! mistakes, and files of other programs and languages.
+//! Tests that safe fixes keep what the author wrote. The texts are all examples and fixtures with
+//! random mistakes, and files of other programs and languages.
 
 use std::{fs, path::Path};
 
@@ -19,7 +19,7 @@ fn foreign() -> Vec<String> {
     names.into_iter().map(read).collect()
 }
 
-/// Returns each line of a file, and the part of the file from each line to its end. A file's start
+/// Returns each line of a file, and the rest of the file from each line on. The start of a text
 /// matters, because it may reveal the language.
 fn pieces(text: &str) -> Vec<String> {
     let lines: Vec<&str> = text.lines().collect();
@@ -42,7 +42,7 @@ fn safe_fixes_keep_numbers_and_names_of_foreign_files() {
     assert_none(&complaints);
 }
 
-/// A fix may reveal a mistake that an error hid before, but the number of errors still falls.
+/// A fix may reveal a mistake that an error has hidden, but the number of errors must still fall.
 #[test]
 fn every_fix_of_a_foreign_file_leaves_fewer_errors() {
     let mut trial = Trial::default();
@@ -70,11 +70,12 @@ fn safe_fixes_keep_numbers_and_names_of_mistyped_scenes() {
     assert_none(&complaints);
 }
 
-/// A hundred thousand random mistakes found these texts.
+/// The texts come from a run with a hundred thousand random mistakes. Each had lost content to a
+/// fix.
 #[test]
 fn texts_that_once_lost_content_to_a_fix_keep_it() {
     let texts = [
-        // A comment in another language's style is not part of the value before it.
+        // A comment in the style of another language is not part of the value before it.
         "triangle { centroid (0, 1, 0)  sides (2, 2, 1)  normal 0 0 1\n#ff8800\n}",
         "sphere { center 0 1 0 // R\n radius 2 }",
         "sphere { center 0 1 0\n-- R\n radius 2 }",
@@ -82,7 +83,7 @@ fn texts_that_once_lost_content_to_a_fix_keep_it() {
         "box { min (-3, 0, -0.1)  max (- min1.6, 2.5, ) }",
         "sphere { center (a.5, 2) }",
         "let ball = { center1.6, 1, 0 }",
-        // An `x` may stand for a multiplication, and a unit may be apart from its number.
+        // An `x` may mean multiplication, and a unit may be apart from its number.
         "let a = 30 0.5x1.5x2 deg",
         "Transform { translation -0.5x.15x21.6 1 0 }",
         "triangle { centroid (0, 1, 0)  spin 30 degrees lookat }",

@@ -1,4 +1,4 @@
-//! Random texts for the formatter: random tokens with random gaps between them.
+//! Generates random texts for the formatter: random tokens with random gaps between them.
 
 use proptest::{collection::vec, prelude::*, sample::select};
 
@@ -10,13 +10,13 @@ fn one_of(words: &'static str, separator: char) -> impl Strategy<Value = &'stati
 
 /// Generates the gaps between tokens, which consist of white space and comments.
 pub fn gaps() -> impl Strategy<Value = Vec<&'static str>> {
-    // Bars separate the gaps. Gaps that shall be frequent are listed twice.
+    // Bars separate the gaps. A gap that should be frequent is listed twice.
     let gaps = "|||| | |  |\n|\n|\n\n|\n \n\t\n|\r\n| // c \n|\n// own\n|/* b */| /* b */ |\n/* own */\n|/* two\n lines */|\n\n/* d */ /* e */\n|// f\n// g\n\n";
     vec(one_of(gaps, '|'), 200)
 }
 
-/// Joins `tokens`, a text in which spaces separate the tokens, with the gaps `gaps`. Adds a space
-/// where two tokens would otherwise merge or begin a comment.
+/// Joins the tokens in `tokens`, which spaces separate, with the gaps `gaps`. Adds a space where
+/// two tokens would otherwise merge or begin a comment.
 pub fn spaced(tokens: &str, gaps: &[&str]) -> String {
     let mut text = String::new();
     let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');
@@ -43,7 +43,7 @@ fn value() -> impl Strategy<Value = String> {
                     *open != "(" || !values.is_empty()
                 })
                 .prop_map(|(open, values)| format!("{open} {} )", values.join(" , ")));
-            // This is a list with one element per line, each followed by a comment.
+            // A list with one element per line, each followed by a comment.
             let remark = one_of("|\t//\tx|\t//\tof\tthe\tleft|\t/*\ty\t*/|\n//\town", '|');
             let explained = (one_of("(|max (", '|'), vec((inner.clone(), remark), 1..4)).prop_map(
                 |(open, values)| {
@@ -94,7 +94,7 @@ proptest! {
         if style == "crlf" {
             text = text.replace("\r\n", "\n").replace('\n', "\r\n");
         }
-        // `--` may be a double minus sign, but it is reported because it looks like a comment of
+        // `--` may be a double minus sign. It is still reported, because it looks like a comment of
         // another language.
         prop_assume!(!text.contains("-- ") && !text.contains("--\t"));
         assert_formatter_laws(&text, &formatted(&text).unwrap());

@@ -1,5 +1,5 @@
-//! Laws of the formatter: it keeps tokens, comments and the tree, and formatting twice equals
-//! formatting once.
+//! Tests of laws that the formatter must obey: it keeps tokens, comments and the syntax tree, and
+//! formatting twice gives the same result as formatting once.
 
 use pinhole::{
     source::{Source, SourceId},
@@ -9,7 +9,8 @@ use pinhole::{
 use super::{all_scenes, formatted};
 use crate::{diagnostics::diagnose, syntax::tokens};
 
-/// Returns tokens and comments in order. White space at line ends within comments is removed.
+/// Returns the tokens and comments of a text in order. White space at line ends within comments is
+/// removed.
 fn words(text: &str) -> Vec<String> {
     let tidy = |token: &str| {
         let lines = token.lines();
@@ -44,9 +45,9 @@ pub fn assert_formatter_laws(text: &str, formatted_text: &str) {
     for line in formatted_text.lines() {
         assert_eq!(line.trim_end_matches([' ', '\t']), line);
     }
-    // There are never two empty lines in a row, except within a comment.
+    // Two empty lines in a row occur only within a comment.
     for (at, _) in formatted_text.match_indices("\n\n\n") {
-        // `/*/` opens a comment and does not close one.
+        // The characters `/*/` begin a comment and do not end it.
         let before = formatted_text[..at].replace("/*/", "/* ");
         assert!(
             before.rfind("/*") > before.rfind("*/"),
@@ -56,7 +57,7 @@ pub fn assert_formatter_laws(text: &str, formatted_text: &str) {
     assert!(!formatted_text.ends_with("\n\n"));
 }
 
-/// Formatting does not change the diagnostics of a scene.
+/// Formatting a scene does not change its diagnostics.
 #[test]
 fn formatter_laws_hold_for_every_scene() {
     let said = |text: &str| {

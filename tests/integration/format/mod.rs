@@ -1,4 +1,5 @@
-//! The canonical layout: its form, compared with the files in `tests/format`, and its laws.
+//! Tests of the formatter's layout, by comparison with the files in `tests/format`, and of its
+//! laws.
 //!
 //! In `tests/format`, the file `NAME.formatted.scn` is the expected layout of `NAME.scn`.
 
@@ -12,7 +13,7 @@ use pinhole::{format::format, source::Source};
 use self::laws::assert_formatter_laws;
 use crate::{program::Folder, scenes::scenes, snapshot::assert_file};
 
-/// Formats a text. If it has errors, returns the codes of all its diagnostics instead.
+/// Formats a text. If the text has syntax errors, returns the codes of all its diagnostics instead.
 pub fn formatted(text: &str) -> Result<String, Vec<String>> {
     format(&Source::from_text("a.scn", text)).map_err(|mistakes| {
         assert!(mistakes.iter().any(|d| d.is_error()), "{text}");
@@ -73,7 +74,7 @@ fn fmt_check_compares_long_texts_in_linear_time() {
         let folder = Folder::with([("a.scn", &*text)]);
         let start = Instant::now();
         let told = folder.told("fmt --check a.scn", 1);
-        // An algorithm that compares all pairs of lines would take minutes.
+        // An algorithm that compared all pairs of lines would take minutes.
         assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
         assert!(told.starts_with("--- a.scn\n+++ a.scn, formatted\n@@ -1"));
     }

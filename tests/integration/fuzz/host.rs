@@ -1,4 +1,4 @@
-//! Random messages to `pinhole studio`, over the WebSocket of a page with a valid token.
+//! Sends random messages to `pinhole studio`, over the WebSocket of a page with a valid token.
 
 use serde_json::{Value, json};
 use tungstenite::Message;
@@ -15,7 +15,7 @@ const METHODS: [&str; 6] = [
     "textDocument/hover",
 ];
 
-/// After any message, the host still answers and the file is unchanged.
+/// After any message, the host must still answer, and the file must be unchanged.
 #[test]
 fn no_studio_message_ends_the_conversation_or_changes_the_file() {
     let (folder, studio) = studio();
@@ -37,7 +37,8 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
                 params[key] = random.one_of(&any).clone();
             }
         }
-        // No message contains the file's content as its base, so no save may overwrite the file.
+        // A save overwrites the file only if `base`, the content that the page knows, is the file's
+        // current content. No message has this content as `base`, so none may overwrite the file.
         assert_ne!(params["base"], json!(before));
         let method = *random.one_of(&METHODS);
         let message = json!({ "jsonrpc": "2.0", "id": "fuzz", "method": method, "params": params });
@@ -47,8 +48,8 @@ fn no_studio_message_ends_the_conversation_or_changes_the_file() {
         }
         let text = String::from_utf8_lossy(&bytes).into_owned();
         page.transport.0.send(Message::text(text)).unwrap();
-        // The host still answers. Everything that it sends before this answer belongs to the random
-        // message.
+        // The host still answers. All messages that it sends before this answer belong to the
+        // random message.
         let last = json!({ "jsonrpc": "2.0", "id": "last", "method": "studio/x", "params": {} });
         page.transport.write(&last.to_string());
         while page.read()["id"] != "last" {}

@@ -1,5 +1,5 @@
-//! Random valid and invalid messages from editors and pages. Each request gets one answer, and the
-//! server's text stays equal to the client's.
+//! Sends random valid and invalid messages, as from editors and pages. Each request gets exactly
+//! one answer, and the server's text stays equal to the client's.
 
 use std::collections::BTreeMap;
 
@@ -40,7 +40,7 @@ const METHODS: [&str; 26] = [
     "$/nothing",
 ];
 
-/// Returns a random JSON value, nested at most `depth` levels deep.
+/// Returns a random JSON value that is nested at most `depth` levels deep.
 fn value(random: &mut Random, depth: usize) -> Value {
     match random.below(if depth == 0 { 12 } else { 14 }) {
         0 => Value::Null,
@@ -70,7 +70,8 @@ fn position(random: &mut Random) -> Value {
     json!({ "line": line, "character": character })
 }
 
-/// Returns parameters that fit most requests, some of them removed or replaced by random values.
+/// Returns parameters that fit most requests. Some of them are removed or replaced by random
+/// values.
 fn params(random: &mut Random, depth: usize) -> Value {
     let [start, end] = [0; 2].map(|_| position(random));
     let mut params = json!({
@@ -92,7 +93,8 @@ fn params(random: &mut Random, depth: usize) -> Value {
     params
 }
 
-/// Returns a random byte offset in `text`, and its LSP position, whose column is in UTF-16 units.
+/// Returns a random byte offset in `text` and the equivalent position, whose column is counted in
+/// UTF-16 code units.
 fn place(random: &mut Random, text: &str) -> (usize, Value) {
     let places: Vec<usize> = (0..=text.len())
         .filter(|at| text.is_char_boundary(*at))
@@ -151,7 +153,8 @@ fn each_request_is_answered_once_and_the_server_keeps_the_clients_text() {
         for id in asked {
             assert_eq!(answers.get(&id.into()), Some(&1), "request {id}");
         }
-        // The edited text has the same tokens and diagnostics as a text that is opened as a whole.
+        // The edited text must have the same tokens and diagnostics as a text that is opened as a
+        // whole.
         let mut again = LocalClient::with(&text);
         while again.transport.step() {}
         let ask =
@@ -180,14 +183,14 @@ fn the_server_still_answers_after_any_message() {
             if random.below(2) == 0 {
                 flip(random, &mut bytes);
             }
-            // If a malformed message gets no answer, the transport panics.
+            // If a malformed message gets no answer, the client of the test panics.
             let text = String::from_utf8_lossy(&bytes);
             if text.contains("method") && !text.contains("exit") {
                 client.transport.write(&text);
             }
         }
         while client.transport.step() {}
-        // After any message, the server still answers.
+        // After any message, the server must still answer.
         client.transport.said.clear();
         let document = json!({ "textDocument": { "uri": "file:///b.scn", "languageId": "scn", "version": 1, "text": "sphere {}" } });
         client.send(

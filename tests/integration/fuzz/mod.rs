@@ -1,8 +1,8 @@
-//! Fuzzing: for random inputs, nothing panics or hangs, and stated properties hold.
+//! Fuzz tests: for random inputs, nothing panics or takes forever, and stated properties hold.
 //!
-//! In a normal run, each target tries a few inputs. `PINHOLE_FUZZ=1000000 cargo test fuzz` tries a
-//! million per target, starting at the number `PINHOLE_FUZZ_FIRST`. An input depends only on its
-//! number.
+//! In a normal run, each test tries a few inputs. `PINHOLE_FUZZ=1000000 cargo test fuzz` tries a
+//! million per test, starting at the input number `PINHOLE_FUZZ_FIRST`. An input depends only on
+//! its number.
 
 mod host;
 mod messages;
@@ -23,20 +23,20 @@ use std::{
 
 use crate::{diagnostics::fixtures, format::all_scenes, random::Random};
 
-/// Maximum time for an input; after it, the input counts as a hang. An input takes milliseconds,
-/// but a busy machine may pause for longer.
+/// Maximum time for an input; a longer time counts as an endless loop. An input takes milliseconds,
+/// but a busy machine may pause for seconds. A longer limit would only delay the message.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Calls `run` and returns its result. If it takes longer than [`PATIENCE`], prints `what()` and
-/// aborts the test process, because a hanging thread cannot be stopped.
+/// Calls `run` and returns its result. If it takes longer than [`PATIENCE`], prints the text of
+/// `what` and aborts the test process, because the thread cannot be stopped.
 pub fn ends_soon<T>(what: impl Fn() -> String + Sync, run: impl FnOnce() -> T) -> T {
     let (done, is_done) = mpsc::channel::<()>();
     let what = &what;
     thread::scope(|scope| {
         scope.spawn(move || {
             if is_done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
-                // The harness prints a test's output only at the test's end, which is not reached
-                // here.
+                // The test harness prints a test's output only at the end of the test, which is
+                // never reached.
                 let _ = writeln!(io::stderr(), "this does not end: {}", what());
                 process::abort();
             }
@@ -47,15 +47,15 @@ pub fn ends_soon<T>(what: impl Fn() -> String + Sync, run: impl FnOnce() -> T) -
     })
 }
 
-/// Words, numbers and signs to insert into random texts, separated by bars.
+/// Words, numbers and signs that are inserted into random texts. Bars separate them.
 const WORDS: &str = "0|-0|1|.5|5.|1e308|-1e308|1e309|1e-320|1e-400|9007199254740993|0x10|NaN|inf|1_000|1__0|90deg|2.5.5|#fff|#12|\
     (|)|{|}|[|]|,|;|:|=|==|+|-|--|*|/|^|'|\"|//|/*|*/|#|$|@|\\|\u{feff}|\u{202e}|\u{a0}|\u{e9}|e\u{301}|\u{1f600}|\0|\r|\r\n|\n|\t|\u{85}|\u{2028}|\
     let|for i < 3|for|<|i|sphere|box|triangle|checkerboard|camera|image|sampler|eye|lookat|direction|fov|d|near|far|up|roll|center|radius|size|color|\
     colors|square|y|v0|v1|v2|normal|sides|method|per_pixel|total|seed|width|height|background|min|max|sqrt|rgb|exact|EYE|radus|pi|x|a";
 
 /// Calls `is_tried` with `usual` random generators, or with as many as the environment variable
-/// `PINHOLE_FUZZ` says. Each generator depends only on its number. If a call panics or hangs,
-/// prints the environment variables that make a run repeat this call alone.
+/// `PINHOLE_FUZZ` says. Each generator depends only on its number. If a call panics or takes too
+/// long, prints the environment variables with which a run repeats only this call.
 pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     struct Number(u64);
     impl Number {
@@ -79,7 +79,7 @@ pub fn each(usual: u64, mut is_tried: impl FnMut(&mut Random)) {
     }
 }
 
-/// Returns the texts of all scenes of the repository below 4000 bytes, including wrong ones.
+/// Returns the texts of all scenes of the repository below 4000 bytes, including wrong scenes.
 fn scenes() -> &'static [String] {
     static SCENES: LazyLock<Vec<String>> = LazyLock::new(|| {
         let wrong = fixtures().map(|(_, sources)| sources.file.text().to_owned());
@@ -89,13 +89,13 @@ fn scenes() -> &'static [String] {
     &SCENES
 }
 
-/// Returns the text of a random scene of the repository.
+/// Returns the text of a randomly chosen scene of the repository.
 fn any_text(random: &mut Random) -> &'static str {
     random.one_of::<String>(scenes())
 }
 
-/// Returns a random scene of the repository with a few mistakes: tokens are removed, doubled, moved
-/// or replaced, or the end is cut off.
+/// Returns a randomly chosen scene of the repository with a few mistakes: tokens are removed,
+/// doubled, moved or replaced, or the end is cut off.
 fn scene(random: &mut Random) -> Vec<u8> {
     let text = any_text(random);
     let mut tokens = tokens(text);
@@ -167,8 +167,8 @@ fn tokens(text: &str) -> Vec<&str> {
     tokens
 }
 
-/// Makes one to eight random changes to `bytes`: overwrites single bytes and 32-bit numbers, and
-/// removes or doubles parts.
+/// Makes one to eight random changes to `bytes`: overwrites bytes and 32-bit numbers, and removes
+/// or doubles parts.
 fn flip(random: &mut Random, bytes: &mut Vec<u8>) {
     for _ in 0..=random.below(8) {
         let at = random.below(bytes.len());

@@ -1,4 +1,5 @@
-//! Random picture files: any bytes are decoded or refused, and never decoded beyond the limit.
+//! Tests with random picture files: any bytes are decoded or refused, and never decoded beyond the
+//! limit on memory.
 
 use std::{io::Cursor, sync::LazyLock};
 
@@ -9,10 +10,11 @@ use super::{each, flip};
 use crate::program::Folder;
 
 /// Maximum number of bytes to which a picture may be decoded in these tests. It is enough for the
-/// small pictures here. A header with a wrong size exceeds it, so the picture is refused.
+/// small pictures of the tests. If a random change makes a header claim a huge size, the picture is
+/// refused.
 const LIMIT: u64 = 1 << 20;
 
-/// Returns a small picture in each format and several colour types.
+/// Returns a small picture in each format and in several colour types.
 fn pictures() -> &'static [Vec<u8>] {
     static PICTURES: LazyLock<Vec<Vec<u8>>> = LazyLock::new(|| {
         let picture = RgbImage::from_fn(19, 11, |x, y| {
@@ -72,8 +74,8 @@ fn random_picture_bytes_are_read_or_refused_within_the_limit() {
         }
         if let Ok(picture) = read_picture_up_to(&bytes, LIMIT) {
             let pixels = u64::from(picture.film.width()) * u64::from(picture.film.height());
-            // A pixel takes at least four bytes, so a decoded picture has at most a quarter of the
-            // limit in pixels.
+            // A pixel takes at least four bytes of memory, so a decoded picture has at most a
+            // quarter as many pixels as the limit has bytes.
             assert!((1..=LIMIT / 4).contains(&pixels), "{pixels}");
         }
     });

@@ -1,4 +1,4 @@
-//! Random texts are read, fixed and formatted without a panic.
+//! Tests that random texts are read, fixed and formatted without a panic.
 
 use pinhole::{
     diagnostic::{Applicability, apply},
@@ -24,7 +24,7 @@ fn assert_read(bytes: Vec<u8>) {
     robustness::read(bytes);
 }
 
-/// Each fix changes the text, and fixing all problems a second time changes nothing.
+/// Each fix must change the text, and fixing all problems a second time must change nothing.
 #[test]
 fn every_fix_changes_the_text_and_fixing_twice_equals_fixing_once() {
     each(60, |random| {
@@ -65,10 +65,10 @@ fn assert_formatted(text: &str) {
     }
 }
 
-/// Texts that once failed, for these reasons: fixes that remove the same space; a label inside a
-/// character; a parenthesis for each of two hundred fixes in one place; a comment with empty lines;
-/// a comment inside a hyphenated name; functions of other languages, and values, on a new line; and
-/// indices without a `{` in the place of a field.
+/// Texts that once failed. The reasons were: two fixes that remove the same space; a label that
+/// begins inside a character; two hundred fixes that each add a parenthesis in one place; a comment
+/// with empty lines; a comment inside a hyphenated name; functions of other languages, and values,
+/// on a new line; and indices without a `{`, written like a field.
 #[test]
 fn texts_found_by_fuzzing_stay_fixed() {
     let (deep, minuses) = ("(".repeat(220), "−".repeat(300));

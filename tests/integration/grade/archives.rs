@@ -1,4 +1,4 @@
-//! Grading of zip files, well-formed and malicious.
+//! Tests of grading zip files, both well-formed and malicious ones.
 
 use std::io::{Cursor, Write};
 
@@ -6,8 +6,8 @@ use zip::{ZipWriter, write::SimpleFileOptions};
 
 use super::classes::{METADATA, assert_lines, folder, graded};
 
-/// Returns a zip file with the given entries: names and contents. An entry whose name begins with
-/// `link:` is a symbolic link.
+/// Returns a zip file with the given entries, i.e. names and contents. If a name begins with
+/// `link:`, the entry is a symbolic link.
 fn zip(entries: &[(&str, &[u8])]) -> Vec<u8> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, content) in entries {
@@ -26,8 +26,8 @@ fn zip(entries: &[(&str, &[u8])]) -> Vec<u8> {
     zip.finish().unwrap().into_inner()
 }
 
-/// Replaces the bytes `from`, which must occur twice, by `to`. In a zip file, a name stands before
-/// the entry and in the list of entries.
+/// Replaces the bytes `from` by `to`. They must occur twice: a zip file contains each name before
+/// its entry and in the list of entries.
 fn patch(bytes: &mut [u8], from: &[u8], to: &[u8]) {
     let places: Vec<_> = (0..bytes.len() - from.len())
         .filter(|&at| bytes[at..].starts_with(from))
@@ -55,9 +55,9 @@ fn a_zip_file_is_graded_as_a_class_and_no_entry_escapes_it() {
         ("gus\\render.png", &red),
         ("__MACOSX/._x.png", b"junk"),
     ]);
-    // This name is in code page 437, in which 0x81 is ü, and 0x82 é.
+    // The name is in code page 437, in which 0x81 is ü and 0x82 is é.
     patch(&mut file, b"fXnn/", b"f\x81nn/");
-    // This entry is marked as encrypted, by a flag before each of its two names.
+    // The entry is marked as encrypted, by a flag before each of its two names.
     for (head, flags) in [(30, 6), (46, 8)] {
         let name = b"dora/Xecret.png";
         let names: Vec<_> = (head..file.len() - name.len())
@@ -135,8 +135,8 @@ fn a_students_zip_file_is_a_folder_and_a_folder_around_a_class_is_skipped() {
     let names: Vec<_> = found.iter().map(|line| &line["student"]).collect();
     assert_eq!(names, ["Anna Li", "Ben <b>, Cy", "Dora", "eve@example.org"]);
     assert_eq!(found[1]["verdict"], "wrong");
-    // A folder is a student's even if it is empty or contains only files that operating systems
-    // create.
+    // A folder belongs to a student even if it is empty or contains only files that operating
+    // systems create.
     let files: [(&str, &[u8]); 7] = [
         ("anna/render.png", &right),
         ("ben/", b""),
@@ -175,7 +175,7 @@ fn zip_bombs_are_rejected_at_the_stated_limits() {
         ("anna/a.png", &vec![0; (256 << 20) + 1]),
         ("ben/b.png", &right),
     ]);
-    // The zip file's headers claim that its entry unpacks to ten bytes.
+    // The headers of the zip file claim that its entry unpacks to ten bytes.
     let length = ((256u32 << 20) + 1).to_le_bytes();
     let places: Vec<_> = (0..bomb.len() - 4)
         .filter(|&at| bomb[at..].starts_with(&length))
@@ -201,7 +201,7 @@ fn zip_bombs_are_rejected_at_the_stated_limits() {
         told.contains("it has 10001 entries, and at most 10000 are read"),
         "{told}"
     );
-    // A list of entries that would fill all memory is not read to its end.
+    // The list of entries would fill all memory, so it is not read to its end.
     let name = "x".repeat(60_000);
     let names: Vec<String> = (0..300).map(|index| format!("{index}{name}")).collect();
     let long: Vec<(&str, &[u8])> = names.iter().map(|name| (&**name, &b""[..])).collect();

@@ -1,6 +1,6 @@
-//! A picture for testing the grading. Its title says everything about it: the scene, the size,
-//! samples per pixel, the sampling, and the mistakes. A picture with 256 samples per pixel counts
-//! as exact.
+//! A picture with which the grading is tested. Its title says everything about it: the scene, the
+//! size, samples per pixel, the sampling, and the mistakes. A picture with 256 samples per pixel
+//! counts as exact.
 
 use image::RgbImage;
 use serde_json::Value;
@@ -11,18 +11,18 @@ use super::{
     textbook::{Program, SAMPLINGS},
 };
 
-/// A picture of a program with known mistakes.
+/// A picture by a program with known mistakes.
 pub struct Case {
     pub title: String,
-    /// The program without the mistakes. `text` is its scene.
+    /// The program without the mistakes.
     right: Program,
     pub text: String,
     pub mistakes: Vec<&'static Mistake>,
 }
 
 impl Case {
-    /// Parses a title, such as `figure 320x180 4 Jittered: Ball.color + Sail.normal` or `street
-    /// 96x64 1 Random: right`.
+    /// Parses the title of a picture, such as `figure 320x180 4 Jittered: Ball.color + Sail.normal`
+    /// or `street 96x64 1 Random: right`.
     pub fn of(title: &str) -> Self {
         let (picture, names) = title.split_once(": ").unwrap();
         let [name, size, samples, sampling] = picture.split(' ').collect::<Vec<_>>()[..] else {
@@ -49,15 +49,15 @@ impl Case {
         }
     }
 
-    /// Renders the picture of the program with the mistakes.
+    /// Renders the picture with the mistakes in the program.
     pub fn picture(&self) -> RgbImage {
         let mut program = self.right.clone();
         self.mistakes.iter().for_each(|one| one.make(&mut program));
         program.render()
     }
 
-    /// Returns whether `answer`, the output of `diff --format json`, names all mistakes and no
-    /// others.
+    /// Returns whether `answer`, the output of `diff --format json`, names all mistakes of the
+    /// picture and no others.
     pub fn is_judged_correctly(&self, answer: &Value) -> bool {
         let named = answer["mistakes"].as_array().map_or(&[][..], Vec::as_slice);
         if self.mistakes.is_empty() {
@@ -69,8 +69,8 @@ impl Case {
     }
 }
 
-/// Returns whether one of the accepted answers for `mistake` is in `named`, a list from the output
-/// of `diff`.
+/// Returns whether `named`, a list from the output of `diff`, contains an accepted answer for
+/// `mistake`.
 fn is_named(mistake: &Mistake, named: &[Value]) -> bool {
     mistake.name.split('|').any(|name| {
         let (id, words) = name.split_once(' ').unwrap_or((name, ""));

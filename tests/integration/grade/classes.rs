@@ -1,5 +1,5 @@
-//! Classes as they are handed in: exports of Gradescope, GitHub Classroom and Moodle, with
-//! unrelated files in them.
+//! Tests with classes as students hand them in: exports of Gradescope, GitHub Classroom and Moodle,
+//! with unrelated files in them.
 
 use std::{
     fs::File,
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::{program::Folder, table::rows};
 
-/// A small scene whose mistakes are found quickly.
+/// A small scene, so that its mistakes are found quickly.
 pub const SCENE: &str = "image { width 24 height 16 background navy }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sphere Ball { center (-1, 1, 0) }
@@ -34,7 +34,8 @@ pub fn folder() -> Folder {
     folder
 }
 
-/// Writes files into a folder. Each has a path, and either a text or the name of a picture to copy.
+/// Writes files into a folder. Each is given by its path, and by a text or the name of a picture to
+/// copy.
 pub fn put(folder: &Folder, files: &[(&str, &str)]) {
     for (path, content) in files {
         if content.ends_with(".png") {
@@ -52,7 +53,7 @@ fn age(folder: &Folder, path: &str, hours: u64) {
     file.set_modified(time).unwrap();
 }
 
-/// Grades a class with `arguments`. Returns the JSON object of each student.
+/// Grades a class with the arguments `arguments`. Returns the JSON object of each student.
 pub fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
     let said = folder.run(&format!("grade a.scn {arguments} --format json"));
     assert_eq!(
@@ -66,8 +67,8 @@ pub fn graded(folder: &Folder, arguments: &str, status: i32) -> Vec<Value> {
         .collect()
 }
 
-/// Compares the JSON objects of students by student, file, verdict, and the files that were not
-/// compared.
+/// Compares the JSON objects of students by the student's name, the file, the verdict, and the
+/// files that were not compared.
 #[track_caller]
 pub fn assert_lines(found: &[Value], expected: &[(&str, &str, &str, &[&str])]) {
     let said = |line: &Value| {
@@ -137,7 +138,7 @@ fn an_export_of_gradescope_is_a_class() {
             "wrong",
             &["photo.heic", LOGO],
         ),
-        // The template's logo is in every folder, so it is nobody's picture.
+        // The logo of the template is in every folder, so it is not the picture of any student.
         ("Dora", "export/submission_3", "error", &[LOGO]),
         ("eve@example.org", "export/submission_4", "error", &[]),
     ];
@@ -161,7 +162,7 @@ fn clones_of_github_classroom_are_a_class() {
             put(&folder, &[(&path, content)]);
         }
     }
-    // In a clone, the times of files have no meaning, so an older file is no worse.
+    // The files of a clone have arbitrary times, so an older file is not worse than a newer one.
     age(&folder, "hw1-submissions/hw1-anna/render.png", 5);
     put(
         &folder,
@@ -219,12 +220,12 @@ fn clones_of_github_classroom_are_a_class() {
             ),
         ],
     );
-    // The students ben and cy handed in the same wrong picture.
+    // The students ben and cy have handed in the same wrong picture.
     let equal: Vec<_> = chosen.iter().map(|line| &line["equal_to"]).collect();
     assert_eq!(equal, [&Value::Null, &json!(["cy"]), &json!(["ben"])]);
 }
 
-/// Moodle's export: names of folders and files, and their contents.
+/// An export of Moodle: names of folders and files, and their contents.
 const MOODLE: [(&str, &str); 9] = [
     ("Anna Li_11_assignsubmission_file_render.png", "right.png"),
     ("Ben_12_assignsubmission_file_/out/new.png", "red.png"),
@@ -284,7 +285,8 @@ fn an_export_of_moodle_is_a_class() {
     );
     let numbers: Vec<_> = found.iter().map(|line| &line["number"]).collect();
     assert_eq!(numbers, ["14", "11", "12", "13", "15"]);
-    // Control characters in a name are escaped in a terminal, and formulas in a table.
+    // In a terminal, control characters in a name are escaped. In a table, a name that begins like
+    // a formula is also preceded by a `'`.
     let table = folder.told("grade a.scn 'handed in' -o out", 1);
     assert!(table.contains("=1+1\\u{202e}  "), "{table}");
     assert!(folder.text("out/grade.csv").contains("\"'=1+1\\u{202e}\""));
@@ -321,7 +323,7 @@ fn loose_files_belong_to_students_and_the_output_folder_does_not() {
     }
 }
 
-/// A file that is in every folder is a template only if somebody has another file.
+/// A file that is in every folder counts as a template only if a student has another file as well.
 #[test]
 fn a_picture_in_every_folder_is_a_template_only_beside_others() {
     let folder = folder();
@@ -339,8 +341,8 @@ fn a_picture_in_every_folder_is_a_template_only_beside_others() {
             ("ben", "class/ben/render.png", "wrong", &[]),
         ],
     );
-    // If one student has a second picture, the common one becomes a template, unless `--picture`
-    // names it.
+    // One student has a second picture. The picture that all students have then counts as part of
+    // the assignment's template, unless `--picture` names it.
     put(&folder, &[("class/ben/test.png", "size.png")]);
     let given = ["render.png (equal in every folder: --picture chooses it)"];
     let others: &[(&str, &str, &str, &[&str])] = &[
@@ -360,7 +362,7 @@ fn a_picture_in_every_folder_is_a_template_only_beside_others() {
     assert_eq!(none.matches(words).count(), 2, "{none}");
 }
 
-/// A folder that contains an exported class is graded as the class, not as one student.
+/// A folder that contains an export of a class is graded as the class rather than as one student.
 #[test]
 fn a_folder_around_an_export_is_graded_as_the_export() {
     let folder = folder();
@@ -374,8 +376,8 @@ fn a_folder_around_an_export_is_graded_as_the_export() {
         ("h/hw-submissions/hw-anna/x.png", "right.png"),
         ("h/hw-submissions/hw-anna/.git/HEAD", "ref"),
         ("h/hw-submissions/hw-ben/.git/HEAD", "ref"),
-        // These are two students: one has a clone in the folder, the other a file with another
-        // student's name.
+        // The files belong to two students. One has a clone in the folder, the other a file with
+        // the name of another student.
         ("s/anna/tracer/x.png", "right.png"),
         ("s/anna/tracer/.git/HEAD", "ref"),
         ("s/ben/Li_3_assignsubmission_file_x.png", "red.png"),
@@ -425,7 +427,7 @@ fn a_folder_around_an_export_is_graded_as_the_export() {
     }
 }
 
-/// The arguments into which a shell expands `class/*` are graded as the class.
+/// A shell expands `class/*` into a list of folders. This list is graded as the class.
 #[test]
 fn the_folders_of_a_class_may_be_listed() {
     let folder = folder();
@@ -445,7 +447,7 @@ fn the_folders_of_a_class_may_be_listed() {
         ("class/ben/render.png", "red.png"),
         ("class/cy/out/x.png", "red.png"),
         ("class/dora.png", "right.png"),
-        // The folders `one` and `two` are two classes.
+        // The folders `one` and `two` are different classes.
         ("one/anna/x.png", "right.png"),
         ("two/anna/x.png", "red.png"),
         ("two/ben.png", "red.png"),

@@ -1,4 +1,4 @@
-//! The command `grade`: it prints a line for each picture, and writes a page.
+//! Tests of the command `grade`: it prints a line for each picture, and writes a page.
 
 use std::fs;
 
@@ -13,8 +13,8 @@ triangle Sail { centroid (0.8, 1, 0.6) normal (0.3, 0, 1) sides (2, 2, 1) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// Rows of a file, the arguments of `render` that make it, its verdict, and the id of its mistake.
-/// In `scatter.png`, a third of the pixels has no sample.
+/// Rows of a file name, the arguments of `render` that make the file, its verdict, and the name of
+/// its mistake. In `scatter.png`, a third of the pixels has no sample.
 const PICTURES: &str = "
     crop.png -> --set sampler.method=exact --crop 8,4,40,30 -> right ->
     exact.exr -> --set sampler.method=exact -> right ->
@@ -24,14 +24,14 @@ const PICTURES: &str = "
     sky.png -> --set sampler.method=exact --set image.background=red -> wrong -> background
 ";
 
-/// Creates a folder with the scene in `a.scn`, and the pictures in a folder `class`.
+/// Creates a folder with the scene in `a.scn`, and with pictures in the folder `class`.
 fn class() -> Folder {
     let folder = Folder::with([("a.scn", SCENE)]);
     fs::create_dir(folder.path("class")).unwrap();
     for [name, arguments, _, _] in rows(PICTURES) {
         folder.told(&format!("render a.scn -o class/{name} {arguments}"), 0);
     }
-    // Saving the picture anew removes the scene that it carries.
+    // A PNG file can contain its scene. Saving the picture again removes the scene.
     let sky = folder.path("class/sky.png");
     image::open(&sky).unwrap().to_rgb8().save(&sky).unwrap();
     folder
@@ -75,7 +75,7 @@ fn each_picture_has_a_line_in_every_form() {
         "{}",
         rows[5]
     );
-    // All rows of the CSV table have the same number of cells.
+    // All rows of the CSV table have equally many cells.
     let mut table = csv::Reader::from_reader(csv.as_bytes());
     assert_eq!(
         table.records().filter(Result::is_ok).count(),
@@ -96,7 +96,7 @@ fn each_picture_has_a_line_in_every_form() {
         page.contains("<code>--set image.background='#ff0000'</code>"),
         "{page}"
     );
-    // `diff` gives the same answer as `grade`.
+    // The commands `diff` and `grade` give the same answer.
     let diff = folder.run("diff class/size.png a.scn --format json").json();
     for (key, value) in diff.as_object().unwrap() {
         assert_eq!(&graded[4][key], value, "{key}");
@@ -120,7 +120,7 @@ fn each_picture_has_a_line_in_every_form() {
         "grade a.scn class/exact.exr class/random.png --threads 1",
         0,
     );
-    // A file on the command line is a picture, whatever its extension.
+    // A file on the command line counts as a picture, whatever its extension is.
     folder.write("picture", folder.read("class/exact.exr"));
     folder.told("grade a.scn picture --picture x.png", 0);
     let read = folder.run_reading("grade a.scn -", folder.read("class/exact.exr"));
@@ -155,7 +155,7 @@ fn a_picture_that_cannot_be_compared_is_a_line_of_its_own() {
     assert_eq!(graded[3]["verdict"], "right");
     let page = folder.text("graded/index.html");
     assert_eq!(page.matches("<tr class=\"error\"").count(), 3);
-    // The status is 2 if none of the pictures can be compared, and 1 if only some can.
+    // The exit status is 2 if no picture can be compared, and 1 if only some can.
     folder.told("grade a.scn broken.png", 2);
     let table = folder.told("grade a.scn class/exact.exr broken.png", 1);
     assert!(table.contains("not compared: it is no picture"), "{table}");

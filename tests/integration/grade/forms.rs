@@ -1,5 +1,5 @@
-//! Output for teachers' systems: JUnit XML, Gradescope's results and Moodle's worksheet, with
-//! points.
+//! Tests of output for teachers' systems: JUnit XML, Gradescope's results and Moodle's worksheet,
+//! with points.
 
 use serde_json::Value;
 
@@ -21,7 +21,7 @@ fn class() -> Folder {
         ),
     ];
     put(&folder, &files);
-    // This picture differs from the scene in a way that no mistake explains.
+    // The picture differs from the scene in a way that no known mistake explains.
     let mut stripes = image::open(folder.path("right.png")).unwrap().to_rgb8();
     for (x, y, pixel) in stripes.enumerate_pixels_mut() {
         if (x + 2 * y) % 5 < 2 {
@@ -142,7 +142,7 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
         assert_eq!(failed, expected, "{student}");
     }
     assert!(results("D").get("score").is_none());
-    // A single student's result goes to standard output, where an autograder expects it.
+    // The result for a single student goes to standard output, where an autograder expects it.
     let said = folder.run("grade a.scn class/F_6_assignsubmission_file_f.png --format gradescope");
     assert_eq!(said.status, 1);
     let found: Value = serde_json::from_slice(&said.output).unwrap();
@@ -174,7 +174,7 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
     );
     assert_eq!(folder.text("work.csv"), WORKSHEET);
     let filled = said.text();
-    // Rows of the worksheet in which nothing changes are kept byte for byte.
+    // Rows of the worksheet that do not change are kept byte for byte.
     for row in [
         "\"Participant 99\",\"No, \"\"body\"\"\",,20.00,Yes,\"Monday, 3 March\",\"stays\"\r\n",
         "\"Participant 3\",C,2.00,20.00,No,-,\"stays\"\r\n",
@@ -212,8 +212,8 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         ]
     );
     assert!(new[1][6].contains("<br>- the image has a wrong colour"));
-    // Without a scheme of points, the grades are kept. In another language, the columns have other
-    // names.
+    // Without a scheme of points, the grades in the worksheet stay as they are. In other languages,
+    // the columns have other names.
     let german = WORKSHEET
         .replace("Grade,", "Bewertung,")
         .replace("Feedback comments", "Feedback als Kommentar");
@@ -237,7 +237,7 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         told.contains("its grades go up to 10, and the points to 20"),
         "{told}"
     );
-    // Spreadsheets save a worksheet with semicolons or in UTF-16.
+    // Spreadsheet programs save a worksheet with semicolons or in UTF-16.
     for bytes in [
         WORKSHEET.replace(',', ";").into_bytes(),
         WORKSHEET
@@ -290,7 +290,8 @@ fn a_crop_is_compared_with_the_part_that_is_named() {
         "render a.scn -o part.png --crop 4,3,10,12 --set sampler.method=exact",
         0,
     );
-    // Saving the picture anew removes the crop that it carries.
+    // A PNG file can state which crop of the picture it is. Saving it again removes this
+    // information.
     let path = folder.path("part.png");
     image::open(&path).unwrap().to_rgb8().save(&path).unwrap();
     for command in ["grade a.scn part.png", "diff part.png a.scn"] {

@@ -1,15 +1,15 @@
-//! What a ray of the textbook's tracer hits, and the colour that it sees.
+//! Ray tracer of a textbook: what a ray hits, and the colour that is seen there.
 
 use glam::DVec3;
 
 use super::textbook::{Behind, Object, Program, Roots, Shape, Squares, Visible};
 
 impl Program {
-    /// Returns the colour that a ray sees, and the share of its light. The ray starts at `from`,
-    /// and `view` is the view direction.
+    /// Returns the colour of the surface that a ray sees, and the factor by which shading
+    /// multiplies the colour's light. The ray starts at `from`; `view` is the view direction.
     pub fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> ([u8; 3], f64) {
-        // With a mistake, surfaces behind the eye count as nearest, or are compared by their
-        // distance.
+        // The program may treat surfaces behind the eye wrongly: as nearer than all others, or like
+        // surfaces in front, by their distance.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t
@@ -97,7 +97,7 @@ impl Program {
         if is_second { second } else { object.color }
     }
 
-    /// Returns the ray parameters at which a ray hits a shape.
+    /// Returns the parameters t of the points eye + t·ray at which a ray hits a shape.
     fn hits(&self, shape: &Shape, eye: DVec3, ray: DVec3) -> [Option<f64>; 2] {
         match *shape {
             Shape::Sphere(center, radius) => {
@@ -150,7 +150,7 @@ impl Program {
 }
 
 impl Shape {
-    /// Returns the unit normal at a point of its surface, to either side.
+    /// Returns a unit normal at a point of the shape's surface. It may point to either side.
     fn normal(&self, at: DVec3) -> DVec3 {
         match *self {
             Shape::Sphere(center, _) => (at - center).normalize(),

@@ -1,4 +1,4 @@
-//! Mistakes that a class makes, as changes of a correct program.
+//! Mistakes that students make, as changes of a correct program.
 
 use glam::{DVec3, dvec3};
 use image::{RgbImage, imageops};
@@ -11,31 +11,31 @@ use super::{
     },
 };
 
-/// A mistake that a student's program may have.
+/// A mistake that the program of a student may have.
 pub struct Mistake {
-    /// Accepted answers of `diff`, separated by bars. Each is an id, or an id and a part of its
-    /// message, or the target of its `--set`.
+    /// Answers of `diff` that are accepted for the mistake, separated by bars. Each is a mistake's
+    /// name, a name with a part of its message, or the target of its `--set` argument.
     pub name: &'static str,
     change: Change,
 }
 
-/// The change of a correct program, or of its picture, that makes a mistake.
+/// The change of a correct program, or of its picture, that makes the mistake.
 enum Change {
-    /// Changes the program. A scene that lacks the object of the mistake stays unchanged.
+    /// Changes the program. Does nothing if the scene lacks the object that the mistake is about.
     Program(fn(&mut Program)),
-    /// Changes each pixel's bytes, after rendering.
+    /// Changes the bytes of each pixel after rendering.
     Pixels(fn([u8; 3]) -> [u8; 3]),
-    /// Changes the whole picture, once all of its pixels are converted to bytes.
+    /// Changes the whole picture after all of its pixels are converted to bytes.
     Picture(fn(&RgbImage) -> RgbImage),
 }
 
 impl Mistake {
-    /// Returns the mistake's name in the title of a picture.
+    /// Returns the name of the mistake in the title of a picture.
     pub fn title(&self) -> &'static str {
         self.name.split('|').next().unwrap_or_default()
     }
 
-    /// Makes the mistake in a program.
+    /// Puts the mistake into a program.
     pub fn make(&self, program: &mut Program) {
         match self.change {
             Change::Program(change) => change(program),
@@ -69,7 +69,8 @@ pub const GROUPS: [&[Mistake]; 5] = [
     OTHERS,
 ];
 
-/// Mistakes of a student's program in the encoding, the exposure or the place of the whole picture.
+/// Mistakes of a student's program in the encoding, the exposure or the position of the whole
+/// picture.
 const OF_THE_PICTURE: &[Mistake] = &[
     picture("mirrored", imageops::flip_horizontal),
     picture("upside_down", imageops::flip_vertical),
@@ -102,8 +103,8 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("up_not_orthogonal", |p| p.axes = Axes::UpAsV),
     row("w_not_normalised", |p| p.axes = Axes::LongW),
     row("parallel_rays", |p| p.axes = Axes::Parallel),
-    // Without the eye, the picture may show nothing of the scene. Then, `nothing_seen` is all that
-    // can be found.
+    // If the eye is not subtracted, the picture may show nothing of the scene. Then `nothing_seen`
+    // is the only possible answer.
     row("eye_not_subtracted|nothing_seen", |p| {
         p.axes = Axes::WithoutEye
     }),
@@ -119,7 +120,7 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("camera.d|camera.fov", |p| p.distance *= 0.8),
     row("camera.eye", |p| p.eye += dvec3(0.4, -0.3, 0.5)),
     row("camera.lookat", |p| p.lookat += dvec3(0.3, 0.2, -0.1)),
-    // Numbers that are slightly wrong.
+    // The following mistakes are numbers that are slightly wrong.
     row("roll has a wrong value|camera.roll", |p| {
         p.roll += 1_f64.to_radians()
     }),
@@ -130,7 +131,7 @@ const OF_THE_CAMERA: &[Mistake] = &[
     row("lookat has a wrong value", |p| p.lookat.z += 0.3),
 ];
 
-/// Mistakes of a student's program in the place, the squares or the colours of the checkerboard.
+/// Mistakes of a student's program in the position, the squares or the colours of the checkerboard.
 const OF_THE_BOARD: &[Mistake] = &[
     row("board_swapped", |p| p.parity = 1),
     row("board_truncated", |p| p.squares = Squares::Truncated),
@@ -204,7 +205,7 @@ pub const OF_THE_OBJECTS: &[Mistake] = &[
     }),
 ];
 
-/// Mistakes of a student's program beyond the other groups. Some change only few of the scenes.
+/// Mistakes of a student's program that fit no other group. Some of them change only few scenes.
 const OTHERS: &[Mistake] = &[
     picture("transposed", |picture| {
         imageops::flip_horizontal(&imageops::rotate90(picture))
@@ -292,7 +293,7 @@ const OTHERS: &[Mistake] = &[
     row("eye_lookat_exchanged", |p| {
         (p.eye, p.lookat) = (p.lookat, p.eye)
     }),
-    // The field of view is 40°. The program takes half of it, 20°, for 20 radians.
+    // The field of view is 40°. The program takes its half, 20°, for 20 radians.
     row("fov_unit", |p| p.distance = 1.0 / libm::tan(20.0)),
     row("colors_exchanged", |p| {
         let colors = ["Ball", "Crate"].map(|name| p.object(name).map(|object| object.color));
@@ -330,7 +331,8 @@ const OTHERS: &[Mistake] = &[
     }),
 ];
 
-/// Decodes an sRGB byte to light, and encodes it again by the exponent 1/`power` instead of sRGB.
+/// Decodes an sRGB byte to light. Then encodes it with the exponent 1/`power` instead of the sRGB
+/// curve.
 fn power(byte: u8, power: f64) -> u8 {
     (255.0 * libm::pow(light(f64::from(byte) / 255.0), 1.0 / power)).round() as u8
 }
@@ -339,17 +341,18 @@ fn decoded_twice(byte: u8) -> u8 {
     (255.0 * light(light(f64::from(byte) / 255.0))).round() as u8
 }
 
-/// Multiplies bytes.
+/// Multiplies the bytes of a colour by the factor `by`.
 fn scaled(color: [u8; 3], by: f64) -> [u8; 3] {
     color.map(|byte| (by * f64::from(byte)).round() as u8)
 }
 
-/// Returns the share of a distant light that a surface gets.
+/// Returns the fraction of a distant lamp's light that a surface gets: the cosine of the angle
+/// between its normal and the light's direction, or 0 if the lamp is behind the surface.
 fn lit(normal: DVec3, light: DVec3) -> f64 {
     normal.dot(light.normalize()).max(0.0)
 }
 
-/// Returns the weighted mean of a colour's encoded channels, as a gray.
+/// Returns a gray: the weighted mean of the encoded channels of a colour.
 fn gray(color: [u8; 3], weights: [f64; 3]) -> [u8; 3] {
     let sum: f64 = weights.iter().sum();
     let parts = color.iter().zip(weights);
@@ -363,7 +366,7 @@ fn board(program: &mut Program, change: impl Fn(&mut f64, &mut f64, &mut [u8; 3]
     }
 }
 
-/// Moves the box's least and greatest corner, each by a multiple of the box's size.
+/// Moves the least and the greatest corner of the box, each by a multiple of the box's size.
 fn stretch(program: &mut Program, by: [f64; 2]) {
     if let Some(Shape::Box(least, greatest)) = program.shape("Crate") {
         let size = *greatest - *least;

@@ -1,4 +1,5 @@
-//! Grading: pictures of an independent ray tracer judged by the library, and the command `grade`.
+//! Tests of grading: the library judges pictures by an independent ray tracer, and the command
+//! `grade` judges classes.
 
 mod archives;
 mod case;
@@ -30,10 +31,10 @@ use crate::{
     images,
 };
 
-/// Titles of pictures, one per line: right pictures by every sampling, and the mistakes that a
-/// class makes. Each picture has as many samples as its mistake needs to be visible. For example,
-/// decoding with the power 2.2 instead of sRGB is a smaller difference than the noise at edges with
-/// 16 samples per pixel.
+/// Titles of pictures, one per line: right pictures by every sampling, and pictures with the
+/// mistakes that students make. Each picture has as many samples per pixel as its mistake needs to
+/// be visible. For example, with 16 samples, noise at edges hides the use of the power 2.2 instead
+/// of the sRGB curve.
 const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);
@@ -50,7 +51,7 @@ fn the_mistakes_of_a_class_are_named(effort: Effort) {
     assert!(judged.is_empty(), "{}", judged.join("\n"));
 }
 
-/// The benchmark makes each mistake in each scene, and leaves out pictures that do not change.
+/// The benchmark puts each mistake into each scene, and leaves out pictures that do not change.
 #[test]
 fn every_mistake_can_be_made_in_every_scene() {
     for name in [
@@ -76,20 +77,22 @@ fn every_mistake_can_be_made_in_every_scene() {
     }
 }
 
-/// Judges the case's picture. If the verdict is wrong, returns the case's title and the verdict.
+/// Judges the picture of a case. If the verdict is wrong, returns the title of the case and the
+/// verdict.
 fn wrongly_judged(case: &Case) -> Option<String> {
     let picture = case.picture();
     let size = picture.dimensions().into();
     let file = images::png(size, ColorType::Rgb, BitDepth::Eight, picture.as_raw());
     let answer = answer(&case.text, &[], &file);
-    // A shift of all samples by half a pixel changes only edges, but where a picture has it, it
-    // explains most of the difference. A reported shift that explains less than half is wrong.
+    // A shift of all samples by half a pixel changes only edges, but it explains most of the
+    // difference if it is really there. A reported shift that explains less than half is wrong.
     let is_half = |one: &Value| one["id"] == "half_pixel" && one["explains"].as_f64() < Some(0.5);
     let mut mistakes = answer["mistakes"].as_array().unwrap().iter();
     if !case.is_judged_correctly(&answer) || mistakes.any(is_half) {
         return Some(format!("{}: {}", case.title, answer["line"]));
     }
-    // With the reported `--set` arguments, the scene's picture must equal the judged picture.
+    // With the reported `--set` arguments, the picture of the scene must be equal to the judged
+    // picture.
     let sets = answer["mistakes"].as_array().unwrap().iter();
     let sets: Vec<Vec<&str>> = sets
         .map(|one| {
@@ -105,7 +108,8 @@ fn wrongly_judged(case: &Case) -> Option<String> {
     (!is_right).then(|| format!("{}: with {sets:?}: {}", case.title, told["line"]))
 }
 
-/// Judges the picture in `file` against the scene `text` with the `--set` arguments `sets`.
+/// Judges the picture `file` against the scene `text` with the `--set` arguments `sets`. Returns
+/// the verdict as JSON.
 fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     let mut sources = Sources::new(Source::from_text("a.scn", text));
     sets.iter().for_each(|set| sources.push_set(set));
@@ -124,7 +128,7 @@ fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {
     Value::Object(verdict.unwrap().to_json())
 }
 
-/// A part at one side of a mirrored picture shows what lies on the other side of the scene.
+/// If a picture is mirrored, a part at one side of it shows what the scene has on the other side.
 #[test]
 fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
     let scene = |sets: &[&str]| {

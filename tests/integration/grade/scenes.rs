@@ -1,4 +1,4 @@
-//! The scenes of the pictures: as programs, and as Pinhole's text.
+//! Scenes for the test pictures, each as a program of a student and as text in Pinhole's language.
 
 use glam::{DVec3, dvec3};
 
@@ -7,10 +7,10 @@ use super::textbook::{
 };
 
 /// Returns the scene `name`, as a correct program and as text. `figure` is the assignment's
-/// picture, turned a little. `street` has the same names, a closer camera, a far plane and more
-/// objects. The other scenes are variants of the figure for mistakes that need one: a near plane
-/// that clips objects, another lens, a low window, a box with colours for its faces, a ball that is
-/// sunk into the floor, the floor as the first object, or no roll.
+/// picture, turned a little. `street` has the same names of objects, a closer camera, a far plane
+/// and more objects. The other scenes are variants of the figure for mistakes that need them: a
+/// near plane that clips objects, another lens, a low window, a box with different colours for its
+/// faces, a ball sunk into the floor, the floor as the first object, or no roll.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),
@@ -73,8 +73,8 @@ box House { center (-2.25, 1, -3)  size (1.5, 2, 2)  color #8b4513 }
 ";
 
 fn figure() -> Program {
-    // This is the assignment's triangle, given by its vertices: the two ends of the base and the
-    // apex.
+    // The triangle is that of the assignment, given by its vertices: the two ends of the base and
+    // the apex.
     let (base, height) = (1.0, 15_f64.sqrt() / 2.0);
     let normal = dvec3(0.3, 0.0, 1.0).normalize();
     let right = DVec3::Y.cross(normal);
@@ -174,7 +174,7 @@ fn street() -> Program {
     street
 }
 
-/// Moves an object, if the scene has it.
+/// Moves an object of the scene. Does nothing if the scene lacks the object.
 pub fn shift(program: &mut Program, name: &str, by: DVec3) {
     match program.shape(name) {
         Some(Shape::Sphere(center, _)) => *center += by,

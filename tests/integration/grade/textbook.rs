@@ -1,10 +1,10 @@
-//! A ray tracer as a class writes it, in plain `f64`, from the formulas of a textbook (Suffern
+//! A ray tracer as a student writes it, in plain `f64`, with the formulas of a textbook (Suffern
 //! 2007, "Ray Tracing from the Ground Up", chapters 3, 4, 9 and 19). It shares no code with
 //! Pinhole, so its pictures are independent evidence.
 //!
-//! In: a [`Program`], which is a scene and the way in which the program treats it. Out: a picture
-//! in bytes. Many fields of a program select a mistake; the module `mistakes` lists the mistakes of
-//! a class.
+//! In: a [`Program`], i.e. a scene and the way in which a student's program treats it. Out: a
+//! picture in bytes. Many fields of a program choose a mistake; the module `mistakes` lists the
+//! mistakes that students make.
 
 use std::array;
 
@@ -28,78 +28,86 @@ pub enum Shape {
 /// An object of a scene: a shape with a name and a colour.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// Name in the scene's text.
+    /// Name of the object in the text of the scene.
     pub name: &'static str,
     /// Shape of the object.
     pub shape: Shape,
-    /// Colour of the object; of a board, its first colour.
+    /// Colour of the object; for a checkerboard, its first colour.
     pub color: [u8; 3],
 }
 
-/// How the program converts light to a byte.
+/// The way in which a student's program converts light to a byte.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Encoding {
-    /// Encodes by the curve of sRGB.
+    /// Encodes the light by the curve of sRGB, which is correct.
     Srgb,
-    /// Does not encode: the byte is proportional to the light.
+    /// Does not encode: the byte is proportional to the light, which is a mistake.
     None,
-    /// Encodes the light by the sRGB curve, and the result once more.
+    /// Encodes the light by the curve of sRGB, and then the result once more, which is a mistake.
     Twice,
-    /// Encodes by a power whose exponent is the reciprocal of this number.
+    /// Raises the light to the power 1/x, where x is the contained number.
     Power(f64),
 }
 
-/// Which of the surfaces that a ray hits the program shows.
+/// Choice of the surface that a student's program shows if a ray hits several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
     /// The nearest surface, which is correct.
     Nearest,
-    /// The surface of the first object in the scene.
+    /// The surface of the object that comes first in the scene, which is a mistake.
     First,
-    /// The surface of the last object in the scene.
+    /// The surface of the object that comes last in the scene, which is a mistake.
     Last,
-    /// The farthest surface.
+    /// The farthest surface, which is a mistake.
     Farthest,
 }
 
-/// How the program treats surfaces behind the eye.
+/// The way in which a student's program treats surfaces behind the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Behind {
     /// Surfaces behind the eye are not visible, which is correct.
     Unseen,
-    /// Surfaces behind the eye are compared by their distance, as if they were before it.
+    /// Surfaces behind the eye are compared by their distance, as if they were in front of it.
     ByDistance,
-    /// Surfaces behind the eye count as nearer than all surfaces before it.
+    /// Surfaces behind the eye count as nearer than all surfaces in front of it.
     First,
 }
 
-/// How the program computes the number of a board's square from the two coordinates x and z, in
-/// units of the square's side. Squares of odd number have the second colour.
+/// The way in which a student's program computes the number of a checkerboard's square from the
+/// coordinates x and z, in units of the square's side. Squares with odd numbers have the second
+/// colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Squares {
-    /// Adds the two coordinates, each rounded down.
+    /// The number of a square is the sum of its two coordinates, each rounded down. This is
+    /// correct.
     Floored,
-    /// Adds the two coordinates, each truncated.
+    /// The number of a square is the sum of its two coordinates, each truncated towards zero.
     Truncated,
-    /// Takes the remainder of the sum by 2, which is −1 for negative odd sums.
+    /// The number is the remainder of the coordinates' sum after division by 2. It is −1 for
+    /// negative odd sums.
     Remainder,
-    /// Compares the remainders of the two coordinates by 2; the number is odd if they differ.
+    /// The number is odd if the remainders of the two coordinates after division by 2 differ.
     Remainders,
-    /// Adds the two coordinates, each rounded to the nearest integer.
+    /// The number of a square is the sum of its two coordinates, each rounded to the nearest
+    /// integer.
     Rounded,
-    /// Adds the first coordinate, rounded to the nearest integer, and the second, rounded down.
+    /// The number is the first coordinate, rounded to the nearest integer, plus the second, rounded
+    /// down.
     Moved,
-    /// Adds the two coordinates and rounds the sum down.
+    /// The number of a square is the sum of its two coordinates, rounded down only afterwards.
     Sum,
-    /// Takes the first coordinate, rounded down, so that the board has stripes.
+    /// The number of a square is the first coordinate, rounded down, so that the board has stripes.
     Stripes,
-    /// Takes the second coordinate, rounded down.
+    /// The number of a square is the second coordinate, rounded down, so that the board has
+    /// stripes.
     StripesZ,
-    /// Adds the first coordinate, truncated, and the second, rounded down.
+    /// The number is the first coordinate, truncated towards zero, plus the second, rounded down.
     TruncatedX,
-    /// Adds the first coordinate, rounded down, and the second, rounded to the nearest integer.
+    /// The number is the first coordinate, rounded down, plus the second, rounded to the nearest
+    /// integer.
     MovedZ,
-    /// Adds the two coordinates, each rounded down, of a board that is turned by 45 degrees.
+    /// The number is the sum of the coordinates, each rounded down, of a board that is turned by 45
+    /// degrees.
     Turned,
     /// The number is odd if at least one of the two coordinates, rounded down, is odd.
     BothEven,
@@ -107,53 +115,55 @@ pub enum Squares {
     Sines,
 }
 
-/// The roots of a sphere that are tried.
+/// Roots of the quadratic equation of a sphere, a·t² + b·t + c = 0, that a student's program tries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Roots {
-    /// Both, the nearer one first.
+    /// Both roots, the nearer one first. This is correct.
     Both,
-    /// The nearer one.
+    /// Only the nearer root.
     Lesser,
-    /// The farther one.
+    /// Only the farther root.
     Greater,
-    /// Both, multiplied by a instead of divided by it.
+    /// Both roots, but multiplied by the coefficient a of t² instead of divided by it.
     TimesA,
 }
 
-/// Mistake in the camera's axes or rays. The axes are u (right), v (up) and w (against the view
-/// direction).
+/// Mistake of a student's program in the camera's axes or rays. The axes are u (right), v (up) and
+/// w (against the view direction).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Axes {
-    /// No mistake.
+    /// The axes and rays are correct.
     Right,
-    /// The roll computes v from the rolled u instead of the unrolled one.
+    /// The roll computes the axis v from the rolled axis u instead of the unrolled one.
     NewU,
-    /// The up vector is used as v.
+    /// The up vector itself is used as the axis v.
     UpAsV,
-    /// The vector w is not normalised.
+    /// The axis w is not normalised.
     LongW,
-    /// w is computed from `lookat` without subtracting the eye.
+    /// The axis w is computed from `lookat` without subtracting the eye.
     WithoutEye,
-    /// Only the vector u is rolled.
+    /// Only the axis u is rolled.
     RolledU,
-    /// A ray's angle grows linearly with the distance from the picture's middle.
+    /// The angle of a ray to the view direction grows linearly with the distance from the picture's
+    /// middle.
     Fisheye,
-    /// Rays are not normalised.
+    /// The directions of rays are not normalised.
     LongRays,
-    /// All rays have the direction −w.
+    /// All rays have the same direction, −w, i.e. the view direction.
     Parallel,
 }
 
-/// How the program places the samples of a pixel.
+/// The way in which a student's program places the samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sampling {
-    /// On a regular grid.
+    /// The samples are on a regular grid.
     Regular,
-    /// At independent, uniform points.
+    /// The samples are at independent, uniformly distributed points.
     Random,
-    /// At a random point in each cell of a grid.
+    /// Each cell of a grid contains one sample at a random point.
     Jittered,
-    /// At the points (i/n, φ₂(i)), the same in every pixel.
+    /// Sample i of n is at the point (i/n, φ₂(i)), where φ₂ is the radical inverse in base 2. The
+    /// points are equal in every pixel.
     Hammersley,
 }
 
@@ -164,7 +174,7 @@ pub const SAMPLINGS: [Sampling; 4] = [
     Sampling::Hammersley,
 ];
 
-/// A scene, and the way in which the program treats it.
+/// A scene, and the way in which a student's program treats it.
 #[derive(Clone, Debug)]
 pub struct Program {
     /// Width and height of the picture, in pixels.
@@ -173,9 +183,9 @@ pub struct Program {
     pub eye: DVec3,
     pub lookat: DVec3,
     pub up: DVec3,
-    /// Roll in radians.
+    /// Roll of the camera, in radians.
     pub roll: f64,
-    /// Distance of the view plane from the eye, in the scene's unit, as [`Self::view_height`].
+    /// Distance of the view plane from the eye, in the scene's unit of length.
     pub distance: f64,
     pub view_height: f64,
     pub near: f64,
@@ -183,67 +193,70 @@ pub struct Program {
     /// Objects of the scene, in the order of the text.
     pub objects: Vec<Object>,
     pub sampling: Sampling,
-    /// Number of samples per pixel, a square.
+    /// Number of samples per pixel, which must be a square number.
     pub samples: u32,
-    /// Whether the window's height is used as its width.
+    /// Whether the program uses the window's height as its width.
     pub is_wide: bool,
-    /// Whether the window is as wide as it is high.
+    /// Whether the program's window is as wide as it is high.
     pub is_squeezed: bool,
-    /// Ratio of the window's width to its correct width.
+    /// Ratio of the window's width in the program to its correct width.
     pub aspect: f64,
     pub axes: Axes,
     /// Factor by which all light is multiplied; 1 is correct.
     pub gain: f64,
-    /// Whether the near and far depths are compared with distances instead of depths.
+    /// Whether the program compares near and far with distances from the eye instead of depths.
     pub clips_distances: bool,
-    /// Whether the test of one of a triangle's edges is missing.
+    /// Whether the program forgets to test one of a triangle's edges.
     pub misses_edge: bool,
     pub is_parallelogram: bool,
     pub roots: Roots,
-    /// Whether boxes have no faces perpendicular to z.
+    /// Whether the program's boxes lack the faces perpendicular to z.
     pub misses_axis: bool,
-    /// Distance from the origin, along x and z, at which boards end.
+    /// Distance from the origin, along x and z, at which the program's checkerboards end.
     pub reach: f64,
-    /// Whether boards have y and z exchanged.
+    /// Whether the program exchanges y and z of checkerboards, so that they stand upright.
     pub is_upright: bool,
-    /// Share of a colour's light that is seen, by the normal towards the eye and the ray.
+    /// Function that returns the fraction of a colour's light that is seen. Its arguments are the
+    /// surface normal towards the eye, and the ray.
     pub shade: fn(DVec3, DVec3) -> f64,
-    /// Colours of the boxes' faces perpendicular to x, y and z; `None` if faces have the box's
-    /// colour.
+    /// Colours of a box's faces perpendicular to x, y and z. If it is `None`, all faces have the
+    /// colour of the box.
     pub faces: Option<[[u8; 3]; 3]>,
-    /// Side of the square in which a pixel's samples lie, in pixels; 1 is correct.
+    /// Side of the square, in pixels, over which the program spreads the samples of a pixel; 1 is
+    /// correct.
     pub pixel: f64,
-    /// Shift of the samples to the right and down, in pixels; 0 is correct.
+    /// Distance by which the program shifts all samples to the right and down, in pixels; 0 is
+    /// correct.
     pub offset: f64,
     pub behind: Behind,
     pub visible: Visible,
     pub squares: Squares,
-    /// Number that is added to the number of each square ([`Squares`]), so that 1 swaps the board's
-    /// colours; 0 is correct.
+    /// Number that the program adds to the number of each square ([`Squares`]); 0 is correct, and 1
+    /// swaps the colours of a checkerboard.
     pub parity: i64,
     pub encoding: Encoding,
     /// Whether the program averages encoded colours instead of light.
     pub averages_encoded: bool,
-    /// Whether bytes are truncated instead of rounded.
+    /// Whether the program truncates bytes instead of rounding them.
     pub cuts_bytes: bool,
-    /// Change that is applied to each pixel's bytes.
+    /// Change that the program applies to the bytes of each pixel.
     pub change: fn([u8; 3]) -> [u8; 3],
-    /// Change that is applied to the whole picture at the end.
+    /// Change that the program applies to the whole picture at the end.
     pub afterwards: Option<fn(&RgbImage) -> RgbImage>,
 }
 
 impl Program {
-    /// Returns the object with the name `name`, or `None` if the scene lacks it.
+    /// Returns the object with the name `name`; `None` if the scene lacks it.
     pub fn object(&mut self, name: &str) -> Option<&mut Object> {
         self.objects.iter_mut().find(|object| object.name == name)
     }
 
-    /// Returns the shape of the object with the name `name`, or `None` if the scene lacks it.
+    /// Returns the shape of the object with the name `name`; `None` if the scene lacks it.
     pub fn shape(&mut self, name: &str) -> Option<&mut Shape> {
         self.object(name).map(|object| &mut object.shape)
     }
 
-    /// Renders the picture of the scene as this program does.
+    /// Renders the picture of the scene with the mistakes of the program.
     pub fn render(&self) -> RgbImage {
         let [width, height] = self.size;
         let backward = match self.axes {
@@ -318,8 +331,8 @@ impl Program {
         }
     }
 
-    /// Decodes a channel of a colour to light. The program encodes light by the inverse function,
-    /// unless `encoding` is [`Encoding::None`] or [`Encoding::Twice`].
+    /// Decodes a channel of a colour, from 0 to 1, to light. The program encodes light by the
+    /// inverse function, unless `encoding` is [`Encoding::None`] or [`Encoding::Twice`].
     fn decode(&self, part: f64) -> f64 {
         match self.encoding {
             Encoding::Power(power) => libm::pow(part, power),
@@ -359,7 +372,7 @@ impl Program {
     }
 }
 
-/// Sharpens a picture: adds to each pixel its difference from the mean of the 3 × 3 pixels around
+/// Sharpens a picture. Adds to each pixel its difference from the mean of the 3 × 3 pixels around
 /// it.
 pub fn sharpened(picture: &RgbImage) -> RgbImage {
     let around = imageops::filter3x3(picture, &[1.0; 9]);
@@ -377,7 +390,8 @@ pub fn sharpened(picture: &RgbImage) -> RgbImage {
     })
 }
 
-/// Reads rows that are `by` pixels longer or shorter than those that were written.
+/// Returns the picture that results if a program reads rows that are `by` pixels longer or shorter
+/// than the rows that were written.
 pub fn with_stride(picture: &RgbImage, by: i64) -> RgbImage {
     let [width, height] = [picture.width(), picture.height()].map(i64::from);
     RgbImage::from_fn(picture.width(), picture.height(), |x, y| {

@@ -1,4 +1,4 @@
-//! Compares meanings and diagnostics of texts with the files in `tests/language`.
+//! Compares the meanings and the diagnostics of texts with the files in `tests/language`.
 
 use pinhole::{
     diagnostic::{Diagnostic, Fix, apply},
@@ -19,8 +19,8 @@ fn code(found: &Diagnostic) -> String {
     found.code.replace("pinhole::", "")
 }
 
-/// Returns the code of a diagnostic, the number of the argument that it is about, the text under
-/// its first label, and its help. Arguments are numbered from 1; the file is 0.
+/// Returns the code of a diagnostic, the number of the `--set` argument that it is about, the text
+/// under its first label, and its help. Arguments are numbered from 1; 0 stands for the file.
 fn place(sources: &Sources, found: &Diagnostic) -> String {
     let span = found.labels[0].span;
     let argument = sources.sets().position(|(id, _)| id == span.source);
@@ -40,8 +40,8 @@ fn said(_: &Sources, found: &Diagnostic) -> String {
     format!("{}: {} | {label} | {help}", code(found), found.message)
 }
 
-/// Applies the fix `remove` to the bracketed part of `text`. Returns the new text, followed by the
-/// title of the fix, which mentions removed comments.
+/// Applies the function `remove`, which makes a fix, to the part of `text` in brackets. Returns the
+/// new text, followed by the title of the fix, which mentions removed comments.
 fn without(text: &str, remove: fn(String, Span, &Sources) -> Fix) -> String {
     let (start, end) = (text.find('[').unwrap(), text.find(']').unwrap() - 1);
     let sources = sources(&text.replace(['[', ']'], ""));

@@ -1,5 +1,5 @@
-//! Help for notations of other languages and of books: it states the intended solution, not only
-//! the word with the most similar spelling.
+//! Tests of the help for notations of other languages and of books. It states the intended
+//! solution, not only the word with the most similar spelling.
 
 use pinhole::scene;
 

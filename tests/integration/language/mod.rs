@@ -1,4 +1,5 @@
-//! Meanings of scenes; comparison of the language's reference with the program.
+//! Tests of the meanings of scenes, and of the agreement of the language's reference with the
+//! program.
 
 mod answers;
 mod help;
@@ -10,7 +11,7 @@ mod visibility;
 
 const CAMERA: &str = "camera { eye (0, 2, 8) lookat (0, 1, 0) }\n";
 
-/// Returns the codes of a scene's diagnostics, separated by spaces.
+/// Returns the codes of the diagnostics of a scene, separated by spaces.
 fn codes(text: &str) -> String {
     crate::diagnostics::codes(text, &[]).join(" ")
 }

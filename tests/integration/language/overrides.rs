@@ -1,4 +1,4 @@
-//! Overrides by `--set` arguments.
+//! Tests of values that `--set` arguments override.
 
 use pinhole::{
     scene::{self, Reading},
@@ -16,7 +16,7 @@ box Crate { center middle size (1, 1, 1) }
 checkerboard { }
 ";
 
-/// Returns, as texts, the settings of a scene and its shapes. Panics if there is no scene.
+/// Returns two texts: the settings of a scene, and its shapes. Panics if the scene has errors.
 pub fn meaning(sources: &Sources) -> [String; 2] {
     let Reading {
         scene, diagnostics, ..
@@ -27,8 +27,8 @@ pub fn meaning(sources: &Sources) -> [String; 2] {
     [format!("{settings:?}"), format!("{shapes:?}")]
 }
 
-/// In each row, the override has the same effect as replacing the second cell by the third in the
-/// text.
+/// In each row, the override has the same effect as an edit of the text that replaces the second
+/// cell by the third.
 #[test]
 fn a_set_argument_equals_the_edited_text() {
     let table = "

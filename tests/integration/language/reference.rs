@@ -72,8 +72,8 @@ fn the_reference_has_every_method_function_and_name() {
     for (method, _) in schema::METHODS {
         assert!(REFERENCE.contains(&format!("| {} |", method.name())));
     }
-    // Only the section on functions is searched, since elsewhere a name such as `min` may be a
-    // field.
+    // Only the section about functions is searched, because a name such as `min` may be a field
+    // elsewhere.
     let (_, functions) = REFERENCE.split_once("## Functions").unwrap();
     let functions = functions.split("## ").next().unwrap_or_default();
     let rows = functions.lines().filter(|line| line.starts_with('|'));

@@ -1,4 +1,4 @@
-//! Compares repeated objects with the same objects written one by one.
+//! Compares repeated objects with equal objects that are written one by one.
 
 use pinhole::{format, inspect, scene};
 
@@ -9,8 +9,8 @@ use crate::{
     table::rows,
 };
 
-/// Rows of three columns: a repeated block, the names of its objects, and the same objects written
-/// one by one.
+/// Rows of three cells: a repeated block, the names of its objects, and equal objects written one
+/// by one.
 const REPEATED: &str = "
     sphere B for i < 3 { center (i, 1, 0) } -> B[0] B[1] B[2] \
         -> sphere { center (0, 1, 0) } sphere { center (1, 1, 0) } sphere { center (2, 1, 0) }
@@ -98,7 +98,8 @@ fn set_changes_every_copy_of_a_repeated_object() {
     }
 }
 
-/// Each row has a mistake in a repeated object, and the expected code with the texts of all labels.
+/// Each row has a mistake in a repeated object, and then the expected code and the texts of all
+/// labels.
 #[test]
 fn a_mistake_in_a_repeated_object_is_reported_once() {
     let table = "
@@ -144,7 +145,7 @@ fn a_mistake_in_a_repeated_object_is_reported_once() {
     }
 }
 
-/// If a fix replaces a value that contains an index, the new value contains the index too.
+/// If a fix replaces a value that contains an index, the new value must contain the index, too.
 #[test]
 fn fixes_in_repeated_objects_keep_their_index() {
     let fields = "
@@ -183,8 +184,8 @@ fn fixes_in_repeated_objects_keep_their_index() {
     assert!(fixes > 50, "{fixes}");
 }
 
-/// A wrong head of a repeated block does not affect the next block. A repeated board causes one
-/// warning. A later `let` may have the name of the index, even if there are overrides.
+/// A wrong head of a repeated block does not affect the next block. A repeated checkerboard causes
+/// only one warning. A later `let` may have the name of an index, even if there are overrides.
 #[test]
 fn a_repetition_does_not_affect_the_text_around_it() {
     for (text, set, expected) in [

@@ -1,4 +1,4 @@
-//! White space in scenes, and the limit of nested parentheses.
+//! Tests of white space in scenes, and of the limit of nested parentheses.
 
 use proptest::{prelude::*, sample::subsequence};
 
@@ -15,7 +15,7 @@ proptest! {
     }
 }
 
-/// Generates the items of a scene in random order. Their names are often those of blocks, and the
+/// Generates the items of a scene in random order. Their names are often names of blocks, and the
 /// values of definitions end in every possible way.
 fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
     let items = vec![
@@ -50,7 +50,7 @@ fn shuffled_items() -> impl Strategy<Value = Vec<&'static str>> {
 
 #[test]
 fn nesting_beyond_256_levels_is_an_error() {
-    // The value is written in a definition, and in a field, where a minus sign may follow a name.
+    // The value is tested in a definition, and in a field, where a minus sign may follow a name.
     let of = |open: &str, inner: &str, close: &str, depth: usize| {
         let value = format!("{}{inner}{}", open.repeat(depth), close.repeat(depth));
         let [of_let, of_field] =

@@ -1,5 +1,5 @@
-//! Warnings about cameras that see nothing, and about squares too small to be visible. The warnings
-//! are never false, and most scenes of these kinds get one.
+//! Tests of the warnings about cameras that see nothing, and about squares too small to be visible.
+//! The warnings are never false, and most of these scenes get one.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use crate::{
     scenes::{exact, read, sampled, sources},
 };
 
-/// Each tested scene has only the first object of a generated scene.
+/// Each tested scene contains only the first object of a generated scene.
 #[test]
 fn nothing_seen_is_never_false_and_found_for_half_the_black_pictures() {
     let (mut warned, mut black) = (0, 0);
@@ -33,13 +33,14 @@ fn nothing_seen_is_never_false_and_found_for_half_the_black_pictures() {
         warned += u32::from(is_warned);
         black += u32::from(is_black);
     }
-    // Some black pictures get no warning. The bounds from which the warning is derived are larger
-    // than the objects, and the visible part of an object may be smaller than the error bound of a
-    // pixel.
+    // Some black pictures get no warning, for two reasons. The bounds from which the warning is
+    // derived are larger than the objects, and the visible part of an object may be smaller than
+    // the error bound of a pixel.
     assert!(black > 75 && warned * 2 > black, "{warned} of {black}");
 }
 
-/// Tests boards with smaller and smaller squares, from several points and by several methods.
+/// The boards have smaller and smaller squares. They are seen from several points and rendered by
+/// several methods.
 #[test]
 fn squares_too_small_is_never_false_and_found_for_most_plain_boards() {
     let (mut warned, mut one_colored) = (0, 0);
@@ -62,7 +63,8 @@ fn squares_too_small_is_never_false_and_found_for_most_plain_boards() {
                 let film = sampled(&read(&text));
                 let pixels = (0..16).flat_map(|y| film.row(y)).copied();
                 // Pixels that show a part of the red background have more red than green, and are
-                // left out. In the others, green is the share of the board's second colour, white.
+                // left out. In the others, green is the fraction of the board's second colour,
+                // white.
                 let seen = pixels.filter(|[red, green, _]| red - green < 0.01);
                 let greens: Vec<f64> = seen.map(|[_, green, _]| green).collect();
                 let first = greens.iter().filter(|&&green| green < 0.5).count();

@@ -1,4 +1,4 @@
-//! The library's front, as another program uses it.
+//! Tests of the library's public functions and types, as another program uses them.
 
 mod wrong_data;
 
@@ -18,14 +18,14 @@ use pinhole::{Color, Error, Method, Picture, Scene, SceneData};
 
 use crate::{program::Folder, scenes::example_text};
 
-/// Returns the texts of all scenes in a folder of the repository and in the folders in it.
+/// Collects the texts of all scenes in a folder of the repository and in its subfolders.
 fn texts_in(folder: &Path, texts: &mut Vec<(PathBuf, String)>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
             texts_in(&path, texts);
         } else if path.extension().is_some_and(|ending| ending == "scn") {
-            // Some are not UTF-8, on purpose.
+            // Some files are deliberately not UTF-8.
             if let Ok(text) = fs::read_to_string(&path) {
                 texts.push((path, text));
             }
@@ -33,7 +33,8 @@ fn texts_in(folder: &Path, texts: &mut Vec<(PathBuf, String)>) {
     }
 }
 
-/// Returns the data without what depends on the text: spans, and the names of repeated objects.
+/// Returns the data of a scene without everything that depends on its text: spans, and the names of
+/// repeated objects.
 fn without_text(data: &SceneData) -> SceneData {
     let mut data = data.clone();
     for object in data.objects_mut() {
@@ -60,7 +61,7 @@ fn a_scene_written_from_its_data_has_the_same_data() {
         let again = Scene::from_data(scene.data());
         let again = again.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         let (mut there, back) = (without_text(scene.data()), without_text(again.data()));
-        // Repeated objects have names of their own in the new text.
+        // In the new text, objects of a repeated block are written one by one and so get names.
         for (object, again) in there.objects_mut().iter_mut().zip(back.objects.iter()) {
             if object.name.is_none() {
                 object.name.clone_from(&again.name);
@@ -143,7 +144,7 @@ fn saved_pictures_have_the_bytes_that_the_program_writes() {
             let read = Picture::open(&path).unwrap();
             assert!(read.rmse(&picture).unwrap() < 0.01);
             assert_eq!(read.to_rgb8(), picture.to_rgb8());
-            // What was read can be written again, with its scene.
+            // A picture that was read from a file can be saved again, together with its scene.
             read.save(&path).unwrap();
             assert!(fs::read(&path).unwrap() == program, "{method} {ending}");
         }
@@ -219,7 +220,7 @@ fn pictures_are_judged() {
         let told = error.unwrap().to_string();
         assert_eq!(told, "the sizes differ: 95 × 54 pixels and 96 × 54");
     }
-    // A part of the picture says where it belongs.
+    // The file of a crop contains the crop's position in the whole picture.
     let folder = Folder::with([("a.scn", &example_text("figure_9_9")[..])]);
     folder.done(
         "render a.scn --set image.width=96 --set image.height=54 --crop 40,20,30,20 -o part.png",

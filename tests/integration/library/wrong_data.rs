@@ -1,5 +1,5 @@
-//! Data that no text could give are an error wherever a program can hand them in, and never a
-//! picture that looks right.
+//! Tests that data which no text of a scene could produce are reported as errors wherever a program
+//! can pass them. They never produce a picture that looks right.
 
 use std::io::Cursor;
 
@@ -17,7 +17,7 @@ use pinhole::{
 
 use crate::scenes::{exact, example, read, sampling};
 
-/// Returns the examples' first scene, small, after a change.
+/// Returns the scene of figure 9.9, with a small picture, after the change `change`.
 fn changed(change: impl Fn(&mut SceneData)) -> SceneData {
     let mut data = example("figure_9_9", 32, 18);
     change(&mut data);

@@ -1,4 +1,4 @@
-//! A simple client of the language server: writes messages and reads what comes back.
+//! A simple client of the language server. It sends messages and reads the server's answers.
 
 use std::{
     io::{BufRead, BufReader, Write},
@@ -10,7 +10,7 @@ use std::{
 
 use serde_json::{Value, json};
 
-/// Channel that carries the texts of messages to a server and back.
+/// A channel that carries the texts of messages to a server and back.
 pub trait Transport {
     /// URI of the only document that the client opens.
     const URI: &'static str;
@@ -22,7 +22,7 @@ pub trait Transport {
 pub struct Client<C> {
     pub transport: C,
     requests: i32,
-    /// Messages that were received but not yet returned to the test.
+    /// Messages that the client has received but not yet returned to the test.
     pub unread: Vec<Value>,
 }
 
@@ -43,7 +43,8 @@ impl<C: Transport> Client<C> {
         serde_json::from_str(&self.transport.read()).expect("JSON")
     }
 
-    /// Sends a notification. If `method` is about the document, adds the document's URI.
+    /// Sends a notification. If the method is about the document, adds the document's URI to
+    /// `params`.
     pub fn notify(&mut self, method: &str, mut params: Value) {
         if method.starts_with("textDocument/") {
             params["textDocument"]["uri"] = C::URI.into();
@@ -51,7 +52,7 @@ impl<C: Transport> Client<C> {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
-    /// Sends a request without waiting for the response. Returns the id of the request.
+    /// Sends a request without waiting for the response. Returns the identifier of the request.
     pub fn request(&mut self, method: &str, mut params: Value) -> i32 {
         if method.starts_with("textDocument/") || method.starts_with("pinhole/") {
             params["textDocument"] = json!({ "uri": C::URI });
@@ -63,7 +64,7 @@ impl<C: Transport> Client<C> {
     }
 
     /// Removes and returns the first unread message for which `is_meant` is true. If there is none,
-    /// waits for one.
+    /// waits for such a message.
     fn next(&mut self, is_meant: impl Fn(&Value) -> bool) -> Value {
         while !self.unread.iter().any(&is_meant) {
             let message = self.read();
@@ -74,7 +75,7 @@ impl<C: Transport> Client<C> {
         self.unread.remove(place.expect("it was heard"))
     }
 
-    /// Waits for the response to the request `id` and returns the whole response.
+    /// Waits for the response to the request `id`, and returns the whole response.
     pub fn response(&mut self, id: i32) -> Value {
         self.next(|message| message["id"] == id)
     }
@@ -110,7 +111,7 @@ impl<C: Transport> Client<C> {
         self.notify("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
-    /// Sends a change of the text; `version` is the version of the text after the change.
+    /// Sends a change of the text. `version` is the version of the text after the change.
     pub fn change(&mut self, version: usize, change: Value) {
         let document = json!({ "version": version });
         let params = json!({ "textDocument": document, "contentChanges": [change] });
@@ -118,14 +119,16 @@ impl<C: Transport> Client<C> {
     }
 }
 
-/// Maximum time to wait for a message. After it, the test fails.
+/// Maximum time to wait for a message. After this time, the test fails. A message takes
+/// milliseconds, but a busy machine may need seconds; a longer time would only delay the failure.
 pub const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Running server with its standard input and output.
+/// A running server with its standard input and output.
 pub struct Pipes {
     child: Child,
     input: Option<ChildStdin>,
-    /// Texts of the server's messages. A separate thread reads them, so that waiting can time out.
+    /// Texts of the server's messages. A separate thread reads them, so that a test need not wait
+    /// for ever.
     said: Receiver<String>,
 }
 
@@ -150,7 +153,7 @@ impl Transport for Pipes {
     }
 }
 
-/// Reads the text of the next message. Returns `None` at the end of the output.
+/// Reads the text of the server's next message. Returns `None` at the end of the output.
 fn message(output: &mut impl BufRead) -> Option<String> {
     let mut header = String::new();
     for _ in 0..2 {
@@ -195,12 +198,12 @@ impl Client<Pipes> {
         assert_eq!(self.end(), (Some(0), String::new()));
     }
 
-    /// Closes the server's input and asserts that no more messages come. Returns the exit status
+    /// Closes the server's input, and asserts that no more messages arrive. Returns the exit status
     /// and the standard error.
     pub fn end(self) -> (Option<i32>, String) {
         let Pipes { child, input, said } = self.transport;
         drop(input);
-        // The server's standard output ends without another message.
+        // The standard output of the server ends without another message.
         let rest = said.recv_timeout(PATIENCE);
         assert_eq!(rest, Err(RecvTimeoutError::Disconnected));
         let output = child.wait_with_output().expect("it ends");

@@ -1,6 +1,6 @@
-//! Emacs in batch mode uses the server through each of its two clients, eglot and lsp-mode. The
-//! test needs `emacs` on the path, with both clients: `cargo test -- --ignored emacs`. Emacs 28.2,
-//! eglot 1.9 and lsp-mode 8.0 are known to work.
+//! Tests the language server in Emacs in batch mode, with each of the two clients of Emacs, eglot
+//! and lsp-mode. The tests need `emacs` on the path, with both clients:
+//! `cargo test -- --ignored emacs`. Emacs 28.2, eglot 1.9 and lsp-mode 8.0 are known to work.
 
 use std::{path::Path, process::Command};
 
@@ -14,7 +14,8 @@ camera { eye (0, 1, 5)   lookat (0, r, 0) }
 sphere Ball { center (0, r, 0)  radus 2*r }
 ";
 
-/// The expected text of the scene after fixing `radus`, renaming `r`, and formatting.
+/// The text that the scene must have after `radus` is fixed, `r` is renamed, and the text is
+/// formatted.
 const EDITED: &str = "let height = 1
 camera { eye (0, 1, 5)  lookat (0, height, 0) }
 sphere Ball { center (0, height, 0)  radius 2 * height }

@@ -1,5 +1,5 @@
-//! Frames, the pictures that the language server sends to a page: they equal the pixels of a
-//! render, are computed in slices of work, and can be cancelled.
+//! Tests of frames, the pictures that the language server sends to a page. A frame has the same
+//! pixels as a render, is computed in slices, and can be cancelled.
 
 use base64::{Engine, prelude::BASE64_STANDARD};
 use serde_json::{Value, json};
@@ -19,14 +19,13 @@ checkerboard {}
 const CONTENT_MODIFIED: i32 = -32801;
 const CANCELLED: i32 = -32800;
 
-/// Returns the scene with another width and height.
+/// Returns the text of the test scene with another width and height.
 fn sized(width: &str, height: &str) -> String {
     let size = format!("width {width}  height {height}");
     SCENE.replace("width 83  height 61", &size)
 }
 
-/// Returns the error code in the response to a request. Asserts that the response has already
-/// arrived.
+/// Returns the error code in the response to a request. Asserts that the response has arrived.
 pub fn code(client: &mut LocalClient, request: i32) -> Value {
     assert!(client.has_answered(request));
     client.response(request)["error"]["code"].take()
@@ -49,7 +48,7 @@ fn shown(frame: &Value) -> (u32, u32, Vec<u8>) {
     found
 }
 
-/// Returns the picture that `pinhole render` makes of a scene with the `--set` arguments `sets`.
+/// Returns the picture of a scene that `pinhole render` makes with the `--set` arguments `sets`.
 fn rendered(text: &str, sets: &str) -> (u32, u32, Vec<u8>) {
     let folder = Folder::with([("a.scn", text)]);
     let sets = sets.split_whitespace().map(|set| format!(" --set {set}"));
@@ -76,7 +75,7 @@ fn a_frame_has_the_pixels_of_a_render() {
         let (text, size) = match name {
             "exact" => (SCENE.replace("multi_jittered", "exact"), [83, 61]),
             "scattered" => (SCENE.replace("multi_jittered", "scatter"), [83, 61]),
-            // With this number of samples, a slice of work is a small part of the picture.
+            // With so many samples, a slice of work is only a small part of the picture.
             "many" => (SCENE.replace("per_pixel 9", "per_pixel 2000"), [83, 61]),
             "wide" => (sized("100_000", "2"), [100_000, 2]),
             _ => (SCENE.to_owned(), [83, 61]),
@@ -93,7 +92,7 @@ fn a_frame_has_the_pixels_of_a_render() {
 fn a_frame_of_an_outdated_text_is_refused() {
     let mut client = LocalClient::with(SCENE);
     let old = client.request("pinhole/frame", json!({}));
-    // This step publishes the diagnostics but does not complete the frame.
+    // The step publishes the diagnostics but does not complete the frame.
     assert!(client.transport.step() && !client.has_answered(old));
     let changed = SCENE.replace("olive", "teal");
     client.change(2, json!({ "text": changed }));
@@ -106,7 +105,7 @@ fn a_frame_of_an_outdated_text_is_refused() {
 
 #[test]
 fn a_frame_that_is_cancelled_ends_at_once() {
-    // The frame takes ten thousand slices of work, which would take minutes.
+    // The frame consists of ten thousand slices, which would take minutes.
     let text = sized("1000", "1000").replace("per_pixel 9", "per_pixel 10_000");
     let mut client = LocalClient::with(&text);
     let frame = client.request("pinhole/frame", json!({}));
@@ -118,7 +117,7 @@ fn a_frame_that_is_cancelled_ends_at_once() {
     for _ in 0..4 {
         assert!(client.transport.step());
     }
-    // Requests that arrive while the frame is computed are answered between slices.
+    // A request that arrives while the frame is computed is answered between two slices.
     assert!(client.has_answered(early) && !client.has_answered(frame));
     let later = hover(&mut client);
     assert!(client.transport.step() && client.has_answered(later));

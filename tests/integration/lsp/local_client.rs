@@ -1,4 +1,5 @@
-//! Client of a server in this process. A test can advance the server one step of work at a time.
+//! A client of a language server in the process of the test. A test can advance this server in
+//! small steps.
 
 use std::{cell::RefCell, collections::VecDeque};
 
@@ -10,20 +11,19 @@ use serde_json::{Value, json};
 
 use super::client::{Client, Transport};
 
-/// Client of a server in this process, with one open text of version 1.
+/// A client of a server in the process of the test. It has one open text, which has the version 1.
 pub type LocalClient = Client<InProcess>;
 
 thread_local! {
     static LOG: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Returns and removes the messages that the servers of this thread have logged since the last
-/// call.
+/// Removes and returns the messages that the servers of the current thread have logged.
 pub fn logged() -> Vec<String> {
     LOG.take()
 }
 
-/// Server in this process, with the messages that the client has not read yet.
+/// A server in the process of the test, with the messages that the client has not read yet.
 pub struct InProcess {
     server: Server,
     pub said: VecDeque<String>,
@@ -40,7 +40,7 @@ impl Default for InProcess {
 }
 
 impl InProcess {
-    /// Advances the server by one step of work. Returns whether the server had work to do.
+    /// Lets the server do a portion of its work. Returns whether there was work to do.
     pub fn step(&mut self) -> bool {
         let is_busy = self.server.is_busy();
         let said = self.server.advance();

@@ -1,5 +1,6 @@
-//! Tests of the language server: the binary over pipes (`session`, `neovim`, `emacs`), and a server
-//! in this process, which a test can advance one step of work at a time.
+//! Tests of the language server. Some start the program and talk to it over pipes (`session`,
+//! `neovim`, `emacs`). Others use a server in their own process, which they can advance in small
+//! steps.
 
 pub mod client;
 mod emacs;
@@ -13,7 +14,7 @@ mod viewport;
 
 use std::{env, ffi::OsString, path::Path};
 
-/// Returns a search path that begins with the folder of the program under test, for an editor that
+/// Returns a search path that begins with the folder of the tested program, for an editor that
 /// starts the server by its name.
 fn path_with_program() -> OsString {
     let program = Path::new(env!("CARGO_BIN_EXE_pinhole"));

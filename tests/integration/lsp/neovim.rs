@@ -1,5 +1,5 @@
-//! Neovim in headless mode uses the server. The tests need `nvim` on the path: `cargo test --
-//! --ignored neovim`. Versions 0.7 and 0.11 are known to work.
+//! Tests the language server in Neovim in headless mode. The tests need `nvim` on the path:
+//! `cargo test -- --ignored neovim`. Versions 0.7 and 0.11 are known to work.
 
 use std::{
     fs,
@@ -22,8 +22,8 @@ fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Returns a command that runs a script in Neovim with its own home folder. The search path begins
-/// with the folder of the program under test.
+/// Returns a command that runs a script in Neovim with a separate home folder. Its search path
+/// begins with the folder of the tested program.
 fn neovim(folder: &Folder, script: &Path) -> Command {
     let home = folder.path("");
     let mut neovim = Command::new("nvim");
@@ -47,24 +47,25 @@ fn answers(folder: &Folder, mut neovim: Command) -> Value {
     serde_json::from_slice(&folder.read("answers.json")).expect("JSON")
 }
 
-/// Runs `tests/lsp/neovim.lua` in Neovim. The JSON file beside the script has the expected answers.
+/// Runs the script `tests/lsp/neovim.lua` in Neovim. A JSON file beside the script contains the
+/// expected answers.
 #[test]
 #[ignore = "needs Neovim"]
 fn neovim_gets_the_recorded_answers() {
     let folder = Folder::with([("scene.scn", SCENE)]);
     let script = root("tests/lsp/neovim.lua");
     let mut found = answers(&folder, neovim(&folder, &script));
-    // Lua tables have no order, so the members of objects are sorted.
+    // Lua tables have no order, so the members of JSON objects are sorted.
     found.sort_all_objects();
     let found = format!("{found:#}\n");
     assert_file(&script.with_extension("json"), &found);
 }
 
-/// Text, the keys to type at `$0`, and the resulting line.
+/// Three texts: the initial text, the keys to type at `$0`, and the resulting line.
 type Typed = [&'static str; 3];
 
-/// Completions requested by `CTRL-X CTRL-O`, as rows of [`Typed`]. Neovim 0.7 inserts the whole
-/// completion, and Neovim 0.11 only its first word. Therefore, only their common start is compared.
+/// Completions that `CTRL-X CTRL-O` requests, as rows of [`Typed`]. Neovim 0.7 inserts the whole
+/// completion, Neovim 0.11 only its first word. Therefore, only their common start is compared.
 const ASKED: &[Typed] = &[
     ["$0\ncamera {}", "s p h <C-x><C-o>", "sphere"],
     ["$0\ncamera {}", "s <C-x><C-o> menu <C-n> <C-y>", "sphere"],
@@ -76,8 +77,8 @@ const ASKED: &[Typed] = &[
     ],
 ];
 
-/// Completions offered during typing, as rows of [`Typed`], if Neovim 0.11 is configured as the
-/// documentation for editors says.
+/// Completions that are offered during typing, as rows of [`Typed`]. They are tested in Neovim 0.11
+/// with the configuration from the documentation for editors.
 const OFFERED: &[Typed] = &[
     // While a word is typed, nothing is inserted before the user chooses a completion.
     ["$0\ncamera {}", "s menu p h", "sph"],
@@ -104,7 +105,7 @@ const OFFERED: &[Typed] = &[
 fn neovim_completes_while_typing() {
     let version = Command::new("nvim").arg("--version").output();
     let version = String::from_utf8(version.expect("Neovim is on the path").stdout).expect("text");
-    // `vim.lsp.completion` exists since Neovim 0.11.
+    // The module `vim.lsp.completion` exists since Neovim 0.11.
     let is_new = !["v0.7.", "v0.8.", "v0.9.", "v0.10."]
         .iter()
         .any(|old| version.contains(old));
@@ -133,10 +134,10 @@ fn neovim_completes_while_typing() {
     assert!(behind.contains("no field `radus`"), "{behind}");
 }
 
-/// Runs `tests/lsp/neovim_types.lua`, which types the keys of each row into its text. `snippet`, if
-/// given, is Neovim's configuration. Returns the JSON that the script writes: the resulting
-/// `lines`, and with a snippet also `hints` (whether inlay hints are on) and `behind_lines` (the
-/// text that is shown behind lines).
+/// Runs the script `tests/lsp/neovim_types.lua`, which types the keys of each row into the row's
+/// text. `snippet`, if given, is a configuration of Neovim. Returns the JSON that the script
+/// writes. It contains the resulting `lines`. With a configuration, it also contains `hints`
+/// (whether inlay hints are on) and `behind_lines` (the text that is shown after lines).
 fn typed(rows: &[Typed], snippet: Option<&str>) -> Value {
     let rows = rows.iter().map(|[text, keys, _]| {
         let keys: Vec<&str> = keys.split(' ').collect();

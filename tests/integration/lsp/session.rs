@@ -1,4 +1,4 @@
-//! Sessions of the language server over pipes.
+//! Tests of whole sessions of the language server over pipes.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,8 @@ camera { eye (0, 1, 5)  lookat ball  d 1 }
 sphere Ball { center ball  color olive }
 ";
 
-/// Sends each letter as a change of the text, followed by the requests that an editor would send.
+/// Sends each letter of a scene as a change of the text, and then the requests that an editor would
+/// send.
 #[test]
 fn a_scene_is_typed_letter_by_letter() {
     let mut client = Client::start();
@@ -48,7 +49,7 @@ fn a_client_that_leaves_without_shutdown_ends_the_server_with_status_1() {
 fn malformed_lsp_input_is_logged_and_skipped() {
     let mut client = Client::start();
     client.transport.put("hello\r\n\r\n");
-    // A response to no request of the server is ignored.
+    // A response that belongs to no request of the server is ignored.
     client.send(&json!({ "jsonrpc": "2.0", "id": null, "error": { "code": 1, "message": "" } }));
     client.ask("initialize", json!({ "capabilities": {} }));
     client.change(2, json!({ "text": "" }));
@@ -61,7 +62,7 @@ fn malformed_lsp_input_is_logged_and_skipped() {
     assert!(log.contains("is not open"), "{log}");
 }
 
-/// A range of `null` does not say whether the change replaces a part of the text or all of it.
+/// A range of `null` does not say whether the change replaces a part of the text or the whole text.
 #[test]
 fn a_change_with_an_invalid_range_leaves_the_text_unchanged() {
     let mut client = Client::start();
@@ -86,7 +87,7 @@ fn a_change_with_an_invalid_range_leaves_the_text_unchanged() {
 #[test]
 fn invalid_json_gets_a_parse_error_response() {
     let mut client = Client::start();
-    // Upper and lower case are not distinguished in a header's name.
+    // The name of a header field may be written in upper or lower case.
     for (header, text) in [
         ("Content-Length", "not JSON!"),
         ("content-length", "{\"id\":1,"),
@@ -110,7 +111,7 @@ fn an_oversized_or_unfinished_message_ends_the_server_with_a_reason() {
     for (length, expected) in [
         ("99999999999999", "is announced"),
         ("2000000000", "is announced"),
-        // The announced length is the maximum, but the message ends before it.
+        // The announced length is just allowed, but the message ends before it.
         ("1000000000", "after 2 of 1000000000 bytes"),
     ] {
         let mut client = Client::start();

@@ -1,10 +1,11 @@
-//! Tests of the limits and ranges that the language server gives for sliders of numbers.
+//! Tests of the limits and ranges that the language server gives for the sliders of numbers.
 
 use serde_json::{Value, json};
 
 use super::local_client::LocalClient;
 
-/// Returns the minimum, the maximum, the step and the ends of a slider, or null if `found` is null.
+/// Returns the minimum, the maximum, the step and the ends of a slider. Returns null if `found` is
+/// null.
 fn limits(found: &Value) -> Value {
     match found {
         Value::Null => Value::Null,
@@ -12,7 +13,7 @@ fn limits(found: &Value) -> Value {
     }
 }
 
-/// A slider offers only numbers that the language allows for its field.
+/// A slider offers only numbers that the language allows for the number's field.
 #[test]
 fn a_slider_takes_the_limits_of_its_field() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) fov 1rad }\nsampler { per_pixel 16 }\nsphere { center (0, 0, 0) radius 1 }\nbox for i < 3 { center (i, 0, -0.25) size (1, 2, 3) }\nlet a = 3\nsphere { center (0, 0, 0) radius a + 1 }\nsphere { radius 8 / 2 }";
@@ -25,7 +26,7 @@ fn a_slider_takes_the_limits_of_its_field() {
         ("eye (0", json!([null, null, 0.1, [-5.0, 5.0]])),
         ("(i, 0, -0.25", json!([null, null, 0.01, [-0.75, 0.25]])),
         ("i < 3", json!([0.0, null, 1.0, [0.0, 13.0]])),
-        // The limits also apply if the number is a part of a formula.
+        // The limits of the field also apply if the number is a part of a formula.
         ("let a = 3", json!([-0.9, null, 0.1, [-0.9, 8.0]])),
         ("radius a + 1", json!([-2.9, null, 0.1, [-2.9, 6.0]])),
         ("radius 8", json!([0.1, null, 0.1, [0.1, 16.0]])),
@@ -41,8 +42,8 @@ fn a_slider_takes_the_limits_of_its_field() {
     }
 }
 
-/// A slider leaves out numbers that cause errors. The slider of a count has a step of 1, even if
-/// the count's number is in a definition.
+/// A slider leaves out numbers that cause errors. The slider of a count has the step 1, even if the
+/// number is in a definition.
 #[test]
 fn a_slider_never_reaches_a_value_that_is_an_error() {
     let many = "sphere { center (1, 2, 3) }\n".repeat(3000);
@@ -77,13 +78,13 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "camera { eye (0, 0, 9) lookat (0, 0, 0) fov 2 * a }",
             json!([1.0, 89.0, 1.0, [1.0, 89.0]]),
         ),
-        // The limits come from both uses of the number: a direct one and a formula.
+        // The number is used directly and in a formula. Its limits come from both uses.
         (
             "1",
             "sphere { radius a }\nsphere { radius 3 - a }",
             json!([0.1, 2.9, 0.1, [0.1, 2.9]]),
         ),
-        // Here, the number is a count of repetitions, which must be whole.
+        // The number is a count of repetitions, which must be whole.
         (
             "4",
             "sphere for i < a { center (i, 0, 0) }",
@@ -131,7 +132,7 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             json!([-1.0, 1.0, 0.1, [-1.0, 1.0]]),
         ),
         // Errors that the text already has do not limit the slider. If all nearby numbers cause
-        // errors, there are no limits.
+        // errors, the slider has no limits.
         (
             "1",
             "sphere { radios 1 radius a / 2 }",
@@ -142,7 +143,8 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
             "sphere for i < a / 4 { center (i, 0, 0) }",
             json!([null, null, 0.1, [-1.0, 9.0]]),
         ),
-        // A long text is not read again for each number, so its slider has no limits.
+        // Reading a long text again for each tried number would take too long, so the slider has no
+        // limits.
         (
             "1",
             &format!("{many}sphere {{ radius a / 2 }}"),
@@ -160,14 +162,15 @@ fn a_slider_never_reaches_a_value_that_is_an_error() {
     }
 }
 
-/// The range of a definition's slider comes from the comment behind the definition. Without such a
+/// The range of a definition's slider comes from the comment after the definition. Without such a
 /// comment, it comes from the fields that use the definition.
 #[test]
 fn definitions_take_slider_ranges_from_comments_or_fields() {
     let no_number = |it: &str| format!("`{it}` in the range is no number");
     let alone = || Some("a range is for a number or an angle that stands alone".to_owned());
-    // Each case has three parts: the value and the comment, as they follow `=`; the minimum, the
-    // maximum and the step; and the reason if the comment's range is refused.
+    // Each case has three parts: the value and the comment, which follow `=` in the text; the
+    // minimum, the maximum and the step of the slider; and the reason if the range in the comment
+    // is refused.
     let cases = [
         ("1 // [0.5:0.1:2] how large", json!([0.5, 2.0, 0.1]), None),
         ("-2 //[-3:3]", json!([-3.0, 3.0, 0.1]), None),

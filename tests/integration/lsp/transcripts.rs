@@ -1,9 +1,10 @@
-//! Transcripts in `tests/lsp`: messages to the server, each followed by the server's answers.
+//! Runs transcripts in `tests/lsp`. They contain messages to the server, each followed by the
+//! server's answers.
 //!
 //! `> METHOD PARAMS` is a request, `! METHOD PARAMS` a notification, and `= TEXT` any other
-//! message. The test adds the document's URI to the parameters. Messages that no empty line
-//! separates arrive before the server starts to work. `#` begins a comment. `PINHOLE_BLESS=1 cargo
-//! test` rewrites the server's answers (`<`) and its log (`?`).
+//! message. The test adds the document's URI to the parameters. Messages without an empty line
+//! between them arrive before the server starts to work. `#` begins a comment.
+//! `PINHOLE_BLESS=1 cargo test` rewrites the server's answers (`<`) and its log (`?`).
 
 use std::path::Path;
 
@@ -29,7 +30,7 @@ fn line(message: &str) -> String {
     format!("< {message}\n").replace(version, "\"version\":\"…\"")
 }
 
-/// Replays a transcript. Returns it with the server's current answers in place of the old ones.
+/// Runs a transcript again. Returns it with the server's current answers in place of the old ones.
 fn replayed(transcript: &str) -> String {
     let mut client = Client::new(InProcess::default());
     let block = |block: &str| {

@@ -1,4 +1,4 @@
-//! Editing in the picture: overlays of objects, adding objects, and drags.
+//! Tests of editing in the picture: overlays of objects, adding objects, and drags.
 
 use pinhole::schema::BLOCKS;
 use serde_json::{Value, json};
@@ -10,8 +10,8 @@ use super::{
 
 const FAILED: i32 = -32803;
 
-/// If a scene has very many objects, overlays are sent for the first 1000 and for the requested
-/// one.
+/// In a scene with very many objects, overlays are sent for the first 1000 objects and for the
+/// requested one.
 #[test]
 fn at_most_1000_overlays_and_the_requested_object_are_sent() {
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
@@ -30,8 +30,8 @@ fn at_most_1000_overlays_and_the_requested_object_are_sent() {
         assert_eq!(listed.as_array().map(Vec::len), Some(count));
         assert!(listed[0]["range"].is_object() && listed[0]["outline"].is_null());
     }
-    // The first board is listed even if more than 1000 objects precede it in the text, because new
-    // objects are placed on it.
+    // The first checkerboard is listed even if more than 1000 objects precede it in the text,
+    // because new objects are placed on it.
     let many = (0..1500).map(|i| format!("sphere {{ center ({i}, 0, 0) }}\n"));
     let floor = many.collect::<String>() + "checkerboard {}\ncheckerboard { y 1 }\n";
     let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
@@ -62,7 +62,7 @@ fn checkerboard_outlines_stop_at_objects_in_front_of_them() {
         (2, "sphere { center (0, -5, 0) radius 1 }", 1),
         (2, "sphere { center (1, 0.3, 0) radius 0.6 }", 2),
         (2, "sphere { center (0.5, 0.5, 3) radius 1 }", 0),
-        // The eye is above this large square, whose sides lie partly far outside of the picture.
+        // The eye is above the large square, whose sides are partly far outside of the picture.
         (900, "sphere { center (0, 0.1, 3) radius 0.02 }", 3),
     ] {
         let board = format!("{camera} checkerboard {{ square {square} }}");
@@ -155,7 +155,8 @@ fn objects_added_one_after_another_get_distinct_positions() {
     }
 }
 
-/// A new object is wholly in the picture, however many objects there are, and has an unused colour.
+/// A new object is wholly in the picture, however many objects there are, and its colour is not
+/// used yet.
 #[test]
 fn added_objects_lie_within_the_picture_in_distinct_colours() {
     let board = "checkerboard { y 0 }\n";
@@ -165,7 +166,7 @@ fn added_objects_lie_within_the_picture_in_distinct_colours() {
         format!("{figure}{board}"),
         format!("image {{ width 300 height 500 }}\n{figure}{board}"),
         format!("camera {{ eye (0, 1, 6) lookat (0, 1, 0) fov 30deg }}\n{board}"),
-        // In this view, the board is not in the picture.
+        // The camera looks up, so that the board is not in the picture.
         format!("camera {{ eye (0, 2, 6) lookat (0, 9, 0) }}\n{board}"),
     ] {
         let mut text = before.clone();
@@ -196,7 +197,7 @@ fn added_objects_lie_within_the_picture_in_distinct_colours() {
     }
 }
 
-/// The first object of a kind has the kind's default colour, unless that colour is in use.
+/// The first object of a kind gets the default colour of this kind, unless the colour is in use.
 #[test]
 fn an_added_object_takes_a_colour_that_is_not_in_use() {
     for (before, kind, color) in [
@@ -227,7 +228,8 @@ fn an_added_object_takes_a_colour_that_is_not_in_use() {
     }
 }
 
-/// A new object touches the board, whatever the board's height, even if the board is added later.
+/// A new object touches the checkerboard, whatever the board's height is, even if the board is
+/// added later.
 #[test]
 fn an_added_object_stands_on_the_checkerboard() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
@@ -246,8 +248,8 @@ fn an_added_object_stands_on_the_checkerboard() {
             let found =
                 LocalClient::with(&text).ask("pinhole/add", json!({ "kind": "checkerboard" }));
             let board = found["edits"][0]["newText"].as_str().expect("a text");
-            // The numbers are those of the name, of the centre, and of the radius or the size, in
-            // this order.
+            // The numbers are, in this order, the number in the name, the centre, and the radius or
+            // the size.
             let parts = written.split(|it: char| !matches!(it, '0'..='9' | '.' | '-'));
             let numbers: Vec<f64> = parts.filter_map(|it| it.parse().ok()).collect();
             let half = numbers[4] / if kind == "box" { 2.0 } else { 1.0 };
@@ -259,7 +261,7 @@ fn an_added_object_stands_on_the_checkerboard() {
     }
 }
 
-/// A new board is below all objects, at a height at which there is no other board.
+/// A new checkerboard is below all objects, at a height at which there is no other checkerboard.
 #[test]
 fn an_added_checkerboard_lies_below_all_objects() {
     let camera = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) }\n";
@@ -282,7 +284,7 @@ fn an_added_checkerboard_lies_below_all_objects() {
     }
 }
 
-/// A comment behind a block stays behind that block when the block is copied.
+/// If a block is copied, a comment after the block stays after the original.
 #[test]
 fn copying_a_block_does_not_move_its_trailing_comment() {
     let camera = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\n";
@@ -315,7 +317,8 @@ fn copying_a_block_does_not_move_its_trailing_comment() {
     }
 }
 
-/// The drag of a number that another field also uses is refused, with or without a step.
+/// A drag is refused if another field uses the number that it would change. This holds with and
+/// without a step.
 #[test]
 fn dragging_a_number_shared_with_another_field_is_refused() {
     let text = "camera { eye (0, 0, 5) lookat (0, 0, 0) }\nlet r = 1\n\
@@ -334,7 +337,7 @@ fn dragging_a_number_shared_with_another_field_is_refused() {
     }
 }
 
-/// With a step, a drag yields round numbers. A drag that ends where it began does not change the
+/// A drag with a step yields round numbers. A drag that ends where it began does not change the
 /// text.
 #[test]
 fn a_drag_with_a_step_snaps_to_round_numbers() {

@@ -1,4 +1,4 @@
-//! Files of a report: charts, tables, and a page that needs no other files.
+//! Tests of the files of a report: charts, tables, and a page that needs no other files.
 
 use std::fs;
 
@@ -65,7 +65,7 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     for name in ["time", "wall"] {
         assert!(first[at(name)].parse::<f64>().unwrap() > 0.0, "{name}");
     }
-    // In the row of the exact method, the error is empty, and an error bound is given instead.
+    // The row of the exact method has no error, but an error bound instead.
     for name in ["per_pixel", "rmse", "slope"] {
         assert_eq!(exact[at(name)], "", "{name}");
         assert_ne!(first[at(name)], "", "{name}");
@@ -94,22 +94,22 @@ fn a_report_folder_holds_complete_tables_charts_and_a_page() {
     let page = read("index.html");
     let document = parsed(&page);
     let count = |name| elements(&document, name).count();
-    // The page shows the exact picture twice (alone, and beside the others), and the picture of
-    // each sampled method with its difference from the exact one.
+    // The page shows the exact picture twice, alone and beside the others. For each sampled method,
+    // it shows the picture and its difference from the exact picture.
     let counts = [count("script"), count("table"), count("main"), count("img")];
     assert_eq!(counts, [0, 1, 1, 2 + 2 * methods.len()]);
     // The recommendation comes first, then the charts, the table and the pictures.
     let order = ["class=\"verdict\">Use ", "<svg ", "<table>", "<img "];
     let places = order.map(|what| page.find(what).expect(what));
     assert!(places.is_sorted(), "{places:?}");
-    // No character is left that had to be made visible.
+    // The page contains no character that had to be shown as an escape.
     assert!(!page.contains("\\u{"), "{page}");
     for image in elements(&document, "img") {
         assert!(!image.attribute("alt").unwrap().is_empty());
         let is_whole = image.attribute("alt") == Some("the exact picture as a whole");
         assert_eq!(size(image), if is_whole { (48, 32) } else { (48, 27) });
     }
-    // The page fetches nothing from other addresses.
+    // The page loads nothing from other addresses.
     for node in document.descendants() {
         for name in ["src", "href"] {
             let target = node.attribute(name).unwrap_or("data:");
@@ -163,8 +163,8 @@ fn scene_names_cannot_escape_the_output_folder_or_break_a_file() {
     let errors = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{errors}");
     assert!(!errors.contains('\u{1b}'));
-    // The command created nothing outside of the scenes' folder, and only the report's folder
-    // inside.
+    // The command has created nothing outside of the scenes' folder, and only the folder of the
+    // report in it.
     assert_eq!(folder.names(), ["work"]);
     let entries = |name: &str| program::names(&folder.path(name));
     assert_eq!(entries("work").len(), names.len() + ["a", "out"].len());

@@ -1,4 +1,4 @@
-//! Reports of speed against error: tables, files and the page.
+//! Tests of reports of speed against error: tables, files and the page.
 
 mod files;
 #[cfg(unix)]
@@ -20,7 +20,7 @@ fn folder() -> Folder {
     Folder::with([("a.scn", SCENE)])
 }
 
-/// Returns the report of the scene as text for the terminal.
+/// Returns the report of the scene as text for a terminal.
 fn table(arguments: &str) -> String {
     folder().told(&format!("report a.scn {arguments}"), 0)
 }
@@ -52,11 +52,11 @@ fn a_report_prints_a_table_and_one_recommendation() {
             .unwrap()
     };
     for row in Method::SAMPLED.map(|method| row(method.name())) {
-        // The columns are the method, the slope, `±`, the slope's error, what four times the
-        // samples divide the error by, what a tenth of it costs with `×`, the samples, and two
-        // times, each with its unit.
+        // The cells are the method, the slope, `±`, the error of the slope, the factor by which
+        // four times the samples reduce the error, the cost of a tenth of the error with `×`, the
+        // samples, and two times. Samples and times include their units.
         assert_eq!((row.len(), row[2], row[6]), (12, "±", "×"), "{row:?}");
-        // So few samples do not reach an error of 1/256, so the values are extrapolated.
+        // The few measured samples do not reach an error of 1/256, so the values are extrapolated.
         let are_first = [(1, '−'), (7, '~'), (8, '~')].map(|(at, c)| row[at].starts_with(c));
         assert_eq!(are_first, [true; 3], "{row:?}");
     }
@@ -67,7 +67,7 @@ fn a_report_prints_a_table_and_one_recommendation() {
     let answers = text.lines().filter(|line| line.starts_with("Use "));
     assert_eq!(answers.count(), 1, "{text}");
 
-    // There is a table for each requested error.
+    // The report has a table for each requested error.
     let several = table("--samples 1,4 --runs 1 --error 0.0101 --error 0.0104");
     for error in ["1/256", "0.0101", "0.0104"] {
         let answer = format!("use exact for an error of {error}: ");
@@ -75,7 +75,7 @@ fn a_report_prints_a_table_and_one_recommendation() {
             assert_eq!(several.matches(&words).count(), 1, "{several}");
         }
     }
-    // A slope of a single run has no standard error.
+    // The slope of a single run has no standard error.
     assert!(!several.contains('±'), "{several}");
     for line in text.lines().chain(several.lines()) {
         assert!(line.chars().count() <= 100, "it fits a terminal: {line}");
@@ -124,7 +124,7 @@ fn report_json_is_complete_and_errors_fall_with_samples() {
             _ => -0.85..-0.55,
         };
         assert!(expected.contains(&slope), "{name}: {slope}");
-        // The first error is the default, and the others are requested.
+        // The first error is the default; the others were requested.
         for (at, error) in [1.0 / 256.0, 0.5, 1e-6, 0.02].into_iter().enumerate() {
             let needed = &method["needed"][at];
             assert_eq!(number(&needed["error"]), error);
@@ -134,7 +134,7 @@ fn report_json_is_complete_and_errors_fall_with_samples() {
         assert_eq!(method["needed"][1]["per_pixel"], 1.0, "{name}");
     }
     assert_eq!(report["verdicts"].as_array().unwrap().len(), 4);
-    // Each run has its own seed, and the errors for different seeds differ.
+    // Each run has its own seed, and different seeds cause different errors.
     let mut random = methods.iter().filter(|method| method["method"] == "random");
     let runs = &random.next().unwrap()["measured"][3]["runs"]["rmse"];
     assert!(runs[0] != runs[1] && runs[1] != runs[2]);

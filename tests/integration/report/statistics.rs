@@ -1,4 +1,5 @@
-//! Statistics of reports: medians, slopes, the cost of reaching an error, and verdicts.
+//! Tests of the statistics of reports: medians, slopes, the cost of reaching an error, and
+//! verdicts.
 
 use std::{cell::RefCell, time::Duration};
 
@@ -31,15 +32,16 @@ fn median_and_root_mean_square_match_values_computed_by_hand() {
 
 #[test]
 fn slopes_and_standard_errors_match_values_computed_by_hand() {
-    // In units of ln 2, the points x = 0, 1, 2, 3 and y = 0, −1, −1, −2 have the means x̄ = 1.5 and
-    // ȳ = −1, and Σ(x − x̄)·(y − ȳ) = −3, Σ(x − x̄)² = 5.
+    // In units of ln 2, the logarithms of samples and errors are x = 0, 1, 2, 3 and y = 0, −1, −1,
+    // −2. Their means are x̄ = 1.5 and ȳ = −1. So Σ(x − x̄)·(y − ȳ) = −3 and Σ(x − x̄)² = 5, and
+    // the slope is −3/5.
     let found = slope(&[(1.0, 1.0), (2.0, 0.5), (4.0, 0.5), (8.0, 0.25)]);
     assert!((found.unwrap() + 0.6).abs() < 1e-14);
-    // A single point has no line, and an error of 0 has no logarithm.
+    // A line needs more than one point, and an error of 0 has no logarithm.
     assert_eq!(slope(&[(1.0, 1.0), (4.0, 0.5)]), Some(-0.5));
     assert_eq!(slope(&[(4.0, 0.5)]), None);
     assert_eq!(slope(&[(1.0, 1.0), (4.0, 0.0)]), None);
-    // The mean is 2, s² = 1, and the standard error 1/√3.
+    // The mean is 2, the sample variance s² is 1, and so the standard error is 1/√3.
     assert_eq!(
         standard_error(&[1.0, 2.0, 3.0]),
         Some((1.0f64 / 3.0).sqrt())
@@ -47,8 +49,9 @@ fn slopes_and_standard_errors_match_values_computed_by_hand() {
     assert_eq!(standard_error(&[1.0, 2.0]), None);
 }
 
-/// Each row has errors at 1, 4, 16, … samples, then the slope at the end, by how much four times
-/// the samples divide the error, and how many times the samples a tenth of the error costs.
+/// Each row has the errors at 1, 4, 16, … samples. Then follow the slope at the end, the factor by
+/// which four times the samples reduce the error, and how many times the samples a tenth of the
+/// error costs.
 #[test]
 fn the_slope_is_that_of_the_last_three_points_and_says_what_it_means() {
     for [errors, expected] in rows(
@@ -84,8 +87,8 @@ fn the_slope_is_that_of_the_last_three_points_and_says_what_it_means() {
     }
 }
 
-/// Returns a series with one run per point. A point consists of the samples per pixel, the CPU time
-/// in seconds, and the error.
+/// Returns a series of measurements with one run per point. A point is given by the samples per
+/// pixel, the CPU time in seconds, and the error.
 fn series(method: Method, points: &[[f64; 3]]) -> MethodSeries {
     let point = |&[per_pixel, cpu, error]: &[f64; 3]| SeriesPoint {
         per_pixel: per_pixel as u64,
@@ -111,8 +114,8 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().unwrap()).collect()
 }
 
-/// Each row has measured points, then an error and its expected cost: the samples and the CPU time,
-/// as far as they are known, and 1 if they are extrapolated.
+/// Each row has measured points. Then follow an error and its expected cost: the samples and the
+/// CPU time, as far as they are known, and 1 if they are extrapolated.
 #[test]
 fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
     for [points, expected] in rows("
@@ -150,8 +153,8 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
         assert!((found.wall - found.cpu / 2.0).abs() < 1e-9, "{found:?}");
         assert_eq!(found.cpu_runs, [found.cpu; 2]);
     }
-    // If the error rises again with more samples, an earlier low error does not count: the samples'
-    // grid may have agreed with the picture by chance.
+    // If the error rises again with more samples, an earlier low error does not count. The grid of
+    // the samples may have agreed with the picture by chance.
     let wave = [1.0, 4.0, 16.0, 64.0].map(|n| [n, n, if n == 16.0 { 0.2 } else { 0.05 }]);
     let found = estimate(&wave, 0.1).unwrap();
     let samples = found.per_pixel.unwrap();
@@ -168,7 +171,7 @@ fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
 fn multi_jittered_estimates_round_to_a_full_grid() {
     let points = [1.0, 4.0, 16.0, 64.0, 256.0, 1024.0].map(|n: f64| [n, n, 1.0 / n.sqrt()]);
     // The number of samples is rounded up to a square or a product of neighbouring integers, which
-    // makes a full grid, but it is at most that of the last measured point.
+    // makes a full grid. It is at most the number at the last measured point.
     let samples = [401.0, 400.0, 419.0, 421.0, 1020.0, 1024.0];
     let grids = [420.0, 400.0, 420.0, 441.0, 1024.0, 1024.0];
     for (samples, grid) in samples.into_iter().zip(grids) {
@@ -204,15 +207,15 @@ fn progress_reaches_1_when_a_sample_count_is_requested_twice() {
     let control = Control::default();
     let measured = measure(&subject(), &read(SCENE), &request, &control, &tell).unwrap();
     assert!(measured.exact.is_none());
-    // The first run measures the numbers of samples in ascending order, and the second run in a
+    // The first run measures the numbers of samples in ascending order, the second run in a
     // different order.
     let told = told.into_inner();
     assert_eq!((told.len(), &told[..2]), (4, &[0.1, 0.5][..]));
     assert!(told[2] > 0.5 && told[3] == 1.0, "{told:?}");
 }
 
-/// Returns a measurement of methods with given CPU times of their runs. Each method has two points:
-/// 4 samples with an error of 0.2, and 16 samples with an error of 0.1.
+/// Returns a measurement of methods whose runs take the given CPU times. Each method has two
+/// points: 4 samples with an error of 0.2, and 16 samples with an error of 0.1.
 fn measured(methods: &str) -> Measurement {
     let timed = |times: &str, share: f64, error: f64| -> Vec<_> {
         let run = |time: f64| Run {

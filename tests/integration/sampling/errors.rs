@@ -1,9 +1,9 @@
-//! Errors of the means of sample points, and how fast the errors fall with more samples.
+//! Tests of the errors of sample points, and of how fast the errors fall with more samples.
 
 use super::*;
 
-/// For several boxes within a pixel, the share of points in the box, averaged over many pixels, is
-/// the box's area.
+/// For several boxes within a pixel, the fraction of points in the box, averaged over many pixels,
+/// is the area of the box.
 #[test]
 fn every_method_except_regular_and_scatter_is_unbiased() {
     for method in Method::SAMPLED {
@@ -41,13 +41,13 @@ fn mean_and_error(numbers: Vec<f64>) -> (f64, f64) {
     (mean, (squares.sum::<f64>() / (count - 1.0) / count).sqrt())
 }
 
-/// Edge of a half-plane in a pixel: its normal, its distance from the pixel's centre, and the area
-/// of the pixel on its inner side. No edge is parallel to the strata of the methods: if each
-/// stratum has one unbiased point, the errors at such edges do not tell the methods apart.
+/// Edge of a half-plane in a pixel, given by its normal, its distance from the pixel's centre, and
+/// the area of the pixel on its inner side. Random edges are not parallel to the cells (strata) in
+/// which methods place points. Errors at parallel edges would not tell the methods apart.
 type Edge = (DVec2, f64, f64);
 
-/// Returns the error at each edge: the share of points on the edge's inner side minus the area
-/// there. A different pixel is used for each edge.
+/// Returns the error at each edge: the fraction of points on the edge's inner side, minus the area
+/// on this side. For each edge, the points of another pixel are used.
 fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
     let sampling = sampling(method, n, n);
     let error = |(i, &(normal, distance, area)): (u32, &Edge)| {
@@ -59,7 +59,7 @@ fn errors(method: Method, n: u64, edges: &[Edge]) -> Vec<f64> {
 }
 
 /// Returns the mean of the differences between squared errors and their expected values, and the
-/// standard error of that mean.
+/// standard error of this mean.
 fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     let squares = errors.iter().map(|error| error * error);
     mean_and_error(
@@ -70,9 +70,9 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// Returns the area of the part of the pixel where normal · p < distance. Each corner of the pixel
-/// is the tip of a quadrant; the areas that the edge cuts off these quadrants are added with
-/// alternating signs.
+/// Returns the area of the part of the pixel in which normal · p < distance. From each quadrant
+/// whose tip is a corner of the pixel, the edge cuts off an area. The result is the sum of these
+/// four areas with alternating signs.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);
@@ -93,16 +93,18 @@ fn edges() -> Vec<Edge> {
     points.chunks_exact(2).map(edge).collect()
 }
 
-/// Numbers of samples per pixel at which errors are measured: powers of 4.
+/// Numbers of samples per pixel at which errors are measured. They are powers of 4, so that their
+/// logarithms are equidistant and every method has full grids.
 const COUNTS: [u64; 5] = [16, 64, 256, 1024, 4096];
 
-/// Returns the variance of the share of `n` independent points that lie on an edge's inner side.
+/// Returns the variance of the fraction of `n` independent points that lie on the inner side of an
+/// edge.
 fn variance_of_independent_points(n: u64, (_, _, area): Edge) -> f64 {
     area * (1.0 - area) / n as f64
 }
 
-/// Returns the variance of the share of points that lie on an edge's inner side if each of `n`
-/// square cells has one point. Only cells that the edge crosses contribute.
+/// Returns the variance of the fraction of points on the inner side of an edge, if each of `n`
+/// square cells contains one point. Only cells that the edge crosses contribute.
 fn variance_of_one_point_per_cell(n: u64, (normal, distance, _): Edge) -> f64 {
     let side = n.isqrt();
     let middle = |i: u64| (i as f64 + 0.5) / side as f64 - 0.5;
@@ -130,7 +132,7 @@ fn squared_errors_match_theory() {
             variance_of_one_point_per_cell(n, edge)
         });
         assert!(off.abs() < 4.0, "{n}: {off}");
-        // With a Latin hypercube of n points, the variance is at most that of n − 1 independent
+        // With n points of a Latin hypercube, the variance is at most that of n − 1 independent
         // points (Owen 1997, "Monte Carlo variance of scrambled net quadrature").
         let off = beyond(Method::NRooks, &|edge| {
             variance_of_independent_points(n - 1, edge)
@@ -140,7 +142,7 @@ fn squared_errors_match_theory() {
 }
 
 /// If each cell contains one point, the logarithm of the error falls with a slope of −3/4 (Mitchell
-/// 1996). The same holds for scrambled nets (He and Owen 2014).
+/// 1996). Scrambled nets have the same slope (He and Owen 2014).
 #[test]
 fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
     let edges = edges();
@@ -150,8 +152,9 @@ fn stratified_errors_fall_with_a_slope_of_minus_three_quarters() {
         Method::Halton,
         Method::Sobol,
     ] {
-        // This computes the slope of the least-squares line through the logarithms of the errors at
-        // the five counts, whose own logarithms are equidistant, and the slope's standard error.
+        // The loop computes the slope of the least-squares line through the logarithms of the
+        // errors at the five counts, and the standard error of the slope. The logarithms of the
+        // counts are equidistant.
         let (mut slope, mut variance) = (0.0, 0.0);
         for (weight, n) in [-0.2, -0.1, 0.0, 0.1, 0.2].into_iter().zip(COUNTS) {
             let nothing = std::iter::repeat(0.0);

@@ -28,7 +28,7 @@ fn sampling(method: Method, n: u64, seed: u64) -> Sampling {
     sampling_with_total(method, 64 * 64 * n, seed, [64, 64])
 }
 
-/// Returns the sampling of a picture with `total` samples in all.
+/// Returns the sampling of a picture with `total` samples in the whole picture.
 fn sampling_with_total(
     method: Method,
     total: u64,
@@ -52,7 +52,7 @@ pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> 
     points.iter().collect()
 }
 
-/// Returns all sample points of the pixel (x, y), if each pixel has `n`.
+/// Returns all sample points of the pixel (x, y) of a picture with `n` samples per pixel.
 fn points(method: Method, n: u64, seed: u64, [x, y]: [u32; 2]) -> Vec<DVec2> {
     let points = points_at(&sampling(method, n, seed), [x, y], 0..n);
     assert_eq!(points.len() as u64, n);
@@ -79,7 +79,7 @@ fn seeds_and_pixels_share_no_points() {
         if matches!(method, Method::Regular) {
             continue;
         }
-        // With `scatter`, the number of points differs from pixel to pixel.
+        // The method `scatter` gives different pixels different numbers of points.
         let of = |seed, pixel: [u32; 2]| {
             let sampling = sampling(method, 5, seed);
             points_at(&sampling, pixel, 0..sampling.count(pixel[0], pixel[1]))
@@ -96,7 +96,7 @@ fn seeds_and_pixels_share_no_points() {
 
 #[test]
 fn sample_points_match_stored_values() {
-    // The eighth point of a pixel must be the same on all machines and in all versions, so that
+    // The eighth point of a pixel must be equal on all machines and in all versions, so that
     // pictures do not change.
     let expected = [
         DVec2::new(0.375, -0.125),

@@ -1,19 +1,21 @@
-//! Strata of each method's points, computed in integer arithmetic.
+//! Tests of the strata of each method's points, i.e. the equal parts of a pixel that contain one
+//! point each. They are computed in integer arithmetic.
 
 use std::collections::HashSet;
 
 use super::*;
 
-/// Seeds, each with the coordinates of a pixel. The points of that pixel are tested.
+/// Seeds, each with the coordinates of a pixel whose points are tested. The choice is arbitrary:
+/// corners of a picture and a pixel between them.
 const PLACES: [(u64, [u32; 2]); 3] = [(0, [0, 0]), (1, [3, 5]), (2, [63, 63])];
 
-/// A pixel's side from −1/2 to 1/2 is divided into `n` equal strata. Returns the index of the
-/// stratum in which `offset` lies: ⌊(offset + 1/2) · n⌋, computed without rounding.
+/// Returns the index of the part in which `offset` lies if a pixel's side, from −1/2 to 1/2, is
+/// divided into `n` equal parts. The index is ⌊(offset + 1/2) · n⌋, computed without rounding.
 fn stratum(offset: f64, n: u64) -> u64 {
     ((fraction(offset) * u128::from(n)) >> 54) as u64
 }
 
-/// Returns offset + 1/2 in units of 2^−54, which is an integer for all methods except `regular`.
+/// Returns offset + 1/2 in units of 2^−54. This is an integer for all methods except `regular`.
 fn fraction(offset: f64) -> u128 {
     assert!((-0.5..0.5).contains(&offset), "{offset}");
     let scaled = offset * (1_u64 << 54) as f64;
@@ -36,7 +38,8 @@ fn assert_one_in_each_cell(points: &[DVec2], columns: u64, rows: u64) {
     assert!(each_once(points.iter().map(cell)), "{columns} × {rows}");
 }
 
-/// Returns the number of cells in each row of a grid of `n` cells, by the language's reference.
+/// Returns the number of cells in each row of a grid of `n` cells, as the language's reference
+/// specifies.
 fn rows(n: u64) -> Vec<u64> {
     let root = (n as f64).sqrt();
     let count = (1..=n)
@@ -132,8 +135,8 @@ fn halton_is_the_shifted_halton_sequence() {
     let n = 4_u64.pow(4) * 3_u64.pow(3);
     let points = points(Method::Halton, n, 0, [3, 5]);
     let origin = points[0];
-    // This returns `offset` − `origin`, modulo the pixel's side, in units of 2^−53. The error is at
-    // most one unit.
+    // Returns `offset` − `origin`, modulo the pixel's side, in units of 2^−53. The error is at most
+    // one unit.
     let from = |offset: f64, origin: f64| {
         (((fraction(offset) + (1 << 54) - fraction(origin)) & ((1 << 54) - 1)) >> 1) as u64
     };
@@ -181,8 +184,8 @@ fn sobol_keeps_its_strata_beyond_2_to_the_32() {
 
 #[test]
 fn the_largest_counts_keep_their_strata() {
-    // There are too many points to compute all of them. Instead, the points of a range of indices
-    // must be in distinct strata.
+    // There are too many points to compute all of them. Instead, the points of some consecutive
+    // indices must be in different strata.
     for n in [(1 << 53) - 111, 1 << 53, 1 << 33] {
         for method in [Method::NRooks, Method::MultiJittered, Method::Hammersley] {
             let sampling = sampling_with_total(method, n, 4, [1, 1]);

@@ -1,10 +1,12 @@
-//! The tilings that [`tilings`] lists for a method have one sample in each cell.
+//! Tests that each tiling (division of the pixel into equal cells) that [`tilings`] lists for a
+//! method has one sample in each cell.
 
 use pinhole::sampling::tilings;
 
 use super::*;
 
-/// Returns the cell of a tiling that contains a point: its row, and its index in the row.
+/// Returns the cell that contains a point if a pixel is divided into rows with the given numbers of
+/// cells: the cell's row, and its index in the row.
 fn cell(rows: &[u64], point: DVec2) -> (usize, u64) {
     let n: u64 = rows.iter().sum();
     let height = ((point.y + 0.5) * n as f64).floor() as u64;

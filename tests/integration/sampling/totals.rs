@@ -1,4 +1,4 @@
-//! Total numbers of samples that are distributed among pixels, and scattered points.
+//! Tests of total numbers of samples that are distributed among pixels, and of scattered points.
 
 use super::*;
 
@@ -57,7 +57,8 @@ fn the_extra_samples_are_spread_evenly_in_both_directions() {
 #[test]
 fn the_last_pixel_of_the_largest_picture_gets_the_extra_sample() {
     let side = 1 << 20;
-    // The Hilbert curve ends in the top right corner, so the additional sample is in that pixel.
+    // The Hilbert curve through the pixels ends in the top right corner, so this pixel gets the
+    // additional sample.
     let sampling = sampling_with_total(Method::Random, (1 << 40) + 1, 0, [side, side]);
     let corners = [(0, 0), (0, side - 1), (side - 1, side - 1), (side - 1, 0)];
     assert_eq!(corners.map(|(x, y)| sampling.count(x, y)), [1, 1, 1, 2]);
@@ -74,8 +75,8 @@ fn half_a_sample_per_pixel_gives_a_checkerboard() {
 
 #[test]
 fn scattered_counts_follow_the_poisson_distribution() {
-    // Each of the 40 × 25 pixels has 20 points on average, so the χ² statistic has 999 degrees of
-    // freedom. Several seeds are tested.
+    // Each of the 40 × 25 pixels has 20 points on average. So the χ² statistic has 999 degrees of
+    // freedom. It is computed for several seeds.
     let area = Area::whole(40, 25);
     let mut empty = 0;
     for seed in 0..20 {
@@ -89,7 +90,8 @@ fn scattered_counts_follow_the_poisson_distribution() {
         assert!((chi2 - 999.0).abs() < most, "{chi2}");
         empty += of(1000).iter().filter(|&&n| n == 0).count();
     }
-    // With as many points as pixels, a share of 1/e of the pixels is empty: 7358 ± 48 of 20 000.
+    // If there are as many points as pixels, a fraction of 1/e of the pixels is empty: 7358 ± 48 of
+    // 20 000.
     assert!(empty.abs_diff(7358) < 200, "{empty}");
 }
 
@@ -104,8 +106,8 @@ fn the_largest_scatter_has_the_expected_mean_count() {
         height: 20,
     };
     let counts = sampling.counts(corner);
-    // A pixel has 8192 points on average. The standard deviation is 90.5 for the count of one
-    // pixel, and 3.7 for the mean count of 600 pixels.
+    // A pixel has 8192 points on average. The standard deviation is 90.5 for the number in one
+    // pixel, and 3.7 for the mean number in 600 pixels.
     let mean = counts.iter().sum::<u64>() as f64 / 600.0;
     assert!((mean - 8192.0).abs() < 15.0, "{mean}");
     assert!(counts.iter().all(|n| n.abs_diff(8192) < 450));

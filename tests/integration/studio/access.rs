@@ -1,4 +1,4 @@
-//! Access: which clients the host admits, and what they can request.
+//! Tests of access: which clients the host of Studio admits, and what they can request.
 
 use std::{
     io::{ErrorKind, Read, Write},
@@ -36,7 +36,7 @@ fn until_closed(stream: &mut TcpStream) -> Vec<u8> {
     }
 }
 
-/// Returns the request head that opens a WebSocket. Its key is the example in RFC 6455.
+/// Returns the head of a request that opens a WebSocket. Its key is the example in RFC 6455.
 fn upgrade(studio: &Studio) -> String {
     let host = studio.host();
     format!(
@@ -44,7 +44,7 @@ fn upgrade(studio: &Studio) -> String {
     )
 }
 
-/// Asserts that a page with the token still works: it gets diagnostics for a text.
+/// Asserts that a page with the valid token still works, i.e. that it gets diagnostics for a text.
 fn assert_page_works(studio: &Studio) {
     let (mut page, _) = studio.page();
     page.open(json!({}), SMALLEST);
@@ -79,8 +79,8 @@ fn the_page_may_load_only_its_own_resources() {
         ("/studio.css", "text/css"),
         ("/x", "text/plain; charset=utf-8"),
     ] {
-        // The host ignores cookies, which other servers on this machine may have set, and sets
-        // none.
+        // The host sets no cookies, and ignores cookies that other servers on this machine may have
+        // set.
         let response = studio.get(path, &format!("Cookie: token={}\r\n", studio.token));
         for (name, value) in [
             ("content-type", kind),
@@ -130,8 +130,8 @@ fn requests_with_a_foreign_host_or_origin_are_refused() {
         for path in ["/", "/studio.js", "/socket"] {
             assert_eq!(status(&ask(path, headers)), "403", "{path} {headers}");
         }
-        // A request that opens a WebSocket is refused for the same reasons, even if the rest of it
-        // is correct.
+        // A request that opens a WebSocket is refused for the same reasons as other requests, even
+        // if the rest of it is correct.
         let upgrade = upgrade(&studio);
         let socket = upgrade.lines().filter(|line| {
             let own = ["Connection", "Upgrade", "Sec-"];
@@ -154,7 +154,7 @@ fn unknown_paths_and_methods_are_refused() {
         assert_eq!(status(&response), "404", "{path}");
         assert!(!response.contains("camera") && !response.contains("root:"));
     }
-    // The target is an absolute address, as in a request to a proxy.
+    // The target is an absolute address, as in a request to a proxy server.
     for target in ["http://127.0.0.1/studio.js", "http://example.org/"] {
         assert_eq!(status(&studio.get(target, "")), "403", "{target}");
     }
@@ -213,7 +213,7 @@ fn a_connection_without_the_token_is_closed() {
     ] {
         assert_eq!(studio.admitted(wrong).err(), Some(unknown), "{wrong}");
     }
-    // The host gives no answer to binary messages and to a close message.
+    // The host does not answer binary messages and close messages.
     for wrong in [
         Message::binary(token.clone().into_bytes()),
         Message::Close(None),
@@ -223,19 +223,20 @@ fn a_connection_without_the_token_is_closed() {
         let said = socket.read();
         assert!(!matches!(said, Ok(Message::Text(_))), "{said:?}");
     }
-    // The token of one process is unknown to another process.
+    // A token of one running program is unknown to another one.
     let (_folder, other) = self::studio();
     assert_eq!(other.admitted(token).err(), Some(unknown));
     assert_page_works(&studio);
 }
 
 /// Each client sends the start of a request or message. Then it sends nothing more, or continues
-/// slowly.
+/// very slowly.
 #[test]
 fn a_client_without_the_token_is_disconnected_after_five_seconds() {
     let (_folder, studio) = studio();
     let upgrade = upgrade(&studio);
-    // `ping` sends a ping; `text` sends the start of a text frame of 100 bytes.
+    // The bytes of `ping` are a ping frame; those of `text` are the start of a text frame of 100
+    // bytes.
     let ping = [upgrade.as_bytes(), &[0x89, 0x80, 0, 0, 0, 0]].concat();
     let text = [upgrade.as_bytes(), &[0x81, 0xe4, 0, 0, 0, 0, 1]].concat();
     thread::scope(|scope| {
@@ -268,8 +269,8 @@ fn a_client_without_the_token_is_disconnected_after_five_seconds() {
                 let time = begun.elapsed();
                 let start = String::from_utf8_lossy(start);
                 assert!(time < Duration::from_secs(8), "{start}: {time:?}");
-                // A client that has closed its side, or has sent something that is not a token, is
-                // disconnected at once.
+                // A client is disconnected at once if it has closed its side or has sent something
+                // that is not a token.
                 assert!(
                     is_early || time > Duration::from_secs(4),
                     "{start}: {time:?}"
@@ -291,8 +292,8 @@ fn idle_connections_without_the_token_do_not_block_pages() {
         assert_page_works(&studio);
         drop((idle, sockets));
     }
-    // Pages with the token keep working, even if there are more of them than the host admits
-    // clients without a token.
+    // Pages with the token continue to work, even if they are more numerous than the clients
+    // without a token that the host allows.
     let mut pages: Vec<_> = (0..80).map(|_| studio.page().0).collect();
     for page in pages.iter_mut().chain([&mut before]) {
         page.open(json!({}), SMALLEST);
@@ -305,7 +306,7 @@ fn malformed_requests_and_frames_do_no_harm() {
     let (_folder, studio) = studio();
     let start = format!("GET / HTTP/1.1\r\nHost: {}\r\n", studio.host());
     let upgrade = upgrade(&studio);
-    // This is the head of a text frame of 64 MiB, with a part of the frame's text.
+    // The bytes are the head of a text frame of 64 MiB, followed by a part of the frame's text.
     let head = [&[0x81, 0xff][..], &(64_u64 << 20).to_be_bytes(), &[0; 4]].concat();
     let huge = [upgrade.as_bytes(), &head, &vec![b'y'; 1 << 20]].concat();
     for wrong in [
@@ -315,7 +316,7 @@ fn malformed_requests_and_frames_do_no_harm() {
         b"GET\r\n\r\n",
         b"GET / HTTP/1.1\r\n\xe9\r\n\r\n",
         b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n",
-        // These frames are wrong: a reserved opcode, a frame without a mask, a continuation frame
+        // The frames are invalid: a reserved opcode, a frame without a mask, a continuation frame
         // without a first frame, and a text frame that is not UTF-8.
         &[upgrade.as_bytes(), &[0x8f, 0x80, 0, 0, 0, 0]].concat(),
         &[upgrade.as_bytes(), &[0x81, 0x01, b'y']].concat(),
@@ -340,7 +341,7 @@ fn malformed_requests_and_frames_do_no_harm() {
 }
 
 /// On Linux, all addresses 127.0.0.0/8 lead to this machine. A server that listened at every
-/// address would therefore be reachable at 127.0.0.2.
+/// address could therefore be reached at 127.0.0.2.
 #[cfg(target_os = "linux")]
 #[test]
 fn studio_listens_only_at_127_0_0_1() {

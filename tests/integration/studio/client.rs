@@ -1,4 +1,4 @@
-//! The running program, and a simple client that sends what a browser would send.
+//! The running program `pinhole studio`, and a simple client that sends what a browser would send.
 
 use std::{
     io::{BufRead, BufReader, Read, Write},
@@ -19,18 +19,18 @@ use crate::{
     program::Folder,
 };
 
-/// Starts the program in a new folder, with the smallest scene in `a.scn`.
+/// Starts `pinhole studio` in a new folder, with the smallest scene in `a.scn`.
 pub fn studio() -> (Folder, Studio) {
     let folder = Folder::with([("a.scn", SMALLEST)]);
     let studio = Studio::start(folder.command("studio --no-open a.scn"));
     (folder, studio)
 }
 
-/// Running `pinhole studio` that serves a scene.
+/// A running `pinhole studio` that serves a scene.
 pub struct Studio {
     pub child: Child,
     pub port: u16,
-    /// Token in the address that the program printed.
+    /// Token in the address that the program has printed.
     pub token: String,
 }
 
@@ -69,7 +69,8 @@ impl Studio {
         response
     }
 
-    /// Sends a GET request for a path, with the header lines `headers`. Returns the response.
+    /// Sends a GET request for the path `path`, with the header lines `headers`. Returns the
+    /// response.
     pub fn get(&self, path: &str, headers: &str) -> String {
         let host = self.host();
         self.response(&format!(
@@ -86,8 +87,8 @@ impl Studio {
         client(request, self.stream()).unwrap().0
     }
 
-    /// Opens a page with a token. Returns the page and its session's token, or the close code with
-    /// which the host refuses the page.
+    /// Opens a page with a token. Returns the page and the token of its session. If the host
+    /// refuses the page, returns the close code.
     pub fn admitted(&self, token: &str) -> Result<(Client<Page>, String), CloseCode> {
         let mut socket = self.socket();
         socket.send(Message::text(token)).unwrap();
@@ -103,7 +104,7 @@ impl Studio {
     }
 
     /// Opens a page with the printed token. Returns the page, and the host's message about the
-    /// file.
+    /// scene's file.
     pub fn page(&self) -> (Client<Page>, Value) {
         let (mut page, token) = self.admitted(&self.token).unwrap();
         assert_eq!(token, self.token);
@@ -119,7 +120,7 @@ impl Drop for Studio {
     }
 }
 
-/// The page's end of a WebSocket.
+/// The end of a WebSocket that belongs to a page.
 pub struct Page(pub WebSocket<TcpStream>);
 
 impl Transport for Page {

@@ -1,4 +1,4 @@
-//! Messages over the WebSocket between a page and the host.
+//! Tests of the messages between a page and the host over a WebSocket.
 
 use std::io::Write;
 
@@ -43,7 +43,7 @@ fn invalid_messages_get_errors_and_the_conversation_continues() {
         let found = page.respond(method, params);
         assert_eq!(found["error"]["code"], code, "{method}");
     }
-    // No text can contain an unpaired surrogate, so the request gets an error.
+    // No text can contain half of a surrogate pair, so the request is answered with an error.
     let text = r#"{ "id": "page-7", "method": "studio/save", "params": { "text": "\ud800" } }"#;
     page.transport.write(text);
     let answer = page.read();
@@ -83,7 +83,8 @@ fn studio_pictures_equal_those_of_render() {
 #[test]
 fn a_message_that_is_too_long_ends_the_conversation() {
     let (_folder, studio) = studio();
-    // The head of a text frame has the mask bit, a length of 64 bits, and the mask.
+    // The head of a text frame consists of two bytes with the mask bit, a length of 64 bits, and
+    // the mask.
     let head = [
         &[0x81, 0xff],
         &((64_u64 << 20) + 1).to_be_bytes()[..],
@@ -127,7 +128,7 @@ fn pages_are_independent_and_do_not_block_each_other() {
     let (_folder, studio) = studio();
     let (mut first, _) = studio.page();
     let (mut second, _) = studio.page();
-    // Making this picture takes more than a minute.
+    // The picture takes more than a minute to render.
     let long = first.request("studio/png", json!({ "text": long_pixel() }));
     let refused = first.respond("studio/png", json!({ "text": SCENE }));
     assert_eq!(refused["error"]["message"], "another picture is being made");
@@ -150,7 +151,7 @@ fn closing_a_page_cancels_its_work() {
 
     let (_folder, studio) = studio();
     let tasks = format!("/proc/{}/task", studio.child.id());
-    // A render thread has the same name as the thread that starts it.
+    // A thread that renders has the same name as the thread that has started it.
     let wait = |name: &str, is_there: bool| {
         for _ in 0..500 {
             let tasks = fs::read_dir(&tasks)

@@ -1,5 +1,5 @@
-//! The scene's file: the host reads and saves it, and notices changes by other programs. The host
-//! touches no other file.
+//! Tests of the scene's file: the host reads and saves it, and notices changes by other programs.
+//! The host touches no other file.
 
 use std::{fs, net::TcpListener};
 
@@ -42,12 +42,12 @@ fn a_save_writes_the_file_and_notifies_other_pages() {
     assert_eq!(save(&mut first, "// é\r\n", Some(SCENE))["result"], saved());
     assert_eq!(folder.text("a.scn"), "// é\r\n");
     assert_eq!(told(&mut second), [json!("// é\r\n"), Value::Null]);
-    // If the file already contains the text to be saved, saving succeeds even if `base`, the file's
-    // content as the page knows it, is out of date.
+    // If the file already contains the text, saving the text succeeds even if `base`, the content
+    // that the page knows, is out of date.
     for (text, base) in [("// é\r\n", "x"), ("// 2", "// é\r\n")] {
         assert_eq!(save(&mut second, text, Some(base))["result"], saved());
     }
-    // The first page is notified only of this save of the second page, not of its own save.
+    // The first page is notified only of the second page's save, not of its own.
     assert_eq!(told(&mut first), [json!("// 2"), Value::Null]);
     assert_eq!(studio.page().1["text"], "// 2");
     assert_eq!(folder.names(), ["a.scn"]);
@@ -58,7 +58,7 @@ fn a_save_never_overwrites_a_change_of_another_program() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
     folder.write("a.scn", "// theirs");
-    // Saving notices the change even if the host has not told the page about it.
+    // Saving notices the change even before the host has told the page about it.
     let theirs = json!({ "ok": false, "text": "// theirs" });
     assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], theirs);
     assert_eq!(folder.text("a.scn"), "// theirs");
@@ -90,7 +90,8 @@ fn a_save_never_overwrites_a_change_of_another_program() {
 fn a_save_that_fails_changes_nothing() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
-    // A new scene can be saved only in the folder of the file, and only with the extension `.scn`.
+    // A new scene can be saved only in the folder of the scene's file, and only with the extension
+    // `.scn`.
     for name in ["../b.scn", "sub/b.scn", "b.txt"] {
         let elsewhere = json!({ "text": "x", "base": SCENE, "name": name });
         let error = page.respond("studio/save", elsewhere)["error"].take();
@@ -107,7 +108,7 @@ fn a_save_that_fails_changes_nothing() {
     assert_eq!(folder.names(), ["a.scn"]);
 }
 
-/// Tests each way to protect a file that this system has. Only the last way has an effect on root.
+/// Tests each way to protect a file that the system has. Only the last way also works against root.
 #[cfg(unix)]
 #[test]
 fn a_forbidden_save_names_the_file_the_reason_and_a_remedy() {
@@ -185,7 +186,7 @@ fn a_new_scene_is_saved_only_under_an_unused_name() {
     assert_eq!(outer.text("inner/there.scn"), "// there");
     assert_eq!(save(&mut page, json!("new one.scn"))["result"], saved());
     assert_eq!(outer.text("inner/new one.scn"), "// new");
-    // From here on, the new scene is an ordinary file for all pages.
+    // After its first save, the new scene is an ordinary file for all pages.
     for page in [&mut page, &mut other] {
         assert_eq!(
             page.notification("studio/file"),
@@ -289,7 +290,7 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         env::var("PATH").unwrap()
     );
     let opened = folder.path("opened");
-    // The socket buffers of a page that does not read are smaller than this text.
+    // The text is longer than the socket buffers of a page that does not read.
     let long = "// a long scene\n".repeat(1 << 19);
     folder.write("a.scn", &long);
     for (arguments, is_opened) in [("studio --no-open", false), ("studio a.scn", true)] {
@@ -305,8 +306,8 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         while !opened.exists() && Instant::now() < end {
             thread::sleep(Duration::from_millis(10));
         }
-        // Other users can read the browser's command line. Therefore, the token in it is a separate
-        // one that works only once.
+        // Other users can read the command line with which the browser is started. Therefore, it
+        // contains a separate token that works only once.
         let address = folder.text("opened");
         let (host, once) = address.trim().split_once("/#token=").unwrap();
         assert_eq!(host, format!("http://{}", studio.host()));
@@ -316,7 +317,8 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
         // The page reconnects with the token of its session.
         let (mut again, token) = studio.admitted(&session).unwrap();
         assert_eq!(token, session);
-        // The pending messages are read first; the notice that the session ends comes after them.
+        // The pending messages are read first. The notice that the session has ended comes after
+        // them.
         first.notification("studio/file");
         again.notification("studio/file");
         let (mut other, _) = studio.page();
@@ -360,10 +362,11 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
         let (mut idle, _socket) = (studio.stream(), studio.socket());
         idle.write_all(b"GET / HT").unwrap();
         if is_pipe {
-            // With a pipe in place of the file, opening the file would wait for a writer.
+            // A pipe takes the place of the file. If the host opened the pipe, it would wait for
+            // another program to write to it.
             fs::remove_file(folder.path("a.scn")).unwrap();
             folder.make_pipe("a.scn");
-            // This is long enough for the host to look at the file.
+            // In this time, the host checks the file at least once.
             thread::sleep(Duration::from_millis(2500));
         }
         let begun = Instant::now();
@@ -377,8 +380,8 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
     }
 }
 
-/// Unsaved drafts, one per page's key, are kept across restarts of the program until their text is
-/// saved or they are discarded.
+/// Drafts, i.e. unsaved texts of pages, survive restarts of the program until their text is saved
+/// or they are discarded.
 #[test]
 fn drafts_survive_a_restart_until_they_are_saved_or_discarded() {
     let folder = Folder::with([("a.scn", SCENE)]);
@@ -400,8 +403,8 @@ fn drafts_survive_a_restart_until_they_are_saved_or_discarded() {
     let twelve: Vec<String> = (0..12).map(|key| key.to_string()).collect();
     let twelve: Vec<(&str, Option<&str>)> =
         twelve.iter().map(|key| (&**key, Some(&**key))).collect();
-    // Each row has drafts stored one after the other, the drafts offered to a later page, and the
-    // drafts left after that page has saved `// b`.
+    // Each row has drafts that are stored one after the other, the drafts offered to a later page,
+    // and the drafts left after this page has saved `// b`.
     let cases = [
         (
             &[("x", Some("// 0")), ("y", Some("// 1"))][..],

@@ -1,4 +1,4 @@
-//! The words that the page highlights are the words of the language.
+//! Tests that the words that the page highlights are exactly the words of the language.
 
 use std::{collections::BTreeSet, fs, path::Path};
 

@@ -1,4 +1,4 @@
-//! `pinhole studio` as a browser sees it: access, messages, and the scene's file.
+//! Tests of `pinhole studio` as a browser sees it: access, messages, and the scene's file.
 
 mod access;
 pub mod client;

@@ -1,5 +1,6 @@
-//! Compares the tracer with the oracle, mainly within a few units in the last place of each
-//! boundary. The tests of `numerics` cover the catalogue of hard cases.
+//! Compares the tracer with an independent tracer in arithmetic of high precision, the oracle. Most
+//! compared points are within a few units in the last place of a boundary. The tests of `numerics`
+//! cover the catalogue of hard cases.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
 pub use pinhole::reference::scenes::{camera, cuboid, scene, sphere};
@@ -24,7 +25,7 @@ pub fn triangle(centroid: DVec3, normal: DVec3) -> Shape {
     scenes::triangle(centroid, normal, dvec3(2.0, 2.0, 1.0))
 }
 
-/// Returns a black triangle with these vertices.
+/// Returns a black triangle with the given vertices.
 pub fn by_vertices(vertices: [DVec3; 3]) -> Shape {
     Shape::Triangle(Triangle {
         outline: TriangleOutline::Vertices(vertices),
@@ -36,8 +37,8 @@ pub fn floor() -> Shape {
     scenes::board(0.0, 1.0)
 }
 
-/// Returns whether the camera does not look along its up vector. In a camera that does, the world's
-/// axes determine the orientation.
+/// Returns whether the camera does not look along its up vector. If it does, the coordinate axes
+/// determine its orientation instead.
 pub fn is_upright(scene: &Scene) -> bool {
     let Camera { eye, view, up, .. } = scene.camera;
     let direction = match view {
@@ -47,8 +48,8 @@ pub fn is_upright(scene: &Scene) -> bool {
     direction.cross(up) != DVec3::ZERO
 }
 
-/// The tracer and the oracle for the same scene. All objects and all squares have different
-/// colours.
+/// A scene in Pinhole's tracer and in the oracle, an independent tracer of high precision. All
+/// objects and all squares have different colours.
 struct TracerAndOracle {
     scene: Scene,
     world: World,
@@ -72,8 +73,8 @@ impl TracerAndOracle {
         self.world.palette()[self.world.slot_at(x, y, offset)].srgb
     }
 
-    /// Asserts that the tracer and the oracle see the same colour at an offset in the pixel (x, y).
-    /// Returns the colour.
+    /// Asserts that the tracer and the oracle (an independent tracer of high precision) see the
+    /// same colour at an offset in the pixel (x, y). Returns the colour.
     #[track_caller]
     fn check(&self, x: u32, y: u32, offset: DVec2) -> [f64; 3] {
         let expected = match self.oracle.seen(&self.oracle.direction(x, y, offset)) {
@@ -87,9 +88,10 @@ impl TracerAndOracle {
     }
 }
 
-/// Compares the tracer with the oracle at random points. Then bisects random segments within
-/// pixels, and compares both sides of each colour boundary at neighbouring `f64` points. Returns
-/// the number of boundaries found, so that a test can require a minimum.
+/// Compares the tracer with the oracle, an independent tracer of high precision, at random points.
+/// Then bisects random segments within pixels, and compares both sides of each colour boundary at
+/// neighbouring `f64` points. Returns the number of boundaries found, so that a test can require a
+/// minimum.
 #[track_caller]
 fn assert_agrees_with_oracle(scene: &Scene, points: usize) -> usize {
     let both = TracerAndOracle::new(scene);
@@ -101,7 +103,7 @@ fn assert_agrees_with_oracle(scene: &Scene, points: usize) -> usize {
         if tries % 16 == 0 {
             both.check(x, y, a);
         }
-        // The segment is along x or y, and is bisected down to neighbouring `f64` values.
+        // The segment is parallel to x or y, and is bisected down to neighbouring `f64` values.
         let axis = tries % 2;
         b[1 - axis] = a[1 - axis];
         let color = both.color(x, y, a);
@@ -142,7 +144,7 @@ fn scenes_of_random_numbers_agree_with_the_oracle() {
 
 #[test]
 fn scenes_full_of_ties_agree_with_the_oracle() {
-    // The sample points are at multiples of 1/8 pixel, so many lie exactly on edges.
+    // The sample points are at multiples of 1/8 pixel, so many of them lie exactly on edges.
     let mut random = Random::new(11);
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 11).map(|(_, scene)| scene);
     for scene in scenes.filter(is_upright).take(150) {
@@ -172,7 +174,8 @@ fn fans_of_triangles_agree_with_the_oracle() {
     assert!(found > 200, "{found}");
 }
 
-/// Distances are equal, or close to the smallest or the largest `f64`.
+/// The distances of surfaces from the eye are equal, or close to the smallest or the largest `f64`.
+/// The tracer and the oracle must nevertheless see the same surface.
 #[test]
 fn objects_at_the_limits_of_f64_agree_with_the_oracle() {
     for [scene, values, boundaries] in rows(
@@ -212,7 +215,7 @@ fn lenses_at_the_limits_of_f64_show_the_right_objects() {
             "image {{ width 64 height 64 }} camera {{ eye (0, 0, 5) direction (0, 0, -1) {lens} }}
              box {{ min (-1, -1, -1) max (0, 1, 0) }} box {{ min (0, -1, -1) max (1, 1, 0) }}"
         )));
-        // The face that the boxes share is seen edge-on, in the middle of the picture.
+        // The common face of the boxes is seen edge-on, in the middle of the picture.
         for (x, seen) in [0, 31, 32, 63].into_iter().zip(seen.split(' ')) {
             let found = both.color(x, 31, random.offset())[0];
             assert_eq!(found.to_string(), seen, "{lens}: {x}");
@@ -220,7 +223,7 @@ fn lenses_at_the_limits_of_f64_show_the_right_objects() {
     }
 }
 
-/// Two triangles are the halves of a square before a red background. They share the diagonal, which
+/// Two triangles are the halves of a square in front of a red background. Their common diagonal
 /// passes through the centres of pixels.
 #[test]
 fn two_halves_of_a_square_leave_no_gap() {
@@ -240,7 +243,7 @@ fn two_halves_of_a_square_leave_no_gap() {
             let (sampled, exact) = (sampled(&scene), exact(&scene));
             let mut seen = 0;
             for (sampled, [_, exact, _]) in sampled.pixels().iter().zip(exact.film.pixels()) {
-                // If red were seen through a gap, red and green would differ. At the square's
+                // If a gap showed the red background, red and green would differ. At the square's
                 // edges, where green is below 1, they may differ.
                 assert!(sampled[0] == sampled[1] || *exact < 1.0, "from {eye}");
                 seen += u32::from(sampled[1] == 1.0);

@@ -1,18 +1,21 @@
-//! The Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s) for s = 3, 4, 5, by its expansion about the
-//! pole of the integrand ([`tail`](super)).
+//! The Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s), j = 0, 1, 2, … for s = 3, 4, 5. It equals an
+//! integral ([`tail`](super)), which is computed from the pole of the integrand and an expansion of
+//! the rest.
 
 use super::super::special::{Complex, integrals};
 
-/// Angle |θ| ([`lerch`]), in radians, below which the regular function R ([`rest_of_pole`]) is
-/// computed by a Taylor series, because its closed formula cancels. The first omitted term,
-/// θ⁹/47900160, is 100 roundings; the Lerch series may have an error of 500 roundings.
+/// Angle |θ|, in radians, below which [`rest_of_pole`] uses a Taylor series, because its closed
+/// formula loses digits by cancellation. With this value, the first omitted term, θ⁹/47900160, is
+/// 100 roundings; the Lerch series, to which it contributes, may have an error of 500 roundings.
 const NEAR_POLE: f64 = 0.2;
 
-/// Computes the Lerch series V_s(θ) = Σ_j e^(iθj)·(w + j)^(−s) for s = 3, 4 and 5 at θ = `theta`,
-/// where |θ| ≤ π and `rotation` is e^iθ. The series is also an integral, as the head of
-/// [`tail`](super) says. Its integrand is the sum of a pole and a regular function R, of which the
-/// first two terms are used ([`rest_of_pole`]).
+/// Computes the Lerch series Σ_j e^(iθj)·(w + j)^(−s), j = 0, 1, 2, … for s = 3, 4 and 5. θ is
+/// `theta`, with |θ| ≤ π, and w is positive. `rotation` must be e^iθ. The truncation error is at
+/// most 0.04·s·(s + 1)·w^(−s−2).
 pub(super) fn lerch(theta: f64, rotation: Complex, w: f64) -> [Complex; 3] {
+    // The series is also an integral (`tail`), whose integrand is the sum of a pole and a regular
+    // function. The pole gives an exponential integral; of the regular function, the first two
+    // Taylor terms are used (`rest_of_pole`).
     let (r, slope) = rest_of_pole(theta, rotation);
     let h = integrals(theta * w);
     let u = 1.0 / w;

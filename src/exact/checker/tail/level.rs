@@ -1,5 +1,6 @@
-//! The sum over the crossings of an edge along which the depth m less than doubles, by Fourier
-//! modes.
+//! The sum over the lines that an edge crosses, by Fourier modes, for an edge along which the depth
+//! less than doubles. Green's theorem turns a board's integral into such sums
+//! ([`green`](super::super::green)).
 
 use std::f64::consts::PI;
 
@@ -10,20 +11,21 @@ use super::super::special::{Complex, cis, reduced_multiple, square, times};
 use super::{LATER_TERMS_SHARE, MODE_TERMS, amplitudes, last_mode, lerch::lerch, mode};
 use crate::math::{Double, Real};
 
-/// Minimum truncation error that is allowed for the sum over an edge along which the depth m less
+/// Minimum truncation error that is allowed for the sum over an edge along which the depth less
 /// than doubles, as a fraction of the pixel's tolerance. The edge's own limit,
-/// [`LATER_TERMS_SHARE`] of its tolerance, is used if it is larger.
+/// [`LATER_TERMS_SHARE`] of its tolerance, is used if it is larger. A thousandth hardly adds to the
+/// pixel's error.
 const LEVEL_TRUNCATION: f64 = 1e-3;
-/// Depth m in the middle of an edge, divided by the change of m along the edge, above which m
-/// counts as constant. The error bound is then larger by 4/STEADY of the sum of absolute terms,
-/// that is by 1e-6 of a value that is itself small if crossings are many. Measured: with 7.5e5 or
-/// 1.2e7, no bound changes.
+/// Minimum ratio of the depth in the middle of an edge to the change of the depth along the edge,
+/// at which the depth counts as constant. Treating it as constant adds at most 4/STEADY, about
+/// 1e-6, of the sum of the absolute terms to the error bound. Measured: with 7.5e5 or 1.2e7, no
+/// bound changes.
 const STEADY: f64 = 3e6;
 
-/// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over the crossings of
-/// an edge along which the depth m less than doubles. `trivial` is an upper bound of the sum's
-/// absolute value, and `tolerance` limits the truncation error. Returns 0 with the bound `trivial`
-/// if the Fourier modes give no better bound or exceed the budget.
+/// Computes the alternating sum Σ (−1)^j·X over the crossings j of an edge along which the depth
+/// less than doubles. `series` gives X, the edge's contribution at a crossing. `trivial` is an
+/// upper bound of the sum's absolute value, and `tolerance` limits the truncation error. Returns 0
+/// with the bound `trivial` if the Fourier modes give no better bound or exceed the budget.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -38,14 +40,15 @@ pub(super) fn sum(
     let (w, u) = (start / all.rise, 1.0 / start);
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) * u * u * u, |a| a * (u / PI));
     let neglected = (LEVEL_TRUNCATION * budget.tolerance).max(LATER_TERMS_SHARE * tolerance);
-    // The Fourier mode n is at most 8/π²·n^−3 times `trivial`.
+    // The Fourier mode n is at most 8/π²·n^−3 times `trivial`, the bound of the whole sum. This is
+    // at most `trivial`·n^−3, as `last_mode` requires.
     let Some((last, beyond)) = last_mode(trivial, neglected, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };
 
     let step = all.alternating_step();
-    // e^(iφ) with the phase φ of mode 1 at the first crossing, and at the place of the crossing
-    // that would follow the last one.
+    // The two numbers e^(iφ), where φ is the phase of mode 1 at the first crossing, and at the
+    // place of the crossing that would follow the last one.
     let ends = [Double::from_f64(0.0), all.count].map(|j| cis(all.reduced_at(&j).hi * PI));
     let rotations = ends.map(square);
     let mut phases = ends;
@@ -82,10 +85,11 @@ pub(super) fn sum(
     let later: f64 = (MODE_TERMS + 1..=series.terms)
         .map(|k| lines * series.size(k, all.depth))
         .sum();
-    // If m counts as constant, m^−s differs from its value in the middle by at most s·gN/2m of this
-    // value, where N is the number of crossings and g the step of m between them. Otherwise, each
-    // of the two Lerch series has an error of about 500 roundings of w/2 times its first term, and
-    // a truncation error of at most 0.04·s·(s + 1)/w² of its first term.
+    // If the depth m counts as constant, m^−s with the exponent s of a term differs from its value
+    // in the middle by at most s·gN/2m of this value. N is the number of crossings, and g the step
+    // of m between them. Otherwise, each of the two Lerch series has an error of about 500
+    // roundings of w/2 times its first term, and a truncation error of at most 0.04·s·(s + 1)/w² of
+    // its first term.
     let model = if is_steady {
         4.0 / STEADY
     } else {

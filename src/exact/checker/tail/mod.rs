@@ -4,8 +4,10 @@
 //! [`green`](super::green). Out: Σ (−1)^j·X over the crossings j, with a bound on truncation and
 //! rounding errors.
 //!
-//! Crossing j lies at t_j = t + τ·j, with the depth m_j = g·(w + j), and the square wave changes
-//! its sign at every crossing. The periodic Euler polynomials are the Fourier series
+//! Crossing j has the coordinate t_j = t + τ·j along the edge and the depth m_j = g·(w + j), where
+//! τ and g are the steps of both from crossing to crossing, and g·w is the depth at the first
+//! crossing. The square wave changes its sign at every crossing. The periodic Euler polynomials are
+//! the Fourier series
 //!
 //! A_k(t) = Im (4/π)·Σ_n e^(iπnt)/(n·(iπn)^k) over the odd n.
 //!
@@ -43,34 +45,42 @@ use super::homography::BoundedSum;
 use super::special::Complex;
 use crate::math::{Double, Real};
 
-/// Number of terms of the series X ([`EdgeSeries`]) whose sums over an edge's crossings are
-/// computed by Fourier modes; later terms count as an error.
+/// Number of terms of an edge's series ([`EdgeSeries`]) whose sums over the edge's crossings are
+/// computed by Fourier modes. The later terms fall with a higher power of the depth and count as an
+/// error. If the crossings recede, those at which this error would be too large are added one by
+/// one instead.
 const MODE_TERMS: usize = 3;
 
-/// Maximum number of crossings of an edge that are all added one by one; above it, Fourier modes
-/// are tried. So many crossings take 60 µs, 3 ns each. Not critical: with 5000 or 80,000, the
-/// measured running time changes by less than 10 %.
+/// Maximum number of crossings of an edge that are all added one by one. With more crossings,
+/// Fourier modes are tried. Adding 20,000 crossings takes 60 µs, 3 ns each. Not critical: with 5000
+/// or 80,000, the measured running time changes by less than 10 %.
 const MAX_DIRECT: f64 = 20_000.0;
 /// Maximum number of an edge's crossings that are added one by one, and maximum number n of a
-/// Fourier mode; the crossings or modes beyond count as an error. So many take a few milliseconds.
+/// Fourier mode. The crossings or modes beyond count as an error. Adding 300,000 of them takes a
+/// few milliseconds.
 const MAX_TERMS_ADDED: f64 = 300_000.0;
 /// Fraction of an edge's tolerance up to which the edge's whole sum is left out: if an upper bound
 /// of the sum is at most this fraction, the bound counts as an error instead. Skipped Fourier modes
-/// may have the same fraction. The fractions of all kinds of errors add up to less than 1.
+/// may use up the same fraction. The fractions of all kinds of errors must add up to less than 1.
 const SKIPPED_SHARE: f64 = 0.25;
-/// Fraction of an edge's tolerance for the error of leaving out the later terms of the series X
-/// ([`EdgeSeries`]), which are not summed by Fourier modes. Not critical: with 0.0125 or 0.2, the
+/// Fraction of an edge's tolerance for the error of leaving out those terms of its series
+/// ([`EdgeSeries`]) that are not summed by Fourier modes. Not critical: with 0.0125 or 0.2, the
 /// measured running time changes by less than 10 %.
 const LATER_TERMS_SHARE: f64 = 0.05;
-/// Work charged to the pixel's budget per crossing that is added directly, in units of about 50 ns.
+/// Approximate time to add one crossing directly, in units of about 50 ns. It is charged to the
+/// pixel's budget, and need not be precise, because the budget only stops computations that take
+/// too long.
 const CROSSING_WORK: f64 = 1.0 / 16.0;
-/// Work charged to the pixel's budget per unit of the last Fourier mode's number n, in units of
-/// about 50 ns. Only odd numbers have modes.
+/// Half of the approximate time to compute one Fourier mode, in units of about 50 ns. Multiplied by
+/// the number n of the last mode, it gives the work charged to the pixel's budget, because only odd
+/// numbers have modes. A rough value is enough, because the budget only stops computations that
+/// take too long.
 const MODE_WORK: f64 = 1.0 / 4.0;
 
-/// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over all crossings of
-/// an edge. `tolerance` limits the truncation error. Returns 0 with an upper bound of the sum's
-/// absolute value if the sum is negligible or the budget does not afford it.
+/// Computes the alternating sum Σ (−1)^j·X over all crossings j of an edge with lines of the board.
+/// `series` gives X, the edge's contribution at a crossing. `tolerance` limits the truncation
+/// error. Returns 0 with an upper bound of the sum's absolute value if the sum is negligible or the
+/// budget does not afford it.
 pub(super) fn sum(
     all: &LineCrossings,
     series: &EdgeSeries,
@@ -92,8 +102,8 @@ pub(super) fn sum(
         return unknown;
     }
     if all.rise * lines < all.depth {
-        // As m less than doubles between the edge's ends, the Fourier modes of a sum from one end
-        // to infinity would decay too slowly. `level` sums between the two ends.
+        // The depth m less than doubles between the edge's ends, so that the Fourier modes of a sum
+        // from one end to infinity would decay too slowly. `level` sums between the two ends.
         let sum = level::sum(all, series, trivial, tolerance, budget);
         if sum.bound > tolerance && lines <= MAX_TERMS_ADDED {
             return one_by_one(lines).unwrap_or(sum);
@@ -118,8 +128,9 @@ pub(super) fn sum(
     for (end, crossing) in ends.iter().enumerate() {
         let Some(crossing) = crossing else { continue };
         let rest = receding::sum_from(all, crossing, series, share, budget);
-        // Crossing j has the sign (−1)^j. If the edge ends before the horizon, the sum from its end
-        // to the horizon is subtracted.
+        // `rest` is the sum from `crossing` to the horizon, in which the first term is positive. In
+        // the whole sum, crossing j has the sign (−1)^j. If the edge ends before the horizon, the
+        // second `rest`, from the edge's end on, is subtracted from the first.
         let odd = crossing.floor().1 != (end == 1);
         sum.value += if odd { -rest.value } else { rest.value };
         sum.bound += rest.bound;
@@ -127,9 +138,9 @@ pub(super) fn sum(
     sum
 }
 
-/// Returns the amplitudes of the first terms of the series X ([`EdgeSeries`]) in the Fourier mode n
-/// = 1. They are computed for factors of 1, the first being `first` and each other `next` of the
-/// one before, and then multiplied by `series.factors`.
+/// Returns the amplitudes of the first three terms of the series ([`EdgeSeries`]) in the Fourier
+/// mode n = 1. The amplitude of a term is its factor in `series.factors` times a unit. The unit of
+/// the first term is `first`; `next` computes the unit of each later term from the previous unit.
 fn amplitudes(series: &EdgeSeries, first: f64, next: impl Fn(f64) -> f64) -> [f64; MODE_TERMS] {
     let (mut amplitudes, mut unit) = ([0.0; MODE_TERMS], first);
     for (amplitude, factor) in amplitudes.iter_mut().zip(&series.factors[1..=series.terms]) {
@@ -153,10 +164,10 @@ fn last_mode(size: f64, limit: f64, trivial: f64, budget: &PixelBudget) -> Optio
     Some((last, beyond))
 }
 
-/// Returns the Fourier mode `n` of the first terms of the series X ([`EdgeSeries`]). `amplitudes`
-/// are those of mode 1 ([`amplitudes`]), and `sums` are the sums
-///
-/// Σ_j e^(iπnt + iθj)·(w + j)^(−s) for s = 3, 4 and 5
+/// Returns the Fourier mode `n` of the first three terms of the series ([`EdgeSeries`]), summed
+/// over an edge's crossings. `amplitudes` are those of mode 1 ([`amplitudes`]). `sums` are the
+/// sums, over the crossings, of the mode's complex exponential divided by the depth to the power s
+/// = 3, 4 and 5. The unit of the depth is its step from crossing to crossing.
 fn mode(n: f64, amplitudes: &[f64; MODE_TERMS], sums: [Complex; MODE_TERMS]) -> f64 {
     let per_mode = 1.0 / n;
     let cube = per_mode * per_mode * per_mode;

@@ -1,5 +1,7 @@
-//! The sum over the crossings of an edge along which the depth m at least doubles, by Fourier
-//! modes. It starts at a depth from which the expansion of the Lerch series is accurate.
+//! The sum over the lines that an edge crosses, by Fourier modes, for an edge along which the depth
+//! at least doubles. Green's theorem turns a board's integral into such sums
+//! ([`green`](super::super::green)). The sum starts at a depth from which the expansion of the
+//! Lerch series is accurate.
 
 use std::{f64::consts::PI, ops::RangeInclusive};
 
@@ -20,15 +22,16 @@ const MODE_COST: f64 = 4.0;
 /// faster.
 const FIRST_MODES: f64 = 31.0;
 /// Fraction of an edge's tolerance for the error of leaving out all Fourier modes beyond the last
-/// computed one.
+/// computed one. The tolerance is divided among several kinds of errors. This kind gets the largest
+/// fraction, because a smaller one would need more modes.
 const BEYOND_LAST_SHARE: f64 = 0.6;
 /// Fraction of an edge's tolerance for the truncation error of the Lerch series ([`lerch`]) in the
-/// first term of the series X ([`EdgeSeries`]). Not critical: with 0.005 or 0.08, the measured
+/// first term of the edge's series ([`EdgeSeries`]). Not critical: with 0.005 or 0.08, the measured
 /// running time changes by less than 10 %.
 const LERCH_SHARE: f64 = 0.02;
-/// Minimum of w, the depth m divided by its step from crossing to crossing, at which the Lerch
-/// series ([`lerch`]) is expanded in 1/w. Each term is then at most about s/w, a third, of the
-/// previous term; s is at most 5.
+/// Minimum of w, the depth divided by its step from crossing to crossing, at which the Lerch series
+/// of exponents s = 3 to 5 ([`lerch`]) is expanded in 1/w. Each term of the expansion is then at
+/// most about s/w, less than a third, of the previous term.
 const MIN_W: f64 = 16.0;
 /// Angle |θ| of a Fourier mode, in radians, below which |1 − e^iθ|² = 2 − 2·cos θ is replaced by a
 /// lower bound in θ², because the subtraction cancels most digits there.
@@ -37,23 +40,23 @@ const SMALL_ANGLE: f64 = 0.2;
 /// ratio differs from 1 by at most θ²/12, a third of a percent.
 const MIN_SQUARE_RATIO: f64 = 0.99;
 
-/// Returns the depth m from which on Fourier modes compute the sum over an edge's crossings;
-/// crossings at a smaller depth are added one by one.
+/// Returns the depth at which the sum over an edge's crossings changes its method: crossings at a
+/// smaller depth are added one by one, and Fourier modes give the sum over the others.
 pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) -> f64 {
     let g = all.rise;
     let factor = series.factors[1].abs();
     // At the depth `cheapest`, the total work is least: (m − m_0)/g crossings are added one by one,
-    // and κ/2m Fourier modes give the remaining sum. m_0 is the depth at the first crossing, g the
-    // step of m.
+    // and κ/2m Fourier modes (`kappa`) give the remaining sum. m is the depth, m_0 its value at the
+    // first crossing, and g its step from crossing to crossing.
     let kappa =
         (factor * 4.0 / (PI * PI * PI) / (2.0 * g) / (4.0 * BEYOND_LAST_SHARE * tolerance)).sqrt();
     let cheapest = (0.5 * MODE_COST * kappa * g).sqrt();
-    // From the depth `nothing` on, the remaining sum is negligible. The first term of X is at most
-    // ½/π of its factor.
+    // From the depth `nothing` on, the remaining sum is negligible. The first term of the series X
+    // is at most ½/π of its factor.
     let nothing = (factor * 0.25 / PI / g / (0.5 * SKIPPED_SHARE * tolerance)).sqrt() + g;
-    // `steep` and `fourth` are depths at which two errors reach their limits: the truncation error
-    // of a mode falls as w^−5, and the sum of the terms of X from A_5 on as m^−5. The factor of A_5
-    // is 0 if X has fewer terms.
+    // `steep` and `fourth` are depths at which two errors reach their limits. The truncation error
+    // of a mode falls as w^−5, and the sum of the terms of the series X from the fourth term on as
+    // m^−5. The factor of the fourth term is 0 if X has fewer terms.
     let steep = g * libm::pow(factor / (g * g * g) / (LERCH_SHARE * tolerance), 0.2);
     let fourth = series.factors[4].abs() / (10.0 * PI * PI * PI * PI * g);
     let fourth = libm::pow(fourth / (LATER_TERMS_SHARE * tolerance), 0.2);
@@ -61,10 +64,10 @@ pub(super) fn start(all: &LineCrossings, series: &EdgeSeries, tolerance: f64) ->
     least.min(nothing).max(all.depth)
 }
 
-/// Computes the alternating sum Σ (−1)^j·X of the series X ([`EdgeSeries`]) over all crossings from
-/// `crossing` to the horizon, where j is 0 at `crossing`. `tolerance` limits the truncation error.
-/// Returns 0 with a bound on the sum's absolute value if the sum is negligible, or if the Fourier
-/// modes give no better bound or exceed the budget.
+/// Computes the alternating sum Σ (−1)^j·X over all crossings j from `crossing` to the horizon,
+/// where j is 0 at `crossing`. `series` gives X, the edge's contribution at a crossing. `tolerance`
+/// limits the truncation error. Returns 0 with a bound on the sum's absolute value if the sum is
+/// negligible, or if the Fourier modes give no better bound or exceed the budget.
 pub(super) fn sum_from(
     all: &LineCrossings,
     crossing: &Double,
@@ -83,27 +86,27 @@ pub(super) fn sum_from(
         return BoundedSum::zero_within(trivial);
     }
     let w = depth / g;
-    // The factor w^(−2−k) is not in the amplitudes, because the Lerch series has it.
+    // A term of the series falls with the depth as w^(−2−k). The amplitudes do not contain this
+    // factor, because the sums over crossings have it.
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) / (g * g * g), |a| a / (PI * g));
     let [first, second, third] = amplitudes.map(f64::abs);
     let u = 1.0 / w;
     let u2 = u * u;
     let u3 = u2 * u;
-    // Ratio of the truncation error of all terms of the series X ([`EdgeSeries`]) to that of its
-    // first term.
+    // Ratio of the truncation error of all terms of the edge's series to that of the first term.
     let all_terms = if first > 0.0 {
         1.0 + (second * u + third * u2) / first
     } else {
         1.0
     };
-    // Every mode is at most `largest`·n^−3, because |V_3| ≤ w^−3 + w^−2/2.
+    // Mode n is at most `largest`·n^−3, because the Lerch series V_3 is at most w^−3 + w^−2/2.
     let largest = first * all_terms * (0.5 * u2 + u3);
     let limit = 4.0 * BEYOND_LAST_SHARE * tolerance;
     let Some((last, beyond)) = last_mode(largest, limit, trivial, budget) else {
         return BoundedSum::zero_within(trivial);
     };
-    // By Abel's inequality, |V_3| ≤ 2·w^−3/|1 − e^iθ|. Beyond `FIRST_MODES`, mode n is skipped if
-    // this bound is below an allowance that falls as n^−2.
+    // By Abel's inequality, the Lerch series V_3 is at most 2·w^−3/|1 − e^iθ|. Beyond
+    // `FIRST_MODES`, mode n is skipped if this bound is below an allowance that falls as n^−2.
     let allowance = skipped * 2.0 * (FIRST_MODES - 1.0);
     let threshold = 2.0 * first * all_terms * u3 / allowance;
     let threshold = threshold * threshold;
@@ -130,12 +133,14 @@ pub(super) fn sum_from(
         angle = times(angle, angle_rotation);
         n += 2.0;
     }
-    // For |θ| ≤ π, |R″|/2 ≤ 0.04, so that the truncation error of V_s is at most 0.04·s·(s +
-    // 1)·w^(−s−2). Mode n has a factor n^−3 at most, and the sum over the odd n is Σ n^−3 < 1.06.
+    // The expansion of the Lerch series V_s ends before the second derivative of the regular
+    // function R (`tail`). For |θ| ≤ π, |R″|/2 ≤ 0.04, so that the truncation error of V_s is at
+    // most 0.04·s·(s + 1)·w^(−s−2). Mode n has a factor n^−3 at most, and the sum over the odd n is
+    // Σ n^−3 < 1.06.
     let curvature = 1.06 * 0.04 * u2 * u3 * (12.0 * first + 20.0 * second * u + 30.0 * third * u2);
     let later = bound_of(MODE_TERMS + 1..=series.terms);
-    // The exponential integrals are accurate to 1e-14, or 90 roundings, and V_s certainly to 500
-    // roundings of w^−2. In mode n, the rotation of the phase adds n roundings.
+    // The exponential integrals are accurate to 1e-14, or 90 roundings, and the Lerch series V_s
+    // certainly to 500 roundings of w^−2. In mode n, the rotation of the phase adds n roundings.
     let rounding = 1000.0 * UNIT * first * all_terms * u2;
     BoundedSum {
         value,
@@ -143,9 +148,9 @@ pub(super) fn sum_from(
     }
 }
 
-/// Returns an upper bound of the sum of the absolute values of term `k` of the series X
-/// ([`EdgeSeries`]) over all crossings from the depth `depth` on. `rise` is the step of the depth
-/// from crossing to crossing.
+/// Returns an upper bound of the sum, over all crossings from the depth `depth` on, of the absolute
+/// values of term `k` of an edge's series ([`EdgeSeries`]). `rise` is the step of the depth from
+/// crossing to crossing.
 fn absolute(series: &EdgeSeries, k: usize, depth: f64, rise: f64) -> f64 {
     series.size(k, depth) * (1.0 + depth / (rise * (k + 1) as f64))
 }

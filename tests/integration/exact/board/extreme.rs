@@ -1,10 +1,10 @@
-//! The board in fields of view of nearly 180°, and of less than a millionth of a degree. The error
-//! bound may be large there, but it holds.
+//! Tests of exact pictures of a checkerboard in fields of view of nearly 180°, and of less than a
+//! millionth of a degree. The error bound of a pixel may then be large, but it must hold.
 
 use super::*;
 
-/// Rows of five columns: the image, the camera, the size of squares, an object, and the area in
-/// which pixels are compared with the sums of their quarters.
+/// Rows of five cells: the image, the camera, the sides of squares to try, an object, and the area
+/// in which each pixel is compared with the mean of its four quarters.
 const VIEWS: &str = "
     -- Through lenses so long that a pixel next to the horizon begins millions of millions of squares away, where a rounding of a place is as much as the pixel is wide: alone, before a far plane, and next to an outline.
     width 6 height 4 -> eye (-3.8129918102387705, 0.29933186775843634, 5.521568092661159) direction (0.29550764467648694, 2.7116391188331324e-13, -0.9553403749123949) roll -0.6189217287574991deg d 3.227743535403821e12 -> 1 -> -> 1,1,1,3
@@ -46,8 +46,8 @@ fn quarters_add_up_in_extreme_views(effort: Effort) {
     }
 }
 
-/// The fields of view are narrower than a millionth of a degree. The views point anywhere below the
-/// horizon.
+/// The fields of view are narrower than a millionth of a degree, and the camera looks anywhere
+/// below the horizon.
 #[test]
 #[ignore = "exhaustive"]
 fn quarters_add_up_in_random_narrow_views() {
