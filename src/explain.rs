@@ -136,7 +136,6 @@ pub fn headings() -> impl Iterator<Item = &'static str> {
 
 /// Explanation pages about one subject.
 #[derive(Debug)]
-#[non_exhaustive]
 pub struct Group {
     /// The subject.
     pub name: &'static str,
@@ -146,7 +145,6 @@ pub struct Group {
 
 /// Explanation page of a diagnostic code.
 #[derive(Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Page {
     /// The code, without `pinhole::`.
     pub code: &'static str,

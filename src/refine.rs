@@ -24,7 +24,6 @@ pub const SIDES: [u32; 4] = [16, 8, 4, 2];
 
 /// A picture in square blocks, each of one colour.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Coarse {
     /// Side of a block, in pixels.
     pub side: u32,

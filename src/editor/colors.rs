@@ -15,7 +15,6 @@ use crate::{
 
 /// A colour that is written in the text and can be replaced.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Swatch {
     /// Span of the colour's name, of its code, or of the call of `rgb`.
     pub span: Span,

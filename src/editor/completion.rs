@@ -16,7 +16,6 @@ use crate::{
 
 /// A completion: a word or a longer text that an editor offers to insert.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Completion {
     /// The text shown in the list of completions. Editors compare it with the typed word.
     pub label: String,

@@ -5,7 +5,6 @@ use crate::source::{Span, sort_by_span};
 
 /// Consecutive lines that an editor can fold, so that only the first of them is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Fold {
     /// Span from the first character of the first line's text to the end of the last line.
     pub span: Span,

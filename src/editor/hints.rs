@@ -16,7 +16,6 @@ use crate::{
 
 /// A hint at the end of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Hint {
     /// Byte offset of the end of the line at which the hint is shown.
     pub at: usize,

@@ -22,7 +22,6 @@ use crate::{
 
 /// Description of a word or a value.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Hover {
     /// Span of the described word or value.
     pub span: Span,

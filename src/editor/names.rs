@@ -14,7 +14,6 @@ use crate::{
 
 /// A definition or a use of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Occurrence {
     /// Span of the name.
     pub span: Span,

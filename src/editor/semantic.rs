@@ -11,7 +11,6 @@ use crate::{
 
 /// A word, number, sign or comment of the text, with the kind by which editors colour it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct SemanticToken {
     /// Span of the token. A comment may span several lines.
     pub span: Span,

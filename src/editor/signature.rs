@@ -6,7 +6,6 @@ use std::ops::Range;
 
 /// Signature of a function, shown while its arguments are being typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Signature {
     /// The displayed signature, such as `atan2(y, x) → angle`.
     pub label: String,

@@ -12,7 +12,6 @@ use crate::{
 
 /// An entry of the outline: a definition, a block, or a field of a block.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Symbol {
     /// Name of the definition, field or object. A block without a name is listed under its keyword.
     pub name: String,

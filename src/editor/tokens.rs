@@ -15,7 +15,6 @@ use crate::{
 
 /// A word, number or sign of a text, with its role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct RoleToken {
     /// Span of the token in the text.
     pub span: Span,

@@ -69,7 +69,6 @@ pub struct Comparison {
 
 /// The largest difference of a channel, and its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub struct Largest {
     /// Difference between the two values of the channel, in steps of 8-bit sRGB.
     pub steps: f64,

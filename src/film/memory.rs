@@ -13,7 +13,6 @@ use crate::files::read_system_text;
     size(*.needed),
     .available.map_or("more than there is".to_owned(), |there| format!("and {} are available", size(there)))
 )]
-#[non_exhaustive]
 pub struct TooLarge {
     /// Width of the picture, in pixels.
     pub width: u32,

@@ -34,7 +34,6 @@ impl Picture {
 
 /// The opacity of a picture.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Opacity {
     /// Least and greatest opacity of the pixels, from 0 to 1.
     pub range: [f64; 2],

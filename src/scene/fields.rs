@@ -13,7 +13,6 @@ use crate::{
 
 /// Part of a scene that has fields: an image, a camera or a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub enum FieldOwner {
     /// The picture.
     Image(Image),

@@ -32,7 +32,6 @@ pub struct Fixed {
 
 /// A fix that was applied.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Done {
     /// Line and column of the problem in the text to which the fix was applied. Earlier fixes may
     /// have changed the lines of the file.

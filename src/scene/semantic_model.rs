@@ -23,7 +23,6 @@ use crate::{
 /// Parts of a scene. An image, camera or sampler with errors is `None`, and an object with errors
 /// is left out.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct Parts {
     /// The picture.
     pub image: Option<Image>,

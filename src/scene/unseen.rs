@@ -72,7 +72,6 @@ pub fn why_unseen(camera: &Camera, image: &Image, objects: &[Object]) -> Option<
 
 /// Where an object lies that is wholly outside of the visible space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Outside {
     /// Behind the camera.
     Behind,

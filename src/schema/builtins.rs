@@ -41,7 +41,6 @@ pub const FUNCTIONS: &[Function] = functions! {
 
 /// A function of the language.
 #[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
 pub struct Function {
     /// The name.
     pub name: &'static str,

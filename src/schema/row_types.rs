@@ -11,7 +11,6 @@ use crate::math::compare_half_turns;
 /// Fields that exclude each other. They are grouped into alternative ways to express the same
 /// thing, and a block uses the fields of one way only.
 #[derive(Debug)]
-#[non_exhaustive]
 pub struct Choice {
     /// The alternative ways, each a list of fields. In a block that uses a way, a field of this way
     /// is required if its preset is [`Preset::Alternative`].

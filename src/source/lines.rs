@@ -34,32 +34,25 @@ impl Encoding {
 #[derive(Clone, Debug)]
 pub struct Lines {
     starts: Vec<usize>,
-    wide: Vec<Wide>,
+    /// For each character with more than one byte, in the order of the text: the offset of its end,
+    /// and by how much the bytes up to there exceed the UTF-16 code units, and the characters.
+    wide: Vec<[usize; 3]>,
     length: usize,
-}
-
-/// A character with more than one byte.
-#[derive(Clone, Copy, Debug)]
-struct Wide {
-    /// Offset of its end.
-    end: usize,
-    /// Number of UTF-16 code units, and of characters, of the text up to its end.
-    columns: [usize; 2],
 }
 
 impl Lines {
     /// Makes the index of a text.
     pub fn new(text: &str) -> Self {
         let ends = memchr::memchr_iter(b'\n', text.as_bytes());
-        let (mut wide, mut last) = (Vec::new(), Wide::START);
-        if !text.is_ascii() {
-            for (at, character) in text.char_indices().filter(|(_, it)| !it.is_ascii()) {
-                let columns = [Encoding::Utf16, Encoding::Utf32].map(|it| it.columns_of(character));
-                last = Wide {
-                    end: at + character.len_utf8(),
-                    columns: [0, 1].map(|i| last.columns[i] + at - last.end + columns[i]),
-                };
-                wide.push(last);
+        let (mut wide, mut excess) = (Vec::new(), [0; 2]);
+        let characters = (!text.is_ascii()).then(|| text.char_indices());
+        for (at, character) in characters.into_iter().flatten() {
+            if let bytes @ 2.. = character.len_utf8() {
+                excess = [
+                    excess[0] + bytes - character.len_utf16(),
+                    excess[1] + bytes - 1,
+                ];
+                wide.push([at + bytes, excess[0], excess[1]]);
             }
         }
         Self {
@@ -84,26 +77,14 @@ impl Lines {
     /// boundary.
     pub fn column(&self, offset: usize, encoding: Encoding) -> usize {
         let start = self.starts[self.line(offset)];
-        let unit = match encoding {
-            Encoding::Utf8 => return offset - start,
-            Encoding::Utf16 => 0,
-            Encoding::Utf32 => 1,
+        let excess = |offset| {
+            let before = self.wide.partition_point(|&[end, ..]| end <= offset);
+            match (before.checked_sub(1), encoding) {
+                (None, _) | (_, Encoding::Utf8) => 0,
+                (Some(last), Encoding::Utf16) => self.wide[last][1],
+                (Some(last), Encoding::Utf32) => self.wide[last][2],
+            }
         };
-        let columns = |offset| {
-            let before = self.wide.partition_point(|wide| wide.end <= offset);
-            let last = before
-                .checked_sub(1)
-                .map_or(Wide::START, |at| self.wide[at]);
-            last.columns[unit] + offset - last.end
-        };
-        columns(offset) - columns(start)
+        offset - start - (excess(offset) - excess(start))
     }
-}
-
-impl Wide {
-    /// The start of a text.
-    const START: Self = Self {
-        end: 0,
-        columns: [0; 2],
-    };
 }

@@ -33,7 +33,6 @@ pub enum TokenKind {
 
 /// A token with its span in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Token {
     /// The token's kind.
     pub kind: TokenKind,

@@ -8,7 +8,6 @@ use crate::{math::Angle, source::Span};
 
 /// The tree of a whole file.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub struct Tree<'s> {
     /// The items in their order.
     pub items: Vec<Item<'s>>,
@@ -38,7 +37,6 @@ impl Item<'_> {
 
 /// A name and its place in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Name<'s> {
     /// The name's text.
     pub text: &'s str,
@@ -48,7 +46,6 @@ pub struct Name<'s> {
 
 /// A definition: `let NAME = VALUE`.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Definition<'s> {
     /// The place of `let`.
     pub keyword: Span,
@@ -78,7 +75,6 @@ impl Definition<'_> {
 /// A block: `KIND NAME? { FIELD VALUE … }`, or with indices
 /// `KIND NAME? for INDEX < COUNT, … { FIELD VALUE … }`. The part before the `{` is its head.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Block<'s> {
     /// The kind; `None` if it is missing.
     pub kind: Option<Name<'s>>,
@@ -127,7 +123,6 @@ impl<'s> Block<'s> {
 
 /// The indices of a repeated object: `for INDEX < COUNT, …`.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Repetition<'s> {
     /// The place of `for`.
     pub keyword: Span,
@@ -146,7 +141,6 @@ impl Repetition<'_> {
 
 /// An index and its count: `INDEX < COUNT`.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Index<'s> {
     /// The name of the index.
     pub name: Name<'s>,
@@ -172,7 +166,6 @@ impl<'s> Index<'s> {
 
 /// A field and its value: `FIELD VALUE`.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Field<'s> {
     /// The field's name.
     pub name: Name<'s>,
@@ -184,7 +177,6 @@ pub struct Field<'s> {
 
 /// A value with its place.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Value<'s> {
     /// The value's form.
     pub kind: ValueKind<'s>,
@@ -262,7 +254,6 @@ pub enum ValueKind<'s> {
 
 /// A call: `FUNCTION(ARGUMENT, …)`.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Call<'s> {
     /// The function's name.
     pub function: Name<'s>,
@@ -274,7 +265,6 @@ pub struct Call<'s> {
 
 /// An operator and its right operand.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Step<'s> {
     /// The operator.
     pub operator: Operator,
@@ -286,7 +276,6 @@ pub struct Step<'s> {
 
 /// A value in a list of values.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Element<'s> {
     /// The value.
     pub value: Value<'s>,
@@ -296,7 +285,6 @@ pub struct Element<'s> {
 
 /// Unit of an angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Unit {
     /// Degrees: `deg`.
     Degrees,
@@ -324,7 +312,6 @@ impl Unit {
 
 /// A binary operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Operator {
     /// `+`
     Add,

@@ -34,7 +34,6 @@ const STEPS_OF_COUNT: f64 = 10.0;
 /// Limits of a number in the text, and the range and step of its slider. All are given in the unit
 /// in which the number is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Limits {
     /// Least value of the number with which the text has no more errors than now; `None` if that
     /// value is not known.
@@ -54,7 +53,6 @@ pub struct Limits {
 /// The slider for the value of a definition. If the definition has no slider, or not the slider
 /// that its comment describes, a note says why.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Slider<'a> {
     /// Name of the definition.
     pub name: &'a str,

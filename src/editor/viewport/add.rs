@@ -49,7 +49,6 @@ const ALIKE: f64 = 48.0;
 
 /// A block that is added to the text.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Added {
     /// The edit that writes the block.
     pub edit: Edit,

@@ -53,7 +53,6 @@ pub struct Drag<'a> {
 /// Changes of a text that a dragged handle causes. All lists are empty if the picture would not
 /// change visibly.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub struct Dragged {
     /// Edits of the text.
     pub edits: Vec<Edit>,

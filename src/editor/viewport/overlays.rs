@@ -38,7 +38,6 @@ pub const MOST_OBJECTS: usize = 1000;
 
 /// Drawings over a picture. All points are in pixels from its top left corner.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Overlays {
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
@@ -58,7 +57,6 @@ pub struct Overlays {
 
 /// Vanishing point of a coordinate axis, with the lines that lead to it.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Vanishing {
     /// The vanishing point; `None` if the axis is parallel to the view plane, because parallel
     /// lines then stay parallel in the picture.
@@ -70,7 +68,6 @@ pub struct Vanishing {
 
 /// Outline and handles of an object.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct ObjectOverlay {
     /// Index of the object in the scene.
     pub object: usize,
@@ -83,7 +80,6 @@ pub struct ObjectOverlay {
 
 /// Choice of the objects whose outlines are drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum ShownObjects {
     /// The objects with these indices.
     Only(Vec<usize>),

@@ -38,7 +38,6 @@ pub fn pick(scene: &Scene, world: &World, point: DVec2) -> Option<(Option<Hit>, 
 
 /// The colour of a pixel, and the samples from which it is computed.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct PixelSamples {
     /// Positions of the samples, in pixels from the pixel's top left corner, with their colours.
     pub samples: Vec<(DVec2, Color)>,

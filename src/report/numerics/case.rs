@@ -12,7 +12,6 @@ use crate::{
 
 /// A hard case of the arithmetic. [`cases`](super::cases) returns all of them.
 #[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
 pub struct Case {
     /// Short name of the case in tables, such as `C3a`.
     pub id: &'static str,

@@ -9,7 +9,6 @@ use crate::numbers::grouped;
 
 /// Result of testing a hard case.
 #[derive(Clone, Copy, Debug)]
-#[non_exhaustive]
 pub struct CaseResult {
     /// The case that was tested.
     pub case: &'static Case,
@@ -19,7 +18,6 @@ pub struct CaseResult {
 
 /// Results of all hard cases.
 #[derive(Clone, Debug)]
-#[non_exhaustive]
 pub struct NumericsTable {
     /// The results, in the order of the report.
     pub rows: Vec<CaseResult>,

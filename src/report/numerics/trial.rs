@@ -21,7 +21,6 @@ use crate::{
 /// Results of testing a case. In each pair, the first element is for the textbook formulas, and the
 /// second for Pinhole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[non_exhaustive]
 pub struct CaseTally {
     /// Number of inputs tested.
     pub inputs: u64,

@@ -9,7 +9,6 @@ use crate::scene::Method;
 
 /// Estimate of what a method needs to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct Estimate {
     /// Samples per pixel; `None` for the exact method, which takes none.
     pub per_pixel: Option<f64>,

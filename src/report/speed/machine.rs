@@ -6,7 +6,6 @@ use crate::files::read_system_text;
 
 /// Properties of a machine that affect the time of renders.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct Machine {
     /// Name of the processor's model, or its architecture if the system does not tell the model.
     pub processor: String,

@@ -89,7 +89,6 @@ pub struct SeriesPoint {
 /// measured numbers of samples. If it is s, the error is about proportional to the number of
 /// samples to the power s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct EndSlope {
     /// The slope, by the method of least squares.
     pub slope: f64,
@@ -140,7 +139,6 @@ pub struct Run {
 
 /// A method's picture by which an HTML page compares the methods.
 #[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
 pub struct MethodPicture {
     /// Samples per pixel of the picture.
     pub per_pixel: u64,
