@@ -22,7 +22,11 @@ pub(crate) fn is_set(cancel: &AtomicBool) -> bool {
     cancel.load(Ordering::Relaxed)
 }
 
-/// Returns `made`, the result of some work, or [`Cancelled`] if the flag `cancel` is set.
+/// Returns `made`, the result of some work, unless the flag `cancel` is set.
+///
+/// # Errors
+///
+/// The flag is set.
 pub fn unless_set<T>(cancel: &AtomicBool, made: T) -> Result<T, Cancelled> {
     if is_set(cancel) {
         Err(Cancelled)

@@ -4,30 +4,33 @@
 //! the diagnostics in the order of the text, as reports for a terminal or as lines of JSON. The
 //! caller decides where to print them, and in which style.
 
-#[cfg(feature = "cli")]
+#[cfg(feature = "fancy")]
 mod excerpt;
 mod fix;
+#[cfg(feature = "json")]
+mod json;
 mod mistakes;
 mod problems;
-#[cfg(feature = "cli")]
+#[cfg(feature = "fancy")]
 mod report;
-#[cfg(any(feature = "cli", feature = "report"))]
+#[cfg(any(feature = "fancy", feature = "report"))]
 mod visible;
 
 pub use fix::{Applicability, Edit, Fix, apply};
+#[cfg(feature = "json")]
+pub use json::{json_lines, to_json};
 pub use mistakes::Mistakes;
 pub use problems::{MOST_PROBLEMS, Problems};
-#[cfg(feature = "cli")]
+#[cfg(feature = "fancy")]
 pub use report::{Drawing, Report, Style};
-#[cfg(any(feature = "cli", feature = "report"))]
+#[cfg(any(feature = "fancy", feature = "report"))]
 pub use visible::{escaped, visible, visible_line};
 
-use serde_json::{Value, json};
-
-use crate::source::{Source, SourceId, Sources, Span, sort_by_span};
+use crate::source::{SourceId, Span, sort_by_span};
 
 /// Whether a problem prevents the scene from being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Severity {
     /// The scene cannot be read.
     Error,
@@ -47,6 +50,7 @@ impl Severity {
 
 /// A problem of a scene: what is wrong, where, and how to solve it.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// Whether the problem is an error or a warning.
     pub severity: Severity,
@@ -70,6 +74,7 @@ pub struct Diagnostic {
 
 /// A place with a short explanation.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Label {
     /// The labelled place.
     pub span: Span,
@@ -93,67 +98,6 @@ pub fn sort(diagnostics: &mut Vec<Diagnostic>) {
         });
         Span::new(source, start, start)
     });
-}
-
-/// Returns each diagnostic as a line of JSON, in the documented format of the command line.
-pub fn json_lines(diagnostics: &[Diagnostic], sources: &Sources) -> String {
-    let lines = diagnostics.iter().map(|it| to_json(it, sources));
-    lines.map(|line| format!("{line}\n")).collect()
-}
-
-/// Returns a diagnostic as a JSON value.
-pub fn to_json(diagnostic: &Diagnostic, sources: &Sources) -> Value {
-    let labels = diagnostic.labels.iter().map(|label| {
-        let source = sources.get(label.span.source);
-        let span = clamp(label.span, source);
-        let (start, end) = (source.place(span.start), source.place(span.end));
-        let mut json = place(span, source);
-        json["line"] = start.line.into();
-        json["column"] = start.column.into();
-        json["end_line"] = end.line.into();
-        json["end_column"] = end.column.into();
-        json["message"] = label.message.as_str().into();
-        json
-    });
-    let fixes = diagnostic.fixes.iter().map(|fix| {
-        let edits = fix.edits.iter().map(|edit| {
-            let source = sources.get(edit.span.source);
-            let mut json = place(clamp(edit.span, source), source);
-            json["text"] = edit.text.as_str().into();
-            json
-        });
-        json!({
-            "title": fix.title,
-            "applicability": fix.applicability.word(),
-            "edits": edits.collect::<Vec<_>>(),
-        })
-    });
-    json!({
-        "file": sources.file.name(),
-        "severity": diagnostic.severity.word(),
-        "code": diagnostic.code,
-        "message": diagnostic.message,
-        "help": diagnostic.help,
-        "labels": labels.collect::<Vec<_>>(),
-        "fixes": fixes.collect::<Vec<_>>(),
-    })
-}
-
-/// Returns a span as JSON: offset and length in bytes and, for a `--set` argument, its name.
-fn place(span: Span, source: &Source) -> Value {
-    let (offset, length) = (span.start, span.end - span.start);
-    match span.source {
-        SourceId::File => json!({ "offset": offset, "length": length }),
-        SourceId::Set(_) => json!({ "file": source.name(), "offset": offset, "length": length }),
-    }
-}
-
-/// Clamps a span to its source, and moves its ends to character boundaries, so that the result can
-/// slice the text.
-fn clamp(span: Span, source: &Source) -> Span {
-    let start = source.floor_char_boundary(span.start);
-    let end = source.floor_char_boundary(span.end.max(start));
-    Span::new(span.source, start, end)
 }
 
 /// Returns the numbers of errors and warnings as text, such as `2 errors, 1 warning`.

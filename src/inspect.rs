@@ -1,6 +1,7 @@
 //! Describes a scene in numbers: the camera's axes, its field of view, the vanishing points, and
 //! the objects.
 
+#[cfg(feature = "json")]
 mod json;
 
 use std::{borrow::Cow, cmp::Ordering, fmt};
@@ -18,6 +19,7 @@ use glam::DVec3;
 
 /// The output of `pinhole inspect`. Every number is the exact value, correctly rounded.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Inspection {
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
@@ -42,6 +44,7 @@ pub struct Inspection {
 
 /// Properties of a camera.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CameraFacts {
     /// Position of the eye.
     pub eye: DVec3,
@@ -70,6 +73,7 @@ pub struct CameraFacts {
 
 /// Properties of an object.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ObjectFacts {
     /// The object's name.
     pub name: Option<String>,

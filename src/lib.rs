@@ -25,6 +25,26 @@
 //! - [`Scene::data`] is what the text means, as plain data. Change a copy, and
 //!   [`Scene::from_data`] checks it and makes a scene of it, with a text of its own.
 //!
+//! # Features
+//!
+//! Without any feature, the library reads a text, renders to memory and computes exact pictures,
+//! and has problems and answers as data. The default is everything. To leave out what only the
+//! program needs, depend on it with `default-features = false` and the features that you use:
+//!
+//! | feature | what it adds |
+//! | --- | --- |
+//! | `png` | PNG files, which carry their scene: `Picture::save`, `film::write_png` |
+//! | `exr` | OpenEXR files in linear light: `Picture::save`, `film::write_exr` |
+//! | `read` | pictures of any program: `Picture::open`, `Scene::grade`, `grading`; has `png` and `exr` |
+//! | `fancy` | [`Mistakes`] and `diagnostic::Report` with excerpts of the text, as a terminal shows them |
+//! | `json` | problems as lines of JSON: `diagnostic::json_lines` |
+//! | `report` | reports on accuracy and on speed: `report` |
+//! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp` |
+//! | `preview` | notices that a scene's file was changed |
+//! | `studio` | the host of the page on which scenes are edited |
+//! | `cli` | the program, which has `fancy`, `preview`, `read` and `report` |
+//! | `files`, `pages` | parts of the others, of no use alone |
+//!
 //! # Stages
 //!
 //! The modules below are for those who need a part of a picture, its progress, or an end to it
@@ -104,7 +124,8 @@ pub mod scene;
 pub mod reference;
 pub mod tracer;
 
-mod projection;
+#[doc(hidden)]
+pub mod projection;
 
 pub mod sampling;
 
@@ -113,28 +134,32 @@ pub mod film;
 #[doc(hidden)]
 pub mod exact;
 
+#[cfg(any(feature = "lsp", feature = "preview"))]
 pub mod refine;
 pub mod render;
 
 pub mod format;
+#[cfg(feature = "read")]
 pub mod grading;
 pub mod inspect;
 pub mod probe;
-// The trials of `report` run on threads, which a browser does not have.
-#[cfg(not(target_family = "wasm"))]
+#[cfg(feature = "report")]
 pub mod report;
 pub mod seen;
 
 mod library;
 
+#[cfg(any(feature = "cli", feature = "lsp"))]
 pub mod editor;
+#[cfg(feature = "cli")]
 pub mod figure;
 #[cfg(feature = "lsp")]
 pub mod lsp;
-#[cfg(feature = "preview")]
+// A browser watches no files.
+#[cfg(all(feature = "preview", not(target_family = "wasm")))]
 #[doc(hidden)]
 pub mod preview;
-#[cfg(feature = "lsp")]
+#[cfg(feature = "studio")]
 #[doc(hidden)]
 pub mod studio;
 
@@ -142,11 +167,13 @@ pub mod studio;
 #[doc(hidden)]
 pub mod cli;
 
+#[cfg(feature = "read")]
+#[doc(inline)]
+pub use crate::grading::Verdict;
 #[doc(inline)]
 pub use crate::{
     color::Color,
     diagnostic::{Diagnostic, Mistakes},
-    grading::Verdict,
     library::{Error, Exact, Picture, Scene},
     math::Angle,
     scene::{Method, Scene as SceneData},

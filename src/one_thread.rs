@@ -37,10 +37,10 @@ pub(crate) fn install<R>(
 }
 
 /// Sequential versions of the parallel loops of rayon.
-pub(crate) mod prelude {
+pub mod prelude {
     use std::slice;
 
-    pub(crate) trait Loop: Iterator + Sized {
+    pub trait Loop: Iterator + Sized {
         fn par_bridge(self) -> Self {
             self
         }
@@ -60,7 +60,7 @@ pub(crate) mod prelude {
 
     impl<I: Iterator> Loop for I {}
 
-    pub(crate) trait IntoLoop: IntoIterator + Sized {
+    pub trait IntoLoop: IntoIterator + Sized {
         fn into_par_iter(self) -> Self::IntoIter {
             self.into_iter()
         }
@@ -68,7 +68,7 @@ pub(crate) mod prelude {
 
     impl<I: IntoIterator> IntoLoop for I {}
 
-    pub(crate) trait SliceLoop<T> {
+    pub trait SliceLoop<T> {
         fn par_iter(&self) -> slice::Iter<'_, T>;
     }
 

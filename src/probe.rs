@@ -1,9 +1,11 @@
 //! All surfaces that one ray hits.
 
+#[cfg(feature = "json")]
+mod json;
+
 use std::fmt;
 
 use glam::{DVec2, DVec3};
-use serde_json::{Value, json};
 
 use crate::{
     color::Color,
@@ -15,6 +17,7 @@ use crate::{
 /// The output of `pinhole probe`: the ray through a point of the picture, and all its crossings
 /// with surfaces. Every number is the correctly rounded exact value.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Probe {
     /// The point, in pixels from the picture's top left corner; it may lie outside the picture.
     pub pixel: DVec2,
@@ -51,37 +54,6 @@ pub fn probe(scene: &Scene, pixel: DVec2) -> Probe {
         direction,
         color,
         hits: hits.into_iter().map(of_object).collect(),
-    }
-}
-
-impl Probe {
-    /// Returns the JSON object that `pinhole probe` prints.
-    pub fn to_json(&self) -> Value {
-        let hits = self.hits.iter().map(|(hit, object)| {
-            let mut facts = json!({
-                "object": object.name,
-                "index": hit.object,
-                "kind": object.shape.kind(),
-                "t": hit.t,
-                "depth": hit.depth,
-                "point": hit.point.to_array(),
-                "color": hit.color.to_string(),
-                "visible": hit.visible,
-            });
-            if !object.indices.is_empty() {
-                facts["indices"] = json!(object.indices);
-            }
-            facts
-        });
-        json!({
-            "pixel": self.pixel.to_array(),
-            "ray": {
-                "origin": self.origin.to_array(),
-                "direction": self.direction.to_array(),
-            },
-            "hits": hits.collect::<Vec<_>>(),
-            "color": self.color.to_string(),
-        })
     }
 }
 

@@ -29,6 +29,7 @@ pub const MIN_AREA: f64 = 1e-6;
 
 /// What is seen of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Visibility {
     /// The object is seen: the bounding rectangle of the pixels that show it, and the area that
     /// shows it, in pixels.

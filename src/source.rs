@@ -5,9 +5,12 @@
 //! contains the identifier of its source. Spans are byte ranges; lines and columns are computed
 //! only for output.
 
+mod lines;
+
 use std::{ops::Range, sync::OnceLock};
 
-use line_index::{LineCol, LineIndex, TextSize, WideEncoding};
+#[doc(hidden)]
+pub use lines::{Encoding, Lines};
 
 /// Identifier of a source text. In the order of identifiers, the file comes first, then the `--set`
 /// arguments by number.
@@ -70,7 +73,7 @@ fn order(spans: &[Span]) -> Vec<usize> {
 }
 
 /// The source texts of a scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sources {
     /// The scene file.
     pub file: Source,
@@ -143,8 +146,18 @@ pub struct Source {
     name: String,
     text: String,
     invalid: Vec<usize>,
-    lines: OnceLock<LineIndex>,
+    lines: OnceLock<Lines>,
 }
+
+/// Texts are equal if their names and bytes are.
+impl PartialEq for Source {
+    fn eq(&self, other: &Self) -> bool {
+        let (own, others) = ((&self.text, &self.invalid), (&other.text, &other.invalid));
+        self.name == other.name && own == others
+    }
+}
+
+impl Eq for Source {}
 
 impl Source {
     /// Makes a source from a file's bytes. Each byte that is not valid UTF-8 becomes a `_`, so that
@@ -224,12 +237,10 @@ impl Source {
     /// Returns the byte range of a line, counted from 1, without the LF or CRLF at its end. A line
     /// beyond the last one has the empty range at the end of the text.
     pub fn line_range(&self, line: usize) -> Range<usize> {
-        let index = u32::try_from(line.saturating_sub(1)).ok();
-        let Some(range) = index.and_then(|index| self.lines().line(index)) else {
+        let Some(Range { start, end }) = self.lines().range(line.saturating_sub(1)) else {
             return self.text.len()..self.text.len();
         };
-        let start = usize::from(range.start());
-        let ended = self.slice(start..usize::from(range.end()));
+        let ended = self.slice(start..end);
         let line = ended.strip_suffix('\n').unwrap_or(ended);
         let line = line.strip_suffix('\r').unwrap_or(line);
         start..start + line.len()
@@ -237,36 +248,35 @@ impl Source {
 
     /// Returns the line that contains an offset, counted from 1.
     pub fn line(&self, offset: usize) -> usize {
-        self.line_col(offset).line as usize + 1
+        self.lines().line(self.floor_char_boundary(offset)) + 1
     }
 
     /// Returns line and column of an offset. A byte order mark takes no column. An offset beyond
     /// the end is treated as the end, and an offset within a character as the character's start.
     pub fn place(&self, offset: usize) -> LineColumn {
-        let place = self.line_col(offset);
-        let characters = self.lines().to_wide(WideEncoding::Utf32, place);
-        let before = characters.map_or(place.col, |place| place.col) as usize;
-        let mark = usize::from(place.line == 0 && self.bom_len() > 0);
+        let line = self.line(offset);
+        let offset = self.floor_char_boundary(offset);
+        let before = self.lines().column(offset, Encoding::Utf32);
+        let mark = usize::from(line == 1 && self.bom_len() > 0);
         LineColumn {
-            line: place.line as usize + 1,
+            line,
             column: before.saturating_sub(mark) + 1,
         }
     }
 
-    /// Returns line and column of an offset, both counted from 0; the column is in bytes. An offset
-    /// past the end is treated as the end, and an offset within a character as the character's
-    /// start.
-    pub fn line_col(&self, offset: usize) -> LineCol {
-        let offset = self.floor_char_boundary(offset);
-        let offset = u32::try_from(offset).ok().map(TextSize::from);
-        let place = offset.and_then(|offset| self.lines().try_line_col(offset));
-        place.unwrap_or(LineCol { line: 0, col: 0 })
-    }
-
     /// Returns the index with which lines and columns of offsets are found: the starts of the
     /// lines, and the characters with more than one byte. It is computed on first use.
-    pub fn lines(&self) -> &LineIndex {
-        self.lines.get_or_init(|| LineIndex::new(&self.text))
+    #[doc(hidden)]
+    pub fn lines(&self) -> &Lines {
+        self.lines.get_or_init(|| Lines::new(&self.text))
+    }
+
+    /// Clamps a span to this source, and moves its ends to character boundaries, so that the result
+    /// can slice the text.
+    pub fn clamped(&self, span: Span) -> Span {
+        let start = self.floor_char_boundary(span.start);
+        let end = self.floor_char_boundary(span.end.max(start));
+        Span::new(span.source, start, end)
     }
 
     /// Returns the greatest character boundary that is at most `offset`.

@@ -9,10 +9,14 @@ use std::{
     thread,
 };
 
-/// Error if the system cannot start threads.
-pub use rayon::ThreadPoolBuildError as NoThreads;
 pub(crate) use rayon::prelude;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use thiserror::Error;
+
+/// Error if the system cannot start threads.
+#[derive(Debug, Error)]
+#[error(transparent)]
+pub struct NoThreads(#[from] ThreadPoolBuildError);
 
 /// Maximum number of threads that a user can request; a greater request is reduced to it. Few
 /// machines have more processors, and threads beyond the number of processors gain nothing.
@@ -70,13 +74,13 @@ impl Threads {
     /// are running, returns the current threads. Outside of a pool, returns a pool of the calling
     /// thread alone, because rayon would otherwise permanently treat this thread as a pool of its
     /// own.
-    fn started(built: Result<ThreadPool, NoThreads>) -> Result<Self, NoThreads> {
+    fn started(built: Result<ThreadPool, ThreadPoolBuildError>) -> Result<Self, NoThreads> {
         match built {
             Ok(pool) => Ok(Self::Started(pool)),
             Err(_) if rayon::current_thread_index().is_some() => Ok(Self::Current),
             Err(_) => {
                 let alone = ThreadPoolBuilder::new().num_threads(1);
-                alone.use_current_thread().build().map(Self::Started)
+                Ok(Self::Started(alone.use_current_thread().build()?))
             }
         }
     }

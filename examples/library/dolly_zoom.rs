@@ -32,6 +32,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Writes the frames and the table into a folder.
+///
+/// # Errors
+///
+/// A file cannot be written.
 pub fn dolly_zoom(folder: &Path) -> Result<(), Box<dyn Error>> {
     let scene = Scene::parse(TEXT)?;
     let mut table = "frame,distance,rmse\n".to_owned();

@@ -41,7 +41,6 @@ end_column, message}], fixes [{title, applicability, edits [{offset, length, tex
 is a way out that needs no other: each of its edits replaces length bytes at offset by text; offsets count in the text as it \
 was. A label or an edit within a --set argument has a file of its own. Of a file with more than 1000 problems the last line says how many more there are.";
 
-#[cfg(feature = "preview")]
 pub const WATCH_EXAMPLES: &str = "\
 Examples:
   pinhole watch figure.scn                       writes figure.png at once and after every save

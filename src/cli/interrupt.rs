@@ -60,7 +60,6 @@ impl Interrupt {
 
     /// Registers a function that makes the command end. It is called when Ctrl-C is pressed, or at
     /// once if that has already happened.
-    #[cfg(feature = "preview")]
     pub fn then(&self, what: impl Fn() + Send + Sync + 'static) {
         let _ = self.0.then.set(Box::new(what));
         // If Ctrl-C was pressed before the function was registered, the handler did not call it, so

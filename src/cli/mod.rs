@@ -30,15 +30,12 @@ mod progress;
 mod render;
 mod report;
 mod sheet;
-#[cfg(feature = "preview")]
 mod show;
-#[cfg(feature = "report")]
 mod speed;
 #[cfg(feature = "studio")]
 mod studio;
 mod sweep;
 mod unified_diff;
-#[cfg(feature = "preview")]
 mod watch;
 
 use std::{
@@ -70,7 +67,6 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args, &interrupt),
         Command::Check(args) => check::run(&args, &interrupt),
         Command::New(args) => new::run(&args, &interrupt),
-        #[cfg(feature = "preview")]
         Command::Watch(args) => watch::run(&args, &interrupt),
         Command::Inspect(args) => inspect::run(&args),
         Command::Probe(args) => probe::run(&args),

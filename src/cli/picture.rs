@@ -34,7 +34,6 @@ pub enum RenderedPicture {
 
 impl RenderedPicture {
     /// Returns the picture as 64-bit floats, or `None` if the pixels were rounded.
-    #[cfg(feature = "preview")]
     pub fn into_film(self) -> Option<film::Film> {
         match self {
             Self::Light(light) => Some(light.into_film()),

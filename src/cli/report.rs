@@ -17,12 +17,7 @@ pub fn run(args: &ReportArgs, interrupt: &Interrupt) -> Result<Status, Trouble> 
     if args.numerics {
         return numerics(args, interrupt);
     }
-    #[cfg(feature = "report")]
-    return super::speed::run(args, interrupt);
-    #[cfg(not(feature = "report"))]
-    Err(trouble(
-        "this pinhole was built without the feature `report`: it can report on the arithmetic only, with `--numerics`",
-    ))
+    super::speed::run(args, interrupt)
 }
 
 /// Tests the arithmetic of the renderer in hard cases and prints the numbers of wrong decisions.

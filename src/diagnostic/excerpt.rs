@@ -5,7 +5,7 @@ use std::ops::Range;
 use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use super::{
-    Diagnostic, Label, clamp,
+    Diagnostic, Label,
     visible::{push_visible, visible_line},
 };
 use crate::source::{Source, SourceId, Sources, Span};
@@ -214,7 +214,7 @@ impl SourceCode for Excerpt<'_> {
 /// Returns the part of a label's span that is drawn: only the first line if it has too many lines,
 /// and at most half of `columns` if its line is long.
 fn shorten(span: Span, source: &Source, columns: usize) -> Span {
-    let mut span = clamp(span, source);
+    let mut span = source.clamped(span);
     let first = source.line(span.start);
     let line = source.line_range(first);
     if source.line(span.end) - first >= MAX_LABEL_LINES {

@@ -5,6 +5,7 @@ use crate::source::{SourceId, Sources, Span, sort_by_span};
 /// Degree of certainty of a fix, which decides who may apply it. The variants are ordered: a tool
 /// that applies fixes of one variant also applies those of the variants before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Applicability {
     /// The fix keeps everything that was written, and only one meaning is plausible. It can be
     /// applied without asking.
@@ -34,6 +35,7 @@ impl Applicability {
 
 /// A way to solve a problem by edits.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Fix {
     /// What the fix does, as an imperative such as "write `30deg`".
     pub title: String,
@@ -45,6 +47,7 @@ pub struct Fix {
 
 /// Replacement of a part of a text: of the file or of a `--set` argument, as the span says.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct Edit {
     /// The place to replace; if it is empty, the text is inserted there.
     pub span: Span,

@@ -3,7 +3,7 @@
 use std::{error::Error, fmt, slice, sync::Arc};
 
 use super::Diagnostic;
-#[cfg(feature = "cli")]
+#[cfg(feature = "fancy")]
 use super::{Report, Style};
 use crate::source::Sources;
 
@@ -22,7 +22,7 @@ use crate::source::Sources;
 ///     assert_eq!(mistake.fixes[0].edits[0].text, "lookat");
 /// }
 /// ```
-#[derive(Clone)]
+#[derive(Clone, PartialEq, Eq)]
 pub struct Mistakes {
     sources: Arc<Sources>,
     diagnostics: Vec<Diagnostic>,
@@ -58,7 +58,7 @@ impl<'a> IntoIterator for &'a Mistakes {
 }
 
 /// Writes a report of all mistakes.
-#[cfg(feature = "cli")]
+#[cfg(feature = "fancy")]
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let report = Report::new(&self.sources, Style::default()).human(&self.diagnostics);
@@ -66,8 +66,8 @@ impl fmt::Display for Mistakes {
     }
 }
 
-/// Writes one line for each mistake. Reports are drawn only with the feature `cli`.
-#[cfg(not(feature = "cli"))]
+/// Writes one line for each mistake. Reports are drawn only with the feature `fancy`.
+#[cfg(not(feature = "fancy"))]
 impl fmt::Display for Mistakes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (index, it) in self.iter().enumerate() {

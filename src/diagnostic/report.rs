@@ -8,7 +8,7 @@ use std::{cmp::Reverse, collections::BTreeMap, fmt::Write};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode};
 
 use super::{
-    Diagnostic, Severity, clamp,
+    Diagnostic, Severity,
     excerpt::{Excerpt, LONG_LINE_BYTES, MIN_COLUMNS, excerpts},
     problems, summary,
     visible::visible_line,
@@ -31,6 +31,7 @@ pub struct Style {
 
 /// How a report is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Drawing {
     /// Box-drawing characters.
     Unicode,
@@ -216,7 +217,7 @@ impl<'s> Report<'s> {
         );
         for label in &diagnostic.labels {
             let source = self.sources.get(label.span.source);
-            let span = clamp(label.span, source);
+            let span = source.clamped(label.span);
             let place = source.place(span.start);
             let under = source.slice(span.range());
             let _ = write!(

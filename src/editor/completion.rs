@@ -35,6 +35,7 @@ pub struct Completion {
 
 /// Kind of a completion.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum CompletionKind {
     /// The keyword `let`.
     Keyword,

@@ -14,6 +14,7 @@ pub struct Fold {
 
 /// Kind of lines that can be folded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FoldKind {
     /// A block with its braces.
     Block,

@@ -22,6 +22,7 @@ pub struct SemanticToken {
 
 /// Kind of a token, by which editors colour it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SemanticKind {
     /// `let`, `for`, or the keyword of a block.
     Keyword,

@@ -30,6 +30,7 @@ pub struct Symbol {
 
 /// Kind of an entry of the outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum SymbolKind {
     /// A definition with `let`.
     Definition,

@@ -24,6 +24,7 @@ pub struct RoleToken {
 
 /// Role of a word, number or sign in the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Role {
     /// The keyword `let`.
     Let,

@@ -23,6 +23,7 @@ use crate::{
 
 /// Kind of figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
     /// The camera's eye, its window and one ray, seen from outside.
     Camera,

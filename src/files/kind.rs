@@ -162,16 +162,6 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     read_from(file, most)
 }
 
-/// Reads a text file of the system, such as `/proc/meminfo`. Returns `None` if the file cannot be
-/// read.
-pub fn read_system_text(path: impl AsRef<Path>) -> Option<String> {
-    /// Maximum length of the file, in bytes. A longer file is not read. The longest one that is
-    /// needed, `/proc/cpuinfo`, has a few thousand bytes per processor, so 16 MiB suffice for
-    /// thousands of processors.
-    const LIMIT: u64 = 16 << 20;
-    String::from_utf8(read(path.as_ref(), LIMIT).ok()?).ok()
-}
-
 /// Reads a stream to its end. Fails if it has more than `most` bytes.
 pub fn read_from(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();

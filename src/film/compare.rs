@@ -48,6 +48,7 @@ impl Tolerance<'_> {
 
 /// The result of comparing two pictures.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Comparison {
     /// Number of columns of both pictures.
     pub width: u32,

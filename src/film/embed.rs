@@ -8,7 +8,11 @@ use super::{mean::mean, memory::TooLarge, pixels::Film, png::write_png};
 use crate::area::Area;
 
 /// Reduces a picture to at most `columns` × `rows` pixels, by averaging squares of pixels in linear
-/// light. Fails if there is not enough memory.
+/// light.
+///
+/// # Errors
+///
+/// There is not enough memory.
 pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge> {
     let whole = Area::whole(film.width(), film.height());
     let side = (whole.width.div_ceil(columns)).max(whole.height.div_ceil(rows));
@@ -25,6 +29,10 @@ pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge>
 }
 
 /// Encodes a picture as a PNG in a `data:` URI.
+///
+/// # Errors
+///
+/// The picture cannot be encoded, such as one without pixels.
 pub fn data_uri(film: &Film) -> io::Result<String> {
     let mut bytes = Vec::new();
     write_png(film, None, &mut bytes)?;

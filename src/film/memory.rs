@@ -42,6 +42,10 @@ pub fn check(width: u32, height: u32, bytes_per_pixel: u64) -> Result<u64, TooLa
 
 /// Checks that a picture's memory is available. In addition, tries to allocate it, and frees it at
 /// once, since the system may refuse the allocation.
+///
+/// # Errors
+///
+/// There is too little memory, or the system refuses the allocation.
 pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooLarge> {
     let needed = check(width, height, bytes_per_pixel)?;
     let fits = |bytes| Vec::<u8>::new().try_reserve_exact(bytes).is_ok();

@@ -2,44 +2,62 @@
 //!
 //! In: the number of samples of each colour in a pixel. Out: their mean in linear light (`mean`),
 //! `pixels` in memory, and picture files (`png`, which also contains the scene, and `exr`). `read`
-//! reads a `picture` from a file of any program. `compare` measures the differences of two
-//! pictures, and `embed` encodes them for an HTML page.
+//! reads a `picture` from a file of any program, with a module for each format that needs one.
+//! `compare` measures the differences of two pictures, and `embed` encodes them for an HTML page.
 
 mod compare;
-#[cfg(any(feature = "cli", feature = "report"))]
+#[cfg(feature = "pages")]
 mod embed;
+#[cfg(feature = "exr")]
 mod exr;
+#[cfg(feature = "read")]
 mod jpeg;
 mod mean;
 mod memory;
+#[cfg(feature = "read")]
 mod no_picture;
 #[cfg(feature = "cli")]
 mod part;
 mod picture;
 mod pixels;
+#[cfg(feature = "png")]
 mod png;
+#[cfg(feature = "read")]
 mod pnm;
+#[cfg(feature = "read")]
 mod read;
+#[cfg(feature = "read")]
+mod read_exr;
 mod srgb;
+#[cfg(feature = "read")]
+mod unreadable;
 
-#[cfg(any(feature = "cli", feature = "report"))]
+#[cfg(feature = "pages")]
 #[doc(hidden)]
 pub use self::embed::{data_uri, reduced};
+#[cfg(feature = "exr")]
+pub use self::exr::{LinearFilm, write_exr};
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub use self::part::place_of_part;
+#[cfg(feature = "png")]
+pub use self::png::{
+    NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png,
+};
 pub use self::{
     compare::{
         CHANNELS, Comparison, HEAT_LEGEND, Largest, SizesDiffer, Tolerance, compare, heat_map, rmse,
     },
-    exr::{LinearFilm, write_exr},
-    jpeg::{Jpeg, JpegTable},
     memory::TooLarge,
-    picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable},
+    picture::{Coding, Opacity, Picture, Rounding},
     pixels::{AsBytes, Film, Pixel, certified},
-    png::{NotOurs, OVERRIDES_LIMIT, Recipe, SIGNATURE, TEXT_LIMIT, read_recipe, write_png},
-    read::{is_picture, is_picture_behind_lines, read_picture, read_picture_up_to},
     srgb::Encoder,
+};
+#[cfg(feature = "read")]
+pub use self::{
+    jpeg::{Jpeg, JpegTable},
+    read::{is_picture, is_picture_behind_lines, read_picture, read_picture_up_to},
+    unreadable::{DECODED_LIMIT, Unreadable},
 };
 #[doc(hidden)]
 pub use self::{mean::mean, memory::reserve as reserve_memory};

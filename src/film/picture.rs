@@ -1,18 +1,11 @@
-//! A picture that was read from a file, and the reasons why a file cannot be read as a picture.
+//! A picture that was read from a file.
 
-use image::ImageFormat;
-use thiserror::Error;
-
-use super::{memory::TooLarge, pixels::Film};
+use super::pixels::Film;
 use crate::area::Area;
 
-/// Maximum number of bytes that a picture is decoded to, unless the caller allows more. A larger
-/// picture is rejected, so that it cannot fill the memory. The limit allows 2^26 pixels of four
-/// bytes; as a film with 24 bytes per pixel, such a picture takes 1.5 GiB.
-pub const DECODED_LIMIT: u64 = 1 << 28;
-
 /// A picture that was read from a file.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Picture {
     /// Pixels in linear light.
     pub film: Film,
@@ -40,7 +33,7 @@ impl Picture {
 }
 
 /// The opacity of a picture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Opacity {
     /// Least and greatest opacity of the pixels, from 0 to 1.
     pub range: [f64; 2],
@@ -50,6 +43,7 @@ pub struct Opacity {
 
 /// Precision to which the numbers in a file are rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Rounding {
     /// Whole numbers of at most 8 bits, in sRGB.
     Byte,
@@ -80,6 +74,7 @@ impl Rounding {
 
 /// Change of colours by a file's format, besides rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Coding {
     /// No change: the colours are those that the program computed.
     Exact,
@@ -129,105 +124,4 @@ impl Coding {
             ),
         }
     }
-}
-
-/// Why a file cannot be read as a picture.
-#[derive(Debug, Error)]
-pub enum Unreadable {
-    /// The file is no picture, or its format is not supported.
-    #[error(
-        "it is no picture in PNG, OpenEXR, PNM, BMP, TIFF, WebP, GIF or JPEG, the formats that are read here{}",
-        .0.map_or(String::new(), |format| format!(", but seems to be {}", name(format)))
-    )]
-    Format(Option<ImageFormat>),
-    /// The file is not a picture, but of another known kind, for example a web page. The text
-    /// describes it.
-    #[error("it is no picture, but {0}")]
-    Other(&'static str),
-    /// The file does not follow the rules of its format, so it is damaged or cut off.
-    #[error(
-        "it begins as {format} files do, but is damaged or cut off: {}",
-        shortened(cause)
-    )]
-    Damaged {
-        /// Name of the file's format.
-        format: String,
-        /// Description of the defect.
-        cause: String,
-    },
-    /// The file uses a feature of its format that is not supported.
-    #[error("it is {format} of a kind that is not read here: {}", shortened(cause))]
-    Unsupported {
-        /// Name of the file's format.
-        format: String,
-        /// Description of the feature.
-        cause: String,
-    },
-    /// Decompression needs more memory than allowed, in addition to the picture's.
-    #[error("unpacking it takes more than 512 MiB of memory")]
-    Unpacking,
-    /// The decoded picture would exceed the limit.
-    #[error(
-        "it has {width} × {height} pixels, which are decoded to more than the {limit} bytes that are read"
-    )]
-    Large {
-        /// The number of columns.
-        width: u64,
-        /// The number of rows.
-        height: u64,
-        /// Maximum number of decoded bytes.
-        limit: u64,
-    },
-    /// The picture has no columns or no rows.
-    #[error("it has {0} × {1} pixels, and so none at all")]
-    Empty(u64, u64),
-    /// There is not enough memory for the picture.
-    #[error(transparent)]
-    TooLarge(#[from] TooLarge),
-    /// A channel of a pixel is infinite or NaN.
-    #[error("its pixel ({x}, {y}) holds a value that is no finite number")]
-    NotFinite {
-        /// Column of the pixel.
-        x: u32,
-        /// Row of the pixel.
-        y: u32,
-    },
-}
-
-/// Returns the name of an image format in capital letters.
-pub(super) fn name(format: ImageFormat) -> String {
-    format!("{format:?}").to_uppercase()
-}
-
-/// Rejects a picture that has no pixels or is decoded to more than `limit` bytes. Pixels are
-/// assumed to have four channels of `channel` bytes each.
-pub(super) fn check_size(
-    [width, height]: [u64; 2],
-    channel: u64,
-    limit: u64,
-) -> Result<(), Unreadable> {
-    let large = Unreadable::Large {
-        width,
-        height,
-        limit,
-    };
-    match width
-        .checked_mul(height)
-        .and_then(|n| n.checked_mul(4 * channel))
-    {
-        Some(0) => Err(Unreadable::Empty(width, height)),
-        Some(bytes) if bytes <= limit => Ok(()),
-        _ => Err(large),
-    }
-}
-
-/// Shortens a decoder's message to 200 characters. It may repeat a long part of the file.
-fn shortened(cause: &str) -> String {
-    const LONGEST: usize = 200;
-    let mut characters = cause.trim_end().chars();
-    let mut short: String = characters.by_ref().take(LONGEST).collect();
-    if characters.next().is_some() {
-        short.push('…');
-    }
-    short
 }

@@ -50,6 +50,7 @@ pub struct Recipe {
 
 /// Why the scene of a picture cannot be read from its PNG file.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum NotOurs {
     /// The file is not a valid PNG.
     #[error("it begins as a PNG does, but is damaged or no picture")]

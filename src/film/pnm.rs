@@ -8,8 +8,9 @@
 
 use super::{
     memory,
-    picture::{Coding, Picture, Rounding, Unreadable, check_size},
+    picture::{Coding, Picture, Rounding},
     pixels::Film,
+    unreadable::{Unreadable, check_size},
 };
 use crate::color::srgb_to_linear;
 

@@ -13,13 +13,14 @@ use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use png::{BitDepth, ColorType, DecodingError, Transformations};
 
 use super::{
-    exr, jpeg,
+    jpeg,
     memory::{self, TooLarge},
     no_picture,
-    picture::{Coding, DECODED_LIMIT, Opacity, Picture, Rounding, Unreadable, check_size, name},
+    picture::{Coding, Opacity, Picture, Rounding},
     pixels::Film,
     png::read_recipe,
-    pnm,
+    pnm, read_exr,
+    unreadable::{DECODED_LIMIT, Unreadable, check_size, name},
 };
 use crate::color::srgb_to_linear;
 
@@ -66,7 +67,7 @@ pub fn read_picture(bytes: &[u8]) -> Result<Picture, Unreadable> {
 /// The file is not a picture that can be read.
 pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadable> {
     let picture = match format(bytes) {
-        Some(ImageFormat::OpenExr) => exr::read(bytes, limit)?,
+        Some(ImageFormat::OpenExr) => read_exr::read(bytes, limit)?,
         Some(ImageFormat::Png) => read_png(bytes, limit)?,
         Some(ImageFormat::Pnm) if !bytes.starts_with(b"P7") => pnm::read(bytes, limit)?,
         Some(format) if format.reading_enabled() => read(bytes, format, limit)?,
@@ -76,7 +77,7 @@ pub fn read_picture_up_to(bytes: &[u8], limit: u64) -> Result<Picture, Unreadabl
             (Unreadable::Format(None), Some(what)) => Unreadable::Other(what),
             (error, _) => error,
         })?,
-        other => return Err(Unreadable::Format(other)),
+        other => return Err(Unreadable::Format(other.map(name))),
     };
     let width = picture.film.width() as usize;
     let is_odd = |pixel: &[f64; 3]| pixel.iter().any(|light| !light.is_finite());

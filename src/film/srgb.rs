@@ -16,6 +16,7 @@ use crate::color::half_byte;
 const PARTS: usize = 4096;
 
 /// Converter of linear light to bytes of sRGB.
+#[derive(Clone, Debug)]
 pub struct Encoder {
     /// Threshold between each byte k and k + 1: the linear light whose sRGB value is k + 1/2, in
     /// 8-bit steps. From this light on, the byte is k + 1.

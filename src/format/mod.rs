@@ -27,7 +27,11 @@ use crate::{
     },
 };
 
-/// Returns the canonical layout of a scene's text, or its syntax errors.
+/// Returns the canonical layout of a scene's text.
+///
+/// # Errors
+///
+/// The text has errors of syntax, all of which are returned.
 pub fn format(source: &Source) -> Result<String, Vec<Diagnostic>> {
     let parsed = syntax::parse(source, SourceId::File);
     if !is_right(source, &parsed) {

@@ -13,6 +13,8 @@
 mod conclusion;
 mod empty_pixels;
 mod hypotheses;
+#[cfg(feature = "json")]
+mod json;
 mod objects;
 mod plain_facts;
 mod scoring;
@@ -22,6 +24,7 @@ mod wording;
 
 use std::{
     borrow::Cow,
+    fmt,
     sync::{Arc, Mutex, atomic::AtomicBool},
 };
 
@@ -73,6 +76,16 @@ pub struct Reference {
 /// is the exact mean. The other six are two copies of three colours: a mean, its variance, and the
 /// variance of a sample. Both copies exist while they are computed.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
+
+impl fmt::Debug for Reference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Reference");
+        fields.field("part", &self.part);
+        fields
+            .field("rounding", &self.rounding)
+            .finish_non_exhaustive()
+    }
+}
 
 impl Reference {
     /// Computes the exact picture of a part of a scene, for judging pictures that are rounded in

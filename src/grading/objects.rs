@@ -24,6 +24,7 @@ const BESIDE: usize = 2;
 
 /// The verdict on an object.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ObjectVerdict {
     /// Index of the object in the file.
     pub index: usize,

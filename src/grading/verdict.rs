@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use serde_json::{Map, Value, json};
-
 use super::objects::{self, ObjectVerdict};
 use crate::{numbers::short, scene::Scene};
 
 /// The result of judging a picture, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
     /// The picture equals the exact one within its tolerance.
     Right,
@@ -34,6 +33,7 @@ impl Kind {
 
 /// A mistake, described in words.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct NamedMistake {
     /// Stable identifier, for programs.
     pub id: &'static str,
@@ -50,6 +50,7 @@ pub struct NamedMistake {
 
 /// The verdict on a picture.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Verdict {
     /// The result in one word.
     pub kind: Kind,
@@ -146,27 +147,6 @@ impl Verdict {
             _ => String::new(),
         }
     }
-
-    /// Returns the verdict as JSON fields, for programs.
-    pub fn to_json(&self) -> Map<String, Value> {
-        let objects = self.objects.iter().map(|object| {
-            json!({ "index": object.index, "name": object.name, "right": object.is_right, "off": object.off })
-        });
-        let fields = [
-            ("verdict", json!(self.kind.word())),
-            ("line", json!(self.line())),
-            ("samples_per_pixel", json!(self.samples)),
-            ("mistakes", json_of(&self.mistakes)),
-            ("guesses", json_of(&self.guesses)),
-            ("objects", objects.collect()),
-        ];
-        let rest = self.rest.map(|rest| ("rest", json!(rest)));
-        let fields = fields.into_iter().chain(rest);
-        fields
-            .chain([("limited", json!(self.is_cut))])
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect()
-    }
 }
 
 /// Writes the verdict in one line.
@@ -180,17 +160,4 @@ impl fmt::Display for Verdict {
 fn messages(mistakes: &[NamedMistake]) -> String {
     let messages: Vec<_> = mistakes.iter().map(|one| &one.message[..]).collect();
     messages.join("; ")
-}
-
-fn json_of(mistakes: &[NamedMistake]) -> Value {
-    let fields = |mistake: &NamedMistake| {
-        json!({
-            "id": mistake.id,
-            "message": mistake.message,
-            "help": mistake.help,
-            "set": mistake.set,
-            "explains": mistake.explains,
-        })
-    };
-    mistakes.iter().map(fields).collect()
 }

@@ -5,11 +5,7 @@ use std::{io, path::PathBuf};
 
 use thiserror::Error;
 
-use crate::{
-    diagnostic::Mistakes,
-    film::{SizesDiffer, Unreadable},
-    render::RenderError,
-};
+use crate::{diagnostic::Mistakes, film::SizesDiffer, render::RenderError};
 
 /// Why an operation on a scene or a picture failed.
 #[derive(Debug, Error)]
@@ -25,14 +21,15 @@ pub enum Error {
     #[error(transparent)]
     SizesDiffer(#[from] SizesDiffer),
     /// The bytes are not a picture that can be read.
+    #[cfg(feature = "read")]
     #[error(transparent)]
-    Unreadable(#[from] Unreadable),
+    Unreadable(#[from] crate::film::Unreadable),
     /// A file cannot be read.
     #[error("cannot read {}: {error}", path.display())]
     Read {
         /// Path of the file.
         path: PathBuf,
-        /// Reason why it cannot be read.
+        /// Reason why it cannot be written.
         error: io::Error,
     },
     /// A file cannot be written.

@@ -6,7 +6,10 @@
 
 mod error;
 mod picture;
+#[cfg(feature = "read")]
 mod reading;
+#[cfg(any(feature = "exr", feature = "png"))]
+mod saving;
 mod scene;
 
 pub use self::{

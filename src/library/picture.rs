@@ -1,13 +1,10 @@
 //! Pictures in memory.
 
-use std::{io, path::Path, sync::Arc};
+use std::sync::Arc;
 
 use super::Error;
 use crate::{
-    area::Area,
-    cancel,
-    files::{self, Purpose},
-    film::{self, AsBytes, Encoder, Film, Jpeg, Recipe},
+    film::{self, AsBytes, Encoder, Film, Rounding},
     source::Sources,
 };
 
@@ -21,36 +18,25 @@ use crate::{
 /// assert_eq!(picture.pixels()[0], [0.0; 3]); // black in the top left corner
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    pub(super) content: Content,
+    /// The pixels, and how a file of them is coded.
+    pub(super) coded: film::Picture,
+    /// Compression of the file; `None` unless it is a JPEG or a lossy WebP.
+    #[cfg(feature = "read")]
+    pub(super) jpeg: Option<film::Jpeg>,
     /// The text of the scene that the picture shows, and its settings in the form of `--set`.
     /// `None` if they are unknown.
     pub(super) sources: Option<Arc<Sources>>,
-}
-
-/// The pixels of a picture, by their origin.
-#[derive(Clone, Debug)]
-pub(super) enum Content {
-    /// Pixels that were rendered.
-    Rendered(Film),
-    /// Pixels that were read from a file.
-    Read(Box<FromFile>),
-}
-
-/// A picture that was read from a file, with the file's compression.
-#[derive(Clone, Debug)]
-pub(super) struct FromFile {
-    pub(super) picture: film::Picture,
-    /// Compression of the file; `None` unless it is a JPEG or a lossy WebP.
-    pub(super) jpeg: Option<Jpeg>,
 }
 
 impl Picture {
     /// Makes a picture from pixels that were rendered, and the sources of their scene.
     pub(super) fn rendered(film: Film, sources: &Arc<Sources>) -> Self {
         Self {
-            content: Content::Rendered(film),
+            coded: film::Picture::new(film, Rounding::Float),
+            #[cfg(feature = "read")]
+            jpeg: None,
             sources: Some(Arc::clone(sources)),
         }
     }
@@ -73,10 +59,7 @@ impl Picture {
 
     /// Returns the pixels as [`pixels`](Self::pixels) does, without copying them.
     pub fn into_pixels(self) -> Vec<[f64; 3]> {
-        match self.content {
-            Content::Rendered(film) => film.into_pixels(),
-            Content::Read(file) => file.picture.film.into_pixels(),
-        }
+        self.coded.film.into_pixels()
     }
 
     /// Returns the bytes of red, green and blue of each pixel, row by row from the top, in sRGB. A
@@ -87,12 +70,15 @@ impl Picture {
         bytes
     }
 
+    /// Returns the text and the settings of the scene that the picture shows, if they are known: of
+    /// a picture that was rendered, and of a PNG that carries them.
+    pub fn sources(&self) -> Option<&Sources> {
+        self.sources.as_deref()
+    }
+
     /// Returns the pixels as a [`Film`], the type that other modules work with.
     pub fn film(&self) -> &Film {
-        match &self.content {
-            Content::Rendered(film) => film,
-            Content::Read(file) => &file.picture.film,
-        }
+        &self.coded.film
     }
 
     /// Returns the root mean square of the differences between two pictures, over all pixels and
@@ -114,63 +100,6 @@ impl Picture {
     pub fn rmse(&self, other: &Self) -> Result<f64, Error> {
         Ok(film::rmse(self.film(), other.film())?)
     }
-
-    /// Writes the picture to a file, completely or not at all. The path's extension selects the
-    /// format: `.png` for 8-bit sRGB, with the scene's text in the file, or `.exr` for linear
-    /// light in floats. The program `pinhole` writes the same bytes.
-    ///
-    /// ```
-    /// # let folder = tempfile::tempdir().unwrap();
-    /// # let path = folder.path().join("a.png");
-    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
-    /// #     checkerboard {}  image { width 40  height 30 }")?;
-    /// scene.render()?.save(&path)?;
-    /// # Ok::<(), pinhole::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    ///
-    /// The path has another extension, or the file cannot be written.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        let path = path.as_ref();
-        let ending = path.extension().unwrap_or_default();
-        let written = if ending.eq_ignore_ascii_case("png") {
-            files::write(path, Purpose::Named, &cancel::NEVER, |out| {
-                film::write_png(self.film(), self.recipe().as_ref(), out)
-            })
-        } else if ending.eq_ignore_ascii_case("exr") {
-            let whole = Area::whole(self.width(), self.height());
-            files::write(path, Purpose::Named, &cancel::NEVER, |out| {
-                film::write_exr(self.film(), whole, whole, out)
-            })
-        } else {
-            let message = "a picture's file ends in .png or .exr";
-            Err(io::Error::new(io::ErrorKind::InvalidInput, message))
-        };
-        written.map_err(|error| Error::Write {
-            path: path.to_owned(),
-            error,
-        })
-    }
-
-    /// Returns the scene's text and its settings (as of `--set`) in the form in which a PNG stores
-    /// them. Returns `None` if they are unknown.
-    fn recipe(&self) -> Option<Recipe> {
-        let sources = self.sources.as_ref()?;
-        let crop = match &self.content {
-            Content::Rendered(_) => None,
-            Content::Read(file) => file.picture.crop,
-        };
-        Some(Recipe {
-            scene: sources.file.text().to_owned(),
-            overrides: sources
-                .sets
-                .iter()
-                .map(|set| set.text().to_owned())
-                .collect(),
-            crop,
-        })
-    }
 }
 
 /// A picture that was computed without samples, with a bound on the error of each pixel.
@@ -183,7 +112,7 @@ impl Picture {
 /// assert!(exact.bounds.iter().all(|&bound| bound < 1e-9));
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Exact {
     /// Mean colour of each pixel, without sampling noise.

@@ -1,14 +1,11 @@
 //! Pictures of other programs: reads them from files, and judges them.
 
-use std::{borrow::Cow, path::Path, sync::Arc};
+use std::{path::Path, sync::Arc};
 
-use super::{
-    Error, Picture, Scene,
-    picture::{Content, FromFile},
-};
+use super::{Error, Picture, Scene};
 use crate::{
     cancel, files,
-    film::{self, DECODED_LIMIT, Jpeg, Rounding, SizesDiffer},
+    film::{self, DECODED_LIMIT, Jpeg, SizesDiffer},
     grading::{Reference, Verdict},
     render::Control,
     source::{Source, Sources},
@@ -41,31 +38,15 @@ impl Picture {
     ///
     /// The bytes are no picture, or are decoded to more than [`DECODED_LIMIT`] bytes.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
-        let file = FromFile {
-            picture: film::read_picture(bytes)?,
-            jpeg: Jpeg::of(bytes),
-        };
         let sources = film::read_recipe(bytes).ok().map(|recipe| {
             let text = Source::from_text("scene", recipe.scene);
             Arc::new(Sources::new(text).with_sets(recipe.overrides))
         });
         Ok(Self {
-            content: Content::Read(Box::new(file)),
+            coded: film::read_picture(bytes)?,
+            jpeg: Jpeg::of(bytes),
             sources,
         })
-    }
-
-    /// Returns the picture with the facts about its file, and the file's compression if it is a
-    /// JPEG or a lossy WebP. A rendered picture is treated as a file without rounding or
-    /// compression.
-    fn as_read(&self) -> (Cow<'_, film::Picture>, Option<Jpeg>) {
-        match &self.content {
-            Content::Read(file) => (Cow::Borrowed(&file.picture), file.jpeg),
-            Content::Rendered(film) => {
-                let picture = film::Picture::new(film.clone(), Rounding::Float);
-                (Cow::Owned(picture), None)
-            }
-        }
     }
 }
 
@@ -89,7 +70,7 @@ impl Scene {
     /// The picture does not have the scene's size, and its file does not say which part of the
     /// scene it shows; there is not enough memory; or no thread can be started.
     pub fn grade(&self, picture: &Picture) -> Result<Verdict, Error> {
-        let (file, jpeg) = picture.as_read();
+        let file = &picture.coded;
         let size = [picture.width(), picture.height()];
         let whole = [self.size().width, self.size().height];
         let part = match file.crop {
@@ -99,6 +80,6 @@ impl Scene {
         };
         let reference = Reference::new(self.data(), part, file.rounding, &Control::default())?;
         let comparison = reference.compare(&file.film, file.rounding.steps())?;
-        Ok(reference.judge(&file, jpeg, &comparison, &cancel::NEVER)?)
+        Ok(reference.judge(file, picture.jpeg, &comparison, &cancel::NEVER)?)
     }
 }

@@ -26,7 +26,7 @@ use crate::{
 /// assert_eq!(rolled.data().camera.roll, pinhole::Angle::from_degrees(8.0));
 /// # Ok::<(), pinhole::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     sources: Arc<Sources>,
     data: SceneData,

@@ -1,28 +1,8 @@
 //! Keeps the texts that are open in the editor. Converts between byte offsets and positions, i.e.
 //! lines and columns.
 
-use line_index::{LineCol, LineIndex, WideEncoding, WideLineCol};
-
-use crate::source::{Source, Sources};
-
-/// Unit in which the columns of a line are counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Encoding {
-    /// The unit is a byte of UTF-8.
-    Utf8,
-    /// The unit is a UTF-16 code unit, or a character (UTF-32).
-    Wide(WideEncoding),
-}
-
-impl Encoding {
-    /// Returns the number of columns of `text`, counted in the unit `self`.
-    pub fn columns(self, text: &str) -> usize {
-        match self {
-            Self::Utf8 => text.len(),
-            Self::Wide(encoding) => encoding.measure(text),
-        }
-    }
-}
+pub use crate::source::Encoding;
+use crate::source::{Lines, Source, Sources};
 
 /// A position in a text: line and column, both counted from 0.
 pub type LineColumn = (u32, u32);
@@ -68,7 +48,7 @@ impl Document {
         for change in changes {
             let Some([start, end]) = change.range else {
                 text.clone_from(&change.text);
-                lines = LineIndex::new(&text);
+                lines = Lines::new(&text);
                 continue;
             };
             let offset = |place| {
@@ -79,7 +59,7 @@ impl Document {
             };
             let (start_at, end_at) = (offset(start)?, offset(end)?);
             text.replace_range(start_at.min(end_at)..end_at.max(start_at), &change.text);
-            lines = LineIndex::new(&text);
+            lines = Lines::new(&text);
         }
         let name = self.sources.file.name();
         *self = Self::new(name, version, text, self.encoding);
@@ -100,50 +80,36 @@ impl Document {
 
     /// Returns the line and column of a byte offset.
     pub fn line_column(&self, offset: usize) -> LineColumn {
-        let place = self.sources.file.line_col(offset);
-        match self.encoding {
-            Encoding::Utf8 => (place.line, place.col),
-            Encoding::Wide(encoding) => match self.sources.file.lines().to_wide(encoding, place) {
-                Some(place) => (place.line, place.col),
-                None => (place.line, place.col),
-            },
-        }
+        let (file, lines) = (&self.sources.file, self.sources.file.lines());
+        let offset = file.floor_char_boundary(offset);
+        let column = lines.column(offset, self.encoding);
+        (lines.line(offset) as u32, column as u32)
     }
 }
 
 /// Returns the byte offset of a position in `text`. `lines` is the index of the text's lines. The
 /// start of the line after the last one is the end of the text. Returns `None` for later lines.
-fn offset(
-    text: &str,
-    lines: &LineIndex,
-    encoding: Encoding,
-    (line, col): LineColumn,
-) -> Option<usize> {
-    let Some(range) = lines.line(line) else {
-        let last = lines.try_line_col(lines.len())?;
-        return (line == last.line + 1).then_some(text.len());
+fn offset(text: &str, lines: &Lines, encoding: Encoding, (line, col): LineColumn) -> Option<usize> {
+    let (line, col) = (line as usize, col as usize);
+    let Some(range) = lines.range(line) else {
+        return (line == lines.line(text.len()) + 1).then_some(text.len());
     };
-    let (start, end) = (usize::from(range.start()), usize::from(range.end()));
-    let written = text.get(start..end)?.trim_end_matches(['\r', '\n']);
-    let place = match encoding {
-        Encoding::Utf8 => Some(LineCol { line, col }),
-        Encoding::Wide(encoding) => lines.to_utf8(encoding, WideLineCol { line, col }),
-    };
-    let column = place.map_or(usize::MAX, |place| place.col as usize);
-    let columns = 0..=column.min(written.len());
-    let column = columns.rev().find(|at| written.is_char_boundary(*at));
-    column.map(|column| start + column)
+    let start = range.start;
+    let written = text.get(range)?.trim_end_matches(['\r', '\n']);
+    let mut columns = 0;
+    let mut characters = written.char_indices();
+    let reached = characters.find(|&(_, character)| {
+        columns += encoding.columns_of(character);
+        columns > col
+    });
+    Some(start + reached.map_or(written.len(), |(at, _)| at))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const ENCODINGS: [Encoding; 3] = [
-        Encoding::Utf8,
-        Encoding::Wide(WideEncoding::Utf16),
-        Encoding::Wide(WideEncoding::Utf32),
-    ];
+    const ENCODINGS: [Encoding; 3] = [Encoding::Utf8, Encoding::Utf16, Encoding::Utf32];
 
     #[test]
     fn columns_are_counted_as_the_editor_does() {

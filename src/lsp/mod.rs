@@ -21,4 +21,5 @@ mod text_requests;
 
 pub use params::{Answer, Refusal, optional, response};
 pub use server::Server;
-pub(crate) use server::catch_panics;
+#[doc(hidden)]
+pub use server::catch_panics;

@@ -40,6 +40,10 @@ pub fn at<T: serde::de::DeserializeOwned>(params: &Value, path: &str) -> Result<
 }
 
 /// Reads a field of the parameters; returns `None` if it is missing or null.
+///
+/// # Errors
+///
+/// The field is something else.
 pub fn optional<T: serde::de::DeserializeOwned>(
     params: &Value,
     name: &str,

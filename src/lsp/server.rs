@@ -382,7 +382,11 @@ fn uri(request: &Request) -> Option<Uri> {
 
 /// Calls `answer` and returns its result, or an internal error if it panics. The server can
 /// continue after a panic: computing an answer changes no text, and the next request may succeed.
-pub(crate) fn catch_panics<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
+///
+/// # Errors
+///
+/// The request is refused, or `answer` panics.
+pub fn catch_panics<T>(answer: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
     panic::catch_unwind(AssertUnwindSafe(answer)).unwrap_or_else(|_| {
         let message = "the answer failed, which is a mistake of Pinhole".to_owned();
         Err(Refusal(ErrorCode::InternalError, message))

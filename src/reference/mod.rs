@@ -6,6 +6,9 @@
 //! [`formulas`]. Nothing of this is shared with the tracer, except what the scene itself provides.
 
 pub mod formulas;
+#[cfg(feature = "report")]
 pub mod oracle;
+#[cfg(any(test, feature = "report"))]
 pub mod scenes;
+#[cfg(feature = "report")]
 pub mod textbook;

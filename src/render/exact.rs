@@ -23,6 +23,7 @@ const TILE: u32 = 2 * GRID;
 
 /// An exactly computed picture, with its error bounds.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Exact<P = [f64; 3]> {
     /// The pixels' means in linear light, or converted to another type of pixel.
     pub film: Film<P>,

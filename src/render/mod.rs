@@ -17,6 +17,7 @@ mod tally;
 mod tile;
 
 use std::{
+    fmt,
     num::NonZero,
     sync::{
         Mutex,
@@ -44,6 +45,7 @@ pub use self::{
 };
 
 /// Control of a render: its threads, its progress, and its cancellation.
+#[derive(Clone, Copy)]
 pub struct Control<'a> {
     /// Number of threads; `None` for the default number, which is one per processor or the
     /// process's limit.
@@ -53,6 +55,14 @@ pub struct Control<'a> {
     pub progress: &'a (dyn Fn(u64) + Sync),
     /// Flag that ends the render soon after it is set.
     pub cancel: &'a AtomicBool,
+}
+
+impl fmt::Debug for Control<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut fields = f.debug_struct("Control");
+        fields.field("threads", &self.threads);
+        fields.field("cancel", self.cancel).finish_non_exhaustive()
+    }
 }
 
 /// Default settings: the default number of threads, no progress, and no cancellation.
@@ -68,6 +78,7 @@ impl Default for Control<'_> {
 
 /// Reason why a render gives no picture.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// There is not enough memory for the picture.
     #[error(transparent)]
@@ -99,6 +110,7 @@ impl From<Cancelled> for RenderError {
 }
 
 /// A rendered part of the picture.
+#[derive(Clone, Debug, PartialEq)]
 pub enum Rendered<P = [f64; 3]> {
     /// A picture that was rendered with samples.
     Sampled(Film<P>),

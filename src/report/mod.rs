@@ -2,5 +2,4 @@
 //! sampling methods fall.
 
 pub mod numerics;
-#[cfg(feature = "report")]
 pub mod speed;

@@ -12,6 +12,7 @@ use crate::{
 /// Result of [`fix_all`]: the corrected text, the applied fixes, and the numbers of errors that
 /// remain.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Fixed {
     /// The corrected text.
     pub text: String,

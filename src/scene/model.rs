@@ -21,7 +21,8 @@ checkerboard {}
 ";
 
 /// Result of reading a scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Reading {
     /// The scene, unless there is an error.
     pub scene: Option<Scene>,
@@ -105,6 +106,7 @@ pub fn level_direction(up: DVec3) -> DVec3 {
 /// Field of view of a camera, in one of the language's three forms. Angles are between 0 and 180
 /// degrees, exclusive.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Lens {
     /// Distance from the eye to the view plane in metres, > 0.
     Distance(f64),
@@ -127,6 +129,7 @@ pub struct Sampler {
 
 /// Number of samples. For the whole picture, it is at most 2^53.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Count {
     /// The number of samples in each pixel, ≥ 1.
     PerPixel(u64),

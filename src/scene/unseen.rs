@@ -118,6 +118,7 @@ pub fn are_squares_lost(camera: &Camera, image: &Image, board: &Checkerboard) ->
 }
 
 /// The space that a camera sees: the pyramid of its window, between the near and the far plane.
+#[derive(Clone, Copy, Debug)]
 pub struct Sight {
     eye: DVec3,
     /// The view direction, of length 1.

@@ -13,6 +13,7 @@ use Condition::{NotZero, Whole};
 
 /// Row for a kind of block in the table of the language.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct BlockRow {
     /// Kind of block.
     pub kind: BlockKind,
@@ -100,6 +101,7 @@ macro_rules! blocks {
     })*) => {
         /// A kind of block.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
         pub enum BlockKind {
             $(#[doc = concat!("The kind of [`", stringify!($constant), "`].")] $kind,)*
         }

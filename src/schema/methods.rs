@@ -12,6 +12,7 @@ macro_rules! methods {
     ($($method:ident $name:literal $help:literal $tried:literal)*) => {
         /// A sampling technique.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
         pub enum Method {
             $(#[doc = $help] $method,)*
         }

@@ -21,6 +21,7 @@ pub struct Choice {
 
 /// Row for a field in the table of the language.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct FieldRow {
     /// The field's name.
     pub name: &'static str,
@@ -92,6 +93,7 @@ pub enum Preset {
 
 /// Condition on a field's value, in addition to its type.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Condition {
     /// A number without a fraction.
     Whole,

@@ -12,6 +12,7 @@ macro_rules! types {
     ($($variant:ident($contents:ty) noun $noun:literal plural $plural:literal such_as $such_as:literal;)*) => {
         /// A type of the language.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
         pub enum Type {
             $(#[doc = concat!("The type of ", $plural, ".")] $variant,)*
         }
@@ -41,6 +42,7 @@ macro_rules! types {
 
         /// A value of the language.
         #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
         pub enum Value {
             $(#[doc = concat!("The value is ", $noun, ".")] $variant(contents::$variant),)*
         }

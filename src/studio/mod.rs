@@ -11,21 +11,21 @@
 //! stores texts that are not saved. The other host is the crate `studio/engine`, which runs in the
 //! browser itself.
 
-#[cfg(feature = "studio")]
+#[cfg(not(target_family = "wasm"))]
 mod access;
-#[cfg(feature = "studio")]
+#[cfg(not(target_family = "wasm"))]
 mod connection_limits;
-#[cfg(feature = "studio")]
+#[cfg(not(target_family = "wasm"))]
 mod conversation;
 pub mod download;
-#[cfg(feature = "studio")]
+#[cfg(not(target_family = "wasm"))]
 mod draft;
-#[cfg(feature = "studio")]
+#[cfg(not(target_family = "wasm"))]
 mod host;
-#[cfg(feature = "studio")]
+#[cfg(not(target_family = "wasm"))]
 mod scene_file;
-#[cfg(feature = "studio")]
+#[cfg(not(target_family = "wasm"))]
 mod threaded_download;
 
-#[cfg(feature = "studio")]
+#[cfg(not(target_family = "wasm"))]
 pub use self::{host::Host, scene_file::SceneFile};

@@ -43,6 +43,7 @@ pub const NESTING_LIMIT: usize = 256;
 
 /// Result of parsing.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Parsed<'s> {
     /// The tree of the whole text.
     pub tree: Tree<'s>,

@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// Texts of a problem, and whether its fix is safe.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Message {
     /// In order: the code without `pinhole::`, the message, the label, and the help, which is shown
     /// if there is no fix.

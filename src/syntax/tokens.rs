@@ -7,6 +7,7 @@
 
 /// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TokenKind {
     /// A word of ASCII letters, digits and `_` that does not start with a digit; `let` is one.
     Name,

@@ -20,6 +20,7 @@ use crate::{
 /// A crossing of a ray with a surface, for output. Each number is the correctly rounded exact
 /// value.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Hit {
     /// The object's index in the file.
     pub object: usize,

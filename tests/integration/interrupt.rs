@@ -71,7 +71,6 @@ fn a_signal_ends_a_command_within_one_pixel() {
             "render long.scn --set sampler.method=random --set sampler.per_pixel=8589934592 --set image.width=1024 --set image.height=1024",
         ),
         ("INT", "diff black.png long.scn -o heat.png"),
-        #[cfg(feature = "report")]
         ("INT", "report long.scn"),
     ] {
         let (_, time) = end_with_signal(signal, &mut folder.command(line), 500);

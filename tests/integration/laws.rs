@@ -128,6 +128,7 @@ fn mapped(
                 *y = place(DVec3::Y * *y).y;
                 *square *= scale;
             }
+            other => panic!("how {other:?} scales is not said"),
         }
     }
     scene

@@ -4,7 +4,6 @@
     reason = "tests make the files that the program is tried with"
 )]
 
-#[cfg(feature = "report")]
 mod browser;
 mod camera;
 mod cancel;
@@ -35,7 +34,6 @@ mod language;
 mod laws;
 mod layers;
 mod library;
-#[cfg(feature = "lsp")]
 mod lsp;
 mod numerics;
 mod parts;
@@ -47,13 +45,11 @@ mod random_scenes;
 mod readme;
 mod refine;
 mod render;
-#[cfg(feature = "report")]
 mod report;
 mod robustness;
 mod sampling;
 mod scenes;
 mod snapshot;
-#[cfg(feature = "studio")]
 mod studio;
 mod syntax;
 mod table;
@@ -61,5 +57,5 @@ mod texts;
 #[cfg(target_os = "linux")]
 mod threads;
 mod tracer;
-#[cfg(all(unix, feature = "preview"))]
+#[cfg(unix)]
 mod watch;

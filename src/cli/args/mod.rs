@@ -42,7 +42,6 @@ pub enum Command {
     #[command(after_help = help::NEW_EXAMPLES)]
     New(NewArgs),
     /// Render a scene whenever its file is saved
-    #[cfg(feature = "preview")]
     #[command(after_help = help::WATCH_EXAMPLES)]
     Watch(WatchArgs),
     /// Show what a scene means: camera, field of view, vanishing points, objects
@@ -101,7 +100,6 @@ impl Command {
     pub fn threads(&self) -> Option<NonZero<usize>> {
         match self {
             Self::Render(args) => args.threads.count(),
-            #[cfg(feature = "preview")]
             Self::Watch(args) => args.threads.count(),
             Self::Diff(args) => args.threads.count(),
             Self::Grade(args) => args.threads.count(),
@@ -185,7 +183,6 @@ pub struct NewArgs {
 }
 
 /// Arguments of `watch`.
-#[cfg(feature = "preview")]
 #[derive(Debug, clap::Args)]
 pub struct WatchArgs {
     /// The scene: a .scn file

@@ -35,6 +35,7 @@ pub type Handle = (&'static str, Option<DVec3>);
 /// Axis or plane along which a dragged point moves in space. Without one, the point moves in the
 /// plane through it that is parallel to the view plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Along {
     /// One of the coordinate axes x, y and z, by its index 0, 1 or 2.
     Axis(usize),

@@ -1,6 +1,5 @@
 //! Reads the capabilities of the client (the editor), and declares the capabilities of the server.
 
-use line_index::WideEncoding;
 use serde_json::{Value, json};
 
 use crate::{editor::SemanticKind, lsp::documents::Encoding};
@@ -49,11 +48,11 @@ impl Client {
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),
-        "utf-16" => Some(Encoding::Wide(WideEncoding::Utf16)),
-        "utf-32" => Some(Encoding::Wide(WideEncoding::Utf32)),
+        "utf-16" => Some(Encoding::Utf16),
+        "utf-32" => Some(Encoding::Utf32),
         _ => None,
     });
-    known.unwrap_or(Encoding::Wide(WideEncoding::Utf16))
+    known.unwrap_or(Encoding::Utf16)
 }
 
 /// Returns the capabilities of the server.
@@ -61,8 +60,8 @@ pub fn capabilities(client: &Client) -> Value {
     json!({
         "positionEncoding": match client.encoding {
             Encoding::Utf8 => "utf-8",
-            Encoding::Wide(WideEncoding::Utf32) => "utf-32",
-            Encoding::Wide(_) => "utf-16",
+            Encoding::Utf32 => "utf-32",
+            Encoding::Utf16 => "utf-16",
         },
         // In the protocol, 2 stands for `Incremental`: changes are sent as edits of the text.
         "textDocumentSync": { "openClose": true, "change": 2 },

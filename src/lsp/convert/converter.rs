@@ -1,7 +1,6 @@
 //! Converts answers about a document to the types of the protocol. Also converts positions and
 //! changes from the protocol to byte offsets and spans.
 
-use line_index::WideEncoding;
 use serde_json::{Value, json};
 
 use super::client::{Client, FIX_ALL, QUICK_FIX};
@@ -16,7 +15,7 @@ use crate::{
         params::{Refusal, at},
         protocol::{self, Position, Range, Uri, without_nulls},
     },
-    source::{SourceId, Span},
+    source::{Encoding, SourceId, Span},
 };
 
 /// A document and the client in which it is open. Converts between the types of the protocol and
@@ -105,7 +104,7 @@ impl Converter<'_> {
             // Offsets within labels are in UTF-16 code units, whatever the unit of positions is.
             let before = |end: usize| {
                 let before = signature.label.get(..end).unwrap_or_default();
-                count(WideEncoding::Utf16.measure(before))
+                count(Encoding::Utf16.columns(before))
             };
             json!({ "label": [before(range.start), before(range.end)] })
         });

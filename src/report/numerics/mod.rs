@@ -27,7 +27,7 @@ mod triangle;
 
 use std::sync::atomic::Ordering;
 
-use rayon::{ThreadPoolBuildError, prelude::*};
+use rayon::prelude::*;
 
 use self::inputs::CaseRng;
 pub use self::{
@@ -35,7 +35,10 @@ pub use self::{
     table::{CaseResult, NumericsTable},
     trial::CaseTally,
 };
-use crate::{render::Control, threads};
+use crate::{
+    render::Control,
+    threads::{self, NoThreads},
+};
 
 /// Returns all hard cases, in the order of the report.
 pub fn cases() -> impl Iterator<Item = &'static Case> {
@@ -56,8 +59,11 @@ const BLOCK: u64 = 100;
 
 /// Tests `inputs_per_case` inputs of every case. Reports the progress as a number of inputs. If it
 /// is cancelled, returns the results so far, which cover about equally many inputs of every case.
-/// Fails if threads cannot be started.
-pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, ThreadPoolBuildError> {
+///
+/// # Errors
+///
+/// No thread can be started.
+pub fn run(inputs_per_case: u64, control: &Control) -> Result<NumericsTable, NoThreads> {
     let cases: Vec<_> = cases().collect();
     let blocks = inputs_per_case.div_ceil(BLOCK);
     let count = cases.len() as u64;

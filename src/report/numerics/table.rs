@@ -43,6 +43,7 @@ impl NumericsTable {
 
     /// Converts the table to JSON. Null stands for an infinite error (for example, that a surface
     /// was not found), and for numbers that were not measured.
+    #[doc(hidden)]
     pub fn to_json(&self) -> Value {
         let rows = self.rows.iter().map(|CaseResult { case, tally }| {
             let side = |i: usize| {

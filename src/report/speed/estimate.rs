@@ -32,6 +32,7 @@ impl Estimate {
 }
 
 /// The methods that reach an error, ranked by CPU time.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
     /// The method with the least CPU time, and others whose times do not clearly differ from it.
     pub fastest: Vec<(Method, Estimate)>,

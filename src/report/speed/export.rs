@@ -30,6 +30,10 @@ struct CsvRow {
 
 /// Returns the measurement as CSV: a row of column names, then a row for each method and number of
 /// samples.
+///
+/// # Errors
+///
+/// A row cannot be written.
 pub fn to_csv(measured: &Measurement) -> io::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for series in &measured.series {

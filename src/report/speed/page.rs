@@ -25,6 +25,10 @@ use crate::{
 const WHOLE: [u32; 2] = [640, 480];
 
 /// Returns the HTML page. It has a section for each scene.
+///
+/// # Errors
+///
+/// There is not enough memory for the pictures.
 pub fn page(measurements: &[Measurement]) -> io::Result<String> {
     let sections = measurements.iter().map(section);
     let sections = sections.collect::<io::Result<Vec<_>>>()?;

@@ -50,8 +50,12 @@ const SHOWN: u64 = 16;
 
 /// Makes the measurement that the request describes. Calls `progress` after each timed render with
 /// the share of the work that is done. If it is cancelled, returns the results so far, marked as
-/// interrupted, or an error if there is no exact picture yet. The progress callback in `control` is
-/// not called.
+/// interrupted. The progress callback in `control` is not called.
+///
+/// # Errors
+///
+/// It is cancelled before the exact picture is done, there is not enough memory, or no thread can be
+/// started.
 pub fn measure(
     subject: &MeasuredScene,
     scene: &Scene,

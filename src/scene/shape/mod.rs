@@ -8,6 +8,8 @@
 
 mod checkerboard;
 mod cuboid;
+#[cfg(feature = "json")]
+mod json;
 mod sphere;
 mod triangle;
 
@@ -17,17 +19,17 @@ pub use sphere::Sphere;
 pub use triangle::{CenteredTriangle, Triangle, TriangleOutline};
 
 use glam::DVec3;
-use serde_json::{Value as Json, json};
 
 use super::lowered_block::LoweredBlock;
 use crate::{
     color::Color,
     diagnostic::Problems,
-    schema::{self, BlockKind, FieldValue, TRIANGLE, Value},
+    schema::{self, BlockKind, FieldValue, Value},
 };
 
 /// A shape with its colours. Lengths are in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Shape {
     /// A sphere.
     Sphere(Sphere),
@@ -189,39 +191,6 @@ impl Shape {
             Self::Box(cuboid) => cuboid.summary(),
             Self::Checkerboard(board) => board.summary(),
         }
-    }
-
-    /// Returns the members that describe the shape in the JSON output of `pinhole inspect`.
-    /// `vertices` computes the vertices of a triangle.
-    pub fn facts(
-        &self,
-        vertices: impl FnOnce(&Triangle) -> [DVec3; 3],
-    ) -> Vec<(&'static str, Json)> {
-        match *self {
-            Self::Triangle(triangle) => vec![
-                ("vertices", json!(vertices(&triangle).map(|v| v.to_array()))),
-                (TRIANGLE.color.name, json(Value::Color(triangle.color))),
-            ],
-            mut shape @ (Self::Sphere(_) | Self::Box(_) | Self::Checkerboard(_)) => {
-                let names = schema::of_kind(self.block_kind()).field_names();
-                let facts = names.filter_map(|name| {
-                    let field = shape.field_mut(name)?;
-                    Some((name, json(field.value())))
-                });
-                facts.collect()
-            }
-        }
-    }
-}
-
-/// Returns the value of a field as JSON.
-fn json(value: Value) -> Json {
-    match value {
-        Value::Number(number) => json!(number),
-        Value::Vector(vector) => json!(vector.to_array()),
-        Value::Colors(colors) => json!(colors.map(|color| color.to_string())),
-        Value::FaceColors(colors) => json!(colors.map(|color| color.to_string())),
-        Value::Color(_) | Value::Angle(_) | Value::Method(_) => json!(value.to_string()),
     }
 }
 

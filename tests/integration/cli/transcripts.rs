@@ -44,8 +44,6 @@ fn replayed(transcript: &str) -> String {
 fn cli_transcripts_match_the_program() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli");
     let is_there = |name: &String| match name.as_str() {
-        "report.txt" => cfg!(feature = "report"),
-        "watch.txt" => cfg!(feature = "preview"),
         "full_disk.txt" => cfg!(target_os = "linux"),
         _ => true,
     };

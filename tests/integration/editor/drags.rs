@@ -36,7 +36,7 @@ fn any_scene() -> impl Strategy<Value = String> {
             (BlockKind::Triangle, false) => format!("triangle {{ centroid {a} normal {b} + (0, 0, 9) sides (2, 2, 1.5) spin {spin:.1}deg }}"),
             (BlockKind::Triangle, true) => format!("triangle {{ v0 {a} v1 {b} v2 {c} }}"),
             (BlockKind::Checkerboard, _) => format!("checkerboard {{ y {y:.2} }}"),
-            (BlockKind::Image | BlockKind::Camera | BlockKind::Sampler, _) => unreachable!("it is no object"),
+            (kind, _) => panic!("{kind:?} is no object, or a new kind"),
         };
         let view = [format!("lookat {c}"), format!("direction {c} + (0, 0, -9)")];
         let (view, lens) = (&view[views.0], ["", "d 5", "fov 60deg", "hfov 1rad"][views.1]);

@@ -138,7 +138,6 @@ fn a_killed_new_command_leaves_a_complete_file_or_none() {
 }
 
 /// The process is killed at various times, from before it begins to write until it has answered.
-#[cfg(feature = "studio")]
 #[test]
 fn a_killed_first_save_leaves_a_complete_file_or_none() {
     use crate::studio::client::Studio;

@@ -215,7 +215,7 @@ fn a_folder_replaced_by_an_outward_link_is_not_followed() {
     }
 }
 
-#[cfg(all(unix, feature = "studio"))]
+#[cfg(unix)]
 #[test]
 fn drafts_are_readable_only_by_their_user() {
     use std::os::unix::fs::PermissionsExt;

@@ -4,9 +4,7 @@
 //! million per test, starting at the input number `PINHOLE_FUZZ_FIRST`. An input depends only on
 //! its number.
 
-#[cfg(feature = "studio")]
 mod host;
-#[cfg(feature = "lsp")]
 mod messages;
 mod pictures;
 mod texts;

@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 
 use pinhole::{
     area::Area,
-    film::{self, Coding, Film, Jpeg, Picture, Rounding},
+    film::{self, Film, Jpeg, Picture, Rounding},
     grading::{self, Reference},
     render::Control,
     scene,
@@ -163,13 +163,7 @@ fn a_part_of_a_mirrored_picture_with_one_more_mistake() {
     let right = scene(&[]);
     let reference = reference(&right, part);
     let comparison = reference.compare(&film, 0.5).unwrap();
-    let picture = Picture {
-        film,
-        rounding: Rounding::Byte,
-        coding: Coding::Exact,
-        crop: None,
-        opacity: None,
-    };
+    let picture = Picture::new(film, Rounding::Byte);
     let verdict = reference
         .judge(&picture, None, &comparison, &cancel)
         .unwrap();

@@ -18,7 +18,9 @@ checkerboard { }
 
 /// Returns two texts: the settings of a scene, and its shapes. Panics if the scene has errors.
 pub fn meaning(sources: &Sources) -> [String; 2] {
-    let Reading { scene, diagnostics } = scene::read(sources);
+    let Reading {
+        scene, diagnostics, ..
+    } = scene::read(sources);
     let scene = scene.unwrap_or_else(|| panic!("{diagnostics:#?}"));
     let shapes: Vec<_> = scene.objects.iter().map(|object| object.shape).collect();
     let settings = (scene.image, scene.camera, scene.sampler);

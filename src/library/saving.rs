@@ -1,0 +1,69 @@
+//! Pictures to files.
+
+use std::{io, path::Path};
+
+use super::{Error, Picture};
+use crate::{
+    cancel,
+    files::{self, Purpose},
+    film,
+};
+
+impl Picture {
+    /// Writes the picture to a file, completely or not at all. The path's extension selects the
+    /// format: `.png` for 8-bit sRGB, with the scene's text in the file, or `.exr` for linear
+    /// light in floats. The program `pinhole` writes the same bytes.
+    ///
+    /// ```
+    /// # let folder = tempfile::tempdir().unwrap();
+    /// # let path = folder.path().join("a.png");
+    /// # let scene = pinhole::Scene::parse("camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+    /// #     checkerboard {}  image { width 40  height 30 }")?;
+    /// scene.render()?.save(&path)?;
+    /// # Ok::<(), pinhole::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The path has another extension, or one whose feature is left out, or the file cannot be
+    /// written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+        let written = match ending.to_str() {
+            #[cfg(feature = "png")]
+            Some("png") => files::write(path, Purpose::Named, &cancel::NEVER, |out| {
+                film::write_png(self.film(), self.recipe().as_ref(), out)
+            }),
+            #[cfg(feature = "exr")]
+            Some("exr") => files::write(path, Purpose::Named, &cancel::NEVER, |out| {
+                let whole = crate::area::Area::whole(self.width(), self.height());
+                film::write_exr(self.film(), whole, whole, out)
+            }),
+            _ => {
+                let message = "a picture's file ends in .png or .exr";
+                Err(io::Error::new(io::ErrorKind::InvalidInput, message))
+            }
+        };
+        written.map_err(|error| Error::Write {
+            path: path.to_owned(),
+            error,
+        })
+    }
+
+    /// Returns the scene's text and its settings (as of `--set`) in the form in which a PNG stores
+    /// them. Returns `None` if they are unknown.
+    #[cfg(feature = "png")]
+    fn recipe(&self) -> Option<film::Recipe> {
+        let sources = self.sources()?;
+        Some(film::Recipe {
+            scene: sources.file.text().to_owned(),
+            overrides: sources
+                .sets
+                .iter()
+                .map(|set| set.text().to_owned())
+                .collect(),
+            crop: self.coded.crop,
+        })
+    }
+}
