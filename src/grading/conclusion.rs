@@ -18,7 +18,7 @@ use crate::{
 /// Least fraction of the squared difference between the picture and the exact one that a mistake
 /// must explain to be reported beside others. A larger value would hide small mistakes. A smaller
 /// one would report mistakes that explain almost nothing.
-const NOTHING: f64 = 5e-4;
+const NOTHING: f64 = 1e-5;
 
 /// Returns the verdict, given what the search found: the best hypothesis about the program that
 /// made the picture, and whether it explains the picture.

@@ -12,6 +12,10 @@ pub const DEVIATIONS: f64 = 5.0;
 /// a step for rounding, and a quarter for another way to decode colours.
 pub const WRONG: f64 = 0.75;
 
+/// Number of pixels of a JPEG's block. Their errors depend on each other, so a block's mean counts as
+/// a single number.
+const PIXELS_PER_BLOCK: f64 = 64.0;
+
 /// Errors of a picture that no sampling can explain, if a hypothesis about the program is correct.
 #[derive(Debug, Default)]
 pub struct Strays {
@@ -91,6 +95,28 @@ impl Prediction<'_> {
             }
         }
         strays
+    }
+
+    /// Returns whether in some group of a JPEG's pixels, those that should show one colour are too
+    /// bright or too dark on average. `groups` has the group of each pixel. Coding changes single
+    /// pixels by much, but hardly their mean.
+    pub fn is_tinted(&self, groups: &[usize]) -> bool {
+        let all = groups.iter().max().map_or(0, |most| most + 1);
+        // Sums of the differences and of 1, both divided by the variance.
+        let mut sums = vec![[DVec3::ZERO; 2]; all];
+        for (at, group) in groups.iter().enumerate() {
+            if self.is_flat(at) && !self.observed[at].x.is_nan() {
+                let weight = self.error(at, 0.0).recip();
+                let [differences, weights] = &mut sums[*group];
+                *differences += weight * self.difference(at);
+                *weights += weight;
+            }
+        }
+        let is_beyond = |[differences, weights]: &[DVec3; 2]| {
+            let deviations = (PIXELS_PER_BLOCK * *weights).map(f64::sqrt);
+            differences.abs().cmpgt(DEVIATIONS * deviations).any()
+        };
+        sums.iter().any(is_beyond)
     }
 
     /// Returns how much the light of a pixel may change if edges move by half a pixel, for each

@@ -19,7 +19,7 @@ use super::{
 use crate::{
     cancel::{self, Cancelled},
     grading::{
-        hypotheses::{Candidate, Mistake, Shows},
+        hypotheses::{Candidate, Mistake, Shows, Spheres},
         scoring::Level,
     },
 };
@@ -213,18 +213,29 @@ impl Search<'_> {
 
     /// Returns whether a set of at most `size` mistakes explains the picture. A larger set does not
     /// end the search: it may consist of a row of the table and a mistake at edges, while a single
-    /// wrong number explains the picture, too.
+    /// wrong number explains the picture, too. Nor does a program that hits spheres wrongly: its
+    /// picture is only estimated by samples, and may agree by chance.
     fn is_explained_by(&self, size: usize) -> bool {
         let explained = self.explained.as_ref();
-        explained.is_some_and(|(_, explained)| explained.mistakes.len() <= size)
+        explained.is_some_and(|(_, explained)| {
+            explained.mistakes.len() <= size && !hits_spheres_wrongly(explained)
+        })
     }
 
     /// Returns whether a hypothesis was found that explains the picture with fewer parameters, or
-    /// with as many and at no greater cost.
+    /// with as many and at no greater cost. If that hits spheres wrongly, mistakes are counted
+    /// instead of parameters.
     fn has_better(&self, candidate: &Candidate, cost: f64) -> bool {
         let explained = self.explained.as_ref();
         explained.is_some_and(|(least, explained)| {
-            (explained.parameter_count(), *least) <= (candidate.parameter_count(), cost)
+            let count = |one: &Candidate| {
+                if hits_spheres_wrongly(explained) {
+                    one.mistakes.len()
+                } else {
+                    one.parameter_count()
+                }
+            };
+            (count(explained), *least) <= (count(candidate), cost)
         })
     }
 
@@ -278,6 +289,11 @@ impl Search<'_> {
         }
         Some(judged)
     }
+}
+
+/// Returns whether a hypothetical program hits spheres by a wrong formula.
+fn hits_spheres_wrongly(candidate: &Candidate) -> bool {
+    candidate.behaviour.spheres != Spheres::Correct
 }
 
 /// Adds an extra patch to a hypothesis. Returns `None` if the result does not explain the picture.

@@ -117,14 +117,18 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
     };
     let inside = strays.pixels.iter().filter(is_inside).count();
     let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
+    let labels = labels(judge, candidate, candidate.layout, &level.grid);
+    let background = judge.scene.objects.len();
+    let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
     let (displacement, width) = if is_at_edges {
-        displacement_and_width(judge, candidate, prediction)
+        displacement_and_width(judge, candidate, prediction, &groups)
     } else {
         (None, None)
     };
+    let is_tinted = level.jpeg.is_some() && prediction.is_tinted(&groups);
     Residual {
         strays: strays.pixels.len(),
-        are_areas_right: strays.are_no_more(missed),
+        are_areas_right: strays.are_no_more(missed) && !is_tinted,
         is_at_edges,
         is_noise_everywhere: candidate.is_filtered() || prediction.is_noise_everywhere(),
         displacement,
@@ -133,16 +137,15 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
 }
 
 /// Returns the displacement of the picture, or of the object that is displaced most, and the width
-/// of the pixel filter. Each is `None` if chance or few samples may explain it.
+/// of the pixel filter. Each is `None` if chance or few samples may explain it. `groups` has for each
+/// pixel the object that is seen in it.
 fn displacement_and_width(
     judge: &Judge,
     candidate: &Candidate,
     prediction: &Prediction,
+    groups: &[usize],
 ) -> (Option<Displacement>, Option<f64>) {
     let level = &judge.fine;
-    let labels = labels(judge, candidate, candidate.layout, &level.grid);
-    let background = judge.scene.objects.len();
-    let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
     let share = match level.jpeg {
         // In a JPEG, the score would attribute the effect of coding on edges to few samples.
         Some(_) => prediction.share(),
@@ -176,7 +179,7 @@ fn displacement_and_width(
     let width = (!is_width_explained)
         .then(|| prediction.pixel_width(&deviations, share, level.jpeg.is_some()));
     (
-        off.or_else(|| beyond(&groups, &|one| one.length > of_object)),
+        off.or_else(|| beyond(groups, &|one| one.length > of_object)),
         width.flatten(),
     )
 }

@@ -224,7 +224,7 @@ const OTHERS: &[Mistake] = &[
     row("parallel_rays the point that it looks at", |p| {
         p.axes = Axes::ParallelFromLookat
     }),
-    row("normal Sail has its normal reversed", |p| {
+    row("triangle_normal Sail", |p| {
         let normal = dvec3(0.3, 0.0, 1.0).normalize();
         let across = DVec3::Y.cross(normal);
         turn(p, |corner| corner - 2.0 * corner.dot(across) * across)
