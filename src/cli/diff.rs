@@ -374,7 +374,8 @@ pub fn json(
         .collect()
 }
 
-/// Writes each mistake and each guess of a verdict, then which objects of the scene are right.
+/// Writes each mistake and each guess of a verdict. Then writes which objects of the scene are
+/// right.
 fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     let named = verdict.mistakes.iter().map(|mistake| ("mistake", mistake));
     let guessed = verdict.guesses.iter().map(|guess| ("guess  ", guess));
@@ -411,8 +412,8 @@ fn write_mistakes(verdict: &Verdict, out: &mut String) -> std::fmt::Result {
     Ok(())
 }
 
-/// Returns a list of the scene's objects that says which are drawn right. If the scene has more
-/// than 12 objects, only wrong ones are listed, at most 12, and the rest are counted.
+/// Lists the scene's objects, and says which of them are drawn right. If the scene has more than 12
+/// objects, only wrong ones are listed, at most 12, and the rest are counted.
 fn objects(verdict: &Verdict) -> String {
     /// Maximum number of objects that the sentence lists. If the scene has more, right objects are
     /// only counted. Chosen so that the sentence takes a few lines; any similar number works.

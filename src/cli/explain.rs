@@ -350,8 +350,8 @@ mod tests {
             let page = page(method).unwrap();
             assert!(page.matches("\n\n").count() == 3, "{page}");
         }
-        // A word of the language explains itself, even if another program uses the word for
-        // something else.
+        // A name that another program uses for a word of the language has the same page as that
+        // word.
         for (name, meant) in explain::other_names() {
             match meant.split_once(": ") {
                 None => assert_eq!(page(name).unwrap(), page(meant).unwrap(), "{name}"),

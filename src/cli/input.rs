@@ -26,14 +26,14 @@ use crate::{
 /// memory.
 const SCENE_LIMIT: u64 = 256 << 20;
 
-/// Number of bytes at the start of a PNG that are read to find the scene in it. Pinhole stores at
-/// most 1 MiB of text ([`Recipe`]) before the pixels. The rest leaves room for data that other
-/// programs insert there.
+/// Number of bytes at the start of a PNG that are read to find the scene in it, 8 MiB. Pinhole
+/// stores at most 1 MiB of text ([`Recipe`]) before the pixels. The other 7 MiB leave room for data
+/// that other programs insert before the pixels.
 const PICTURE_LIMIT: u64 = 8 << 20;
 
-/// Number of bytes at the start of a file that are searched for a picture. A program may print
-/// messages before its picture; if they are longer than this, the picture is not found. Usual
-/// messages are far shorter.
+/// Number of bytes at the start of a file that are searched for a picture, 64 KiB. A program may
+/// print messages before its picture; if they are longer than 64 KiB, the picture is not found.
+/// Usual messages are far shorter.
 const START: u64 = 1 << 16;
 
 /// A scene that was read, but not yet parsed.

@@ -42,8 +42,8 @@ fn write(page: &mut Vec<u8>) -> io::Result<()> {
     whole.render_version_section(page)
 }
 
-/// Writes the section about one command. clap makes a manual page of several sections for it, which
-/// become subsections.
+/// Writes the section about one command. clap makes a manual page for the command. The sections of
+/// that page become subsections.
 fn write_command(page: &mut Vec<u8>, command: &Command) -> io::Result<()> {
     let own = Man::new(command.clone());
     let mut parts = Vec::new();

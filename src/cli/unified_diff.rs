@@ -11,8 +11,8 @@ const AROUND: usize = 3;
 
 /// Maximum number of lines, in both texts together, that are skipped after a difference to find the
 /// place where the texts agree again. If no such place is found, all remaining lines count as
-/// changed. A larger limit finds farther places, but all pairs of places are tried, so the time
-/// grows with its square.
+/// changed. A larger limit finds farther places. But all pairs of places are tried, so the time
+/// grows with the square of the limit.
 const MOST_STEPS: usize = 1000;
 
 /// A change: lines of the old text, by their indices, and the lines of the new text that replace

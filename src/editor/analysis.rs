@@ -22,8 +22,8 @@ pub struct Analysis<'s> {
     tokens: OnceCell<Vec<RoleToken>>,
 }
 
-/// The nodes of the syntax tree that contain an offset: a definition or a block, a field of the
-/// block, and values. Each node lies within the one before it.
+/// Nodes of the syntax tree, all of which contain the same offset: a definition or a block, a field
+/// of the block, and values. Each node lies within the one before it.
 #[derive(Debug, Default)]
 pub(super) struct Path<'a, 's> {
     /// The definition that contains the offset.
@@ -164,9 +164,10 @@ impl<'a, 's> Path<'a, 's> {
                     break;
                 }
             } else if matches!(item, Item::Block(_)) {
-                // The list of items is nearly in the order of the text: only a `let` that stands
-                // within a block precedes that block in the list. So a later item may be a block
-                // that contains `at`, and only a block that starts after `at` ends the search.
+                // The list of items is nearly in the order of the text: the only exception is a
+                // `let` within a block, which precedes the block in the list. So a later item may
+                // be a block that contains `at`, and only a block that starts after `at` ends the
+                // search.
                 break;
             }
         }

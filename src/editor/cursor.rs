@@ -202,7 +202,8 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = !is_empty && next.is_none();
     } else if let Some(block) = path.block {
         situation.expected = expected_in(block, word.start)?;
-        // If another block follows, the parser takes its keyword for the name of this block.
+        // If another block follows, the parser takes the keyword of that block for the name of this
+        // one.
         let is_own =
             |block: &Block<'_>| block.name.is_none_or(|it| schema::block(it.text).is_none());
         situation.goes_on = block.open.is_some() && is_own(block);

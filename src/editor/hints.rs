@@ -31,8 +31,8 @@ struct Remark<'s> {
     name: &'s str,
     /// Result of the value, if it is an expression.
     result: Option<Value>,
-    /// A fact that follows from this value and other fields of the block, such as the field of view
-    /// that the distance `d` of the view plane gives.
+    /// A fact that follows from this value and other fields of the block, such as the field of
+    /// view, which follows from the distance `d` of the view plane.
     beside: Option<String>,
 }
 

@@ -215,7 +215,7 @@ impl<'a, T: Precision> Boundaries<'a, T> {
 
     /// Appends to `out` the boundary curves of `source` that may pass through the sub-pixel.
     /// Returns `false` if two surfaces of the source have no intersection curve in the precision
-    /// `T`, because they are, or cannot be distinguished from, equal planes or concentric spheres.
+    /// `T`. They are then equal planes or concentric spheres, or cannot be distinguished from such.
     fn push(&self, source: BoundarySource, out: &mut Vec<Boundary>) -> bool {
         let mut push = |curve: Boundary| {
             if curve.may_cross_pixel() {

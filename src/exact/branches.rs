@@ -1,9 +1,10 @@
 //! Curves as functions y(x): over a range of x, a line is the graph of one function, and a conic
 //! consists of the graphs of two, its branches.
 //!
-//! In: lines and conics of a sub-pixel. Out: for each branch over a range of x, a [`Section`], that
-//! is a chord or an arc with the branch's end tangents, with an error bound. If the rounding errors
-//! of `f64` are too large for an arc, its ends and tangents are computed in double-double.
+//! In: lines and conics of a sub-pixel. Out: for each line or branch over a range of x, a
+//! [`Section`] and its error bound. A section is a chord, or an arc that has the branch's tangents
+//! at its ends. If the rounding errors of `f64` are too large for an arc, its ends and tangents are
+//! computed in double-double.
 
 use glam::DVec2;
 

@@ -50,7 +50,7 @@ impl PictureWork {
 pub(super) struct PixelBudget<'a> {
     left: Cell<f64>,
     /// Requested error bound of the pixel's mean, as a fraction of the pixel's area. An infinite
-    /// sum ends where the omitted terms are at most a given fraction of this bound.
+    /// sum is truncated as soon as the omitted terms are at most a fixed fraction of this bound.
     pub tolerance: f64,
     /// Flag that is set once the picture is no longer wanted.
     cancel: &'a AtomicBool,
@@ -82,8 +82,8 @@ impl<'a> PixelBudget<'a> {
         self.left.get() <= 0.0 || self.is_cancelled()
     }
 
-    /// Charges `work` if the budget affords it. Returns whether it does. Returns `false` if `work`
-    /// is infinite or NaN, or if the picture is cancelled.
+    /// Charges `work` if the budget affords it. Returns whether `work` was charged. It is not
+    /// charged if it is infinite or NaN, or if the picture is cancelled.
     pub fn try_charge(&self, work: f64) -> bool {
         let is_affordable = self.affords(work);
         if is_affordable {

@@ -27,8 +27,8 @@ const MAX_LINES: f64 = 12.0;
 /// Maximum total area of the segments (between arc and chord) of an arc's two halves, divided by
 /// the area of the whole arc's segment. A larger quotient shows that numbers are too large or too
 /// small to represent the arc: it is not halved, and its segment is added to the error bound. The
-/// exact quotient is 1/4 for a parabola, at most 0.37 for an ellipse (half of one), and less than
-/// 1/4 for a hyperbola. The constant is twice the largest of these.
+/// exact quotient is 1/4 for a parabola and less for a hyperbola. For an ellipse, it is at most
+/// 0.37, if the arc is half of the ellipse. The constant is about 2 · 0.37.
 const MAX_HALVES_SHARE: f64 = 0.75;
 
 /// An arc of a conic: the rational quadratic Bézier curve with weights 1, w and 1.
@@ -276,7 +276,8 @@ fn over_one_square(area: f64, sign: f64) -> BoundedSum {
 struct Chords {
     points: Vec<DVec2>,
     sum: BoundedSum,
-    /// Maximum area between a piece of the arc and its chord that is neglected, in square pixels.
+    /// Area, in square pixels, up to which the segment between a piece of the arc and its chord is
+    /// neglected.
     neglected: f64,
 }
 

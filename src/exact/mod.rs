@@ -4,8 +4,8 @@
 //! linear light, with a bound on the mean's error. In ordinary views, the bound is at most 1e-9
 //! unless the caller asks for less accuracy. A view is ordinary if the vertical field of view is 1
 //! to 170 degrees, squares are 1e-4 to 1e6 times the eye's height, and all numbers are 0 or within
-//! 1e±9. In other views, the bound may be larger, up to 1 for a pixel of unknown colour. The work
-//! on a pixel is limited to about a second on the machine where it was measured (`budget`).
+//! 1e±9. In other views, the bound may be larger, up to 1 for a pixel that cannot be computed. The
+//! work on a pixel is limited to about a second on the machine where it was measured (`budget`).
 //!
 //! Lines and conics divide a pixel into regions, each of which shows one colour or one
 //! checkerboard. The means are therefore computed in four steps:
@@ -142,7 +142,7 @@ enum PieceState {
     /// budget is spent.
     Crowded,
     Computed,
-    /// Computed and final: quartering its parent reduced the bound by less than half.
+    /// Not quartered any more: quartering its parent reduced the bound by less than half.
     Final,
 }
 
@@ -334,7 +334,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         while bound > self.tolerance
             && !budget.is_spent()
             && queue.peek().is_some_and(|ByKey(_, worst)| {
-                // A full queue is copied to twice the memory; during the copy, both exist.
+                // A full queue is copied to twice its memory; old and new memory then both exist.
                 let copies = 1 + 2 * usize::from(queue.len() + 3 > queue.capacity());
                 let places = copies * queue.capacity() * size_of::<ByKey<PixelPiece>>();
                 memory + places + 4 * worst.memory() <= MAX_MEMORY
@@ -420,7 +420,7 @@ impl<'a, const N: usize> Integrator<'a, N> {
         film: &mut PartPixels<N>,
         deferred: &mut Vec<BoardPixel>,
     ) {
-        // The share has one rounding, and the mean of the two colours adds `rounding(2)`.
+        // Rounding errors of the first colour's share, 0.5 + `half`, and of the pixel's mean.
         let roundings = UNIT + rounding(2);
         let half = sum.map(|BoundedSum { value, bound }| (0.5 * value, 0.5 * bound + roundings));
         let Some((half, bound)) = half.filter(|(_, bound)| *bound <= self.tolerance) else {

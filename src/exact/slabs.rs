@@ -22,14 +22,14 @@ use super::{
 };
 
 /// Maximum distance in y, in pixels, by which curves may be out of order and still count as
-/// ordered. It is the possible rounding error of the distance: two values of at most 1, each
-/// accurate to eight unit roundoffs.
+/// ordered. It is the maximum rounding error of the distance, the difference of two values of at
+/// most 1, each with an error of at most eight unit roundoffs.
 const ORDER_TOLERANCE: f64 = 16.0 * f64::UNIT;
 
 /// Maximum distance in y, in pixels, between neighbouring curves at which a slab (a vertical strip)
 /// is not cut although the curves may cross in it. The area between the curves is added to the
-/// error bound instead. The value is a thousand unit roundoffs, so that the area is at most 10⁻¹³
-/// square pixels.
+/// error bound instead. The value is a thousand unit roundoffs, so that the area is at most about
+/// 10⁻¹³ square pixels.
 const MIN_DISTANCE: f64 = 1.0 / (1u64 << 43) as f64;
 
 /// Minimum width of a slab (a vertical strip) that is cut, in pixels. In a narrower slab, the area
@@ -47,9 +47,9 @@ const MAX_ADDED_SLABS: usize = 4096;
 /// takes from a pixel's side to the unit roundoff.
 const MAX_STEPS: usize = 60;
 
-/// Maximum rounding error of the area of a region in a slab, divided by the slab's width. It covers
-/// two values of y of at most 1/2, each accurate to eight unit roundoffs, and the same again for
-/// products and sums.
+/// Maximum rounding error of the area of a region in a slab, divided by the slab's width. Two
+/// values of y of at most 1/2, each with a relative error of eight unit roundoffs, contribute eight
+/// unit roundoffs. Products and sums contribute at most another eight.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// Returns the share of each colour in the sub-pixel of `regions`, which `curves` cut.

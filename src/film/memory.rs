@@ -20,7 +20,7 @@ pub struct TooLarge {
     pub height: u32,
     /// Number of bytes that the picture needs.
     pub needed: u64,
-    /// Number of bytes of memory that are available, if known.
+    /// Number of bytes of memory that are available; `None` if the system does not report it.
     pub available: Option<u64>,
 }
 
@@ -61,9 +61,9 @@ pub fn reserve(width: u32, height: u32, bytes_per_pixel: u64) -> Result<(), TooL
 }
 
 /// Returns the number of bytes that this process may still allocate: the machine's available
-/// memory, or less if the process's control group has a limit. Returns `None` if this is not known,
-/// as on systems other than Linux. Without this check, a system that promises more memory than it
-/// has could later kill the process.
+/// memory, or less if the process's control group has a limit. Returns `None` if the system does
+/// not report it, as on systems other than Linux. Without this check, a system that promises more
+/// memory than it has could later kill the process.
 fn available() -> Option<u64> {
     [machine(), control_group()].into_iter().flatten().min()
 }

@@ -26,7 +26,7 @@ const PFM: &str = "a PFM: OpenEXR is the format of floats that is read here";
 /// 8 of the file.
 const CAMERAS: [&[u8]; 5] = [b"heic", b"heix", b"hevc", b"mif1", b"msf1"];
 
-/// Returns a description of a file that is not a picture, or `None` if its kind is unknown.
+/// Returns a description of a file that is not a picture, or `None` if its kind is not recognised.
 pub(super) fn of(bytes: &[u8]) -> Option<&'static str> {
     if bytes.is_empty() {
         return Some("an empty file");

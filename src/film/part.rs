@@ -8,15 +8,15 @@ use crate::area::Area;
 /// position, between 16 and 400 pixels are compared, at equal distances in the part.
 const MAX_COMPARED: u64 = 100_000_000;
 
-/// Maximum ratio of the part's squared difference from the whole picture at the best position to
-/// the mean over all positions. Above it, the position counts as unknown. At the right position,
-/// usual sampling noise leaves a far smaller ratio; at a wrong one, the ratio is near 1. Any value
-/// well between the two works.
+/// Maximum ratio of two sums of squared differences between the part and the whole picture: the sum
+/// at the best position, and the mean of the sums at all positions. Above it, no position is
+/// returned. At the right position, usual sampling noise leaves a far smaller ratio; at a wrong
+/// one, the ratio is near 1. Any value well between the two works.
 const MAX_LEFT: f64 = 0.2;
 
-/// Minimum share of the whole picture's area that a part must have. The position of a smaller part
-/// counts as unknown, since few pixels may also fit at a wrong position. The value is a guess at
-/// how many pixels are enough.
+/// Minimum share of the whole picture's area that a part must have. For a smaller part, no position
+/// is returned, since few pixels may also fit at a wrong position. The value is a guess at how many
+/// pixels are enough.
 const MIN_SHARE: f64 = 0.05;
 
 /// Finds the position in the whole picture at which a part fits far better than elsewhere. Returns

@@ -13,7 +13,7 @@ pub struct Picture {
     pub rounding: Rounding,
     /// How the file's format changes colours, besides rounding.
     pub coding: Coding,
-    /// Area of the whole picture that the file shows, if the file says so.
+    /// The part of the whole picture that the file contains; `None` if the file does not say so.
     pub crop: Option<Area>,
     /// Opacity of the pixels; `None` if all are opaque.
     pub opacity: Option<Opacity>,

@@ -41,9 +41,10 @@ const CROP: &str = "pinhole:crop";
 pub struct Recipe {
     /// The text of the scene.
     pub scene: String,
-    /// The overrides of the scene's values, i.e. the `--set` arguments, in order.
+    /// The overrides of the scene's values, i.e. the `--set` arguments, in the order given by the
+    /// user.
     pub overrides: Vec<String>,
-    /// Area of the whole picture that was rendered; `None` for all of it.
+    /// The part of the picture that was rendered; `None` if all of it was rendered.
     pub crop: Option<Area>,
 }
 

@@ -312,7 +312,7 @@ fn is_text_with_losses(raster: &[u8]) -> bool {
 }
 
 /// Removes the carriage returns that a system inserted before line feeds. Returns `None` if a line
-/// feed has none before it, or if the result does not have `wanted` bytes.
+/// feed has no carriage return before it, or if the result does not have `wanted` bytes.
 fn without_returns(raster: &[u8], wanted: usize) -> Option<Vec<u8>> {
     let is_feed = |at: usize| raster[at] == b'\n';
     let mut feeds = (0..raster.len()).filter(|&at| is_feed(at));

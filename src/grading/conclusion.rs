@@ -15,13 +15,18 @@ use crate::{
     scene::Scene,
 };
 
+/// Least fraction of the squared difference between the picture and the exact one that a mistake
+/// must explain to be reported beside others. A larger value would hide small mistakes. A smaller
+/// one would report mistakes that explain almost nothing.
+const NOTHING: f64 = 5e-4;
+
 /// Returns the verdict, given what the search found: the best hypothesis about the program that
 /// made the picture, and whether it explains the picture.
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::correct(scene);
-    // Computing the verdict spends work, too. A search that explained the picture has ended for
-    // that reason, not because the budget was used up.
+    // Must be read before the verdict is computed, because that spends work, too. A search that
+    // explained the picture ended for this reason, so it was not cut short.
     let is_explained = matches!(found, Some((_, true)));
     let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
@@ -49,8 +54,9 @@ pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Ve
     verdict
 }
 
-/// Returns whether some pixel has a channel outside the range of that channel over all colours of
-/// the scene. A correct pixel is a mean of these colours, so none of its channels leaves the range.
+/// Returns whether a pixel has a colour that no mixture of the scene's colours has: one of its
+/// channels is less, or greater, than in all colours of the scene. A correct pixel is a mean of
+/// these colours.
 fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
     let colors = scene.objects.iter();
     let colors = colors.flat_map(|object| object.shape.colors());
@@ -72,8 +78,9 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 /// explain the picture; otherwise they are reported as guesses.
 fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
-    // All hypotheses are compared on one grid, and the noise that the last one leaves is
-    // subtracted. A shift of samples and a wrong pixel width are visible only at full resolution.
+    // Programs with some of the mistakes are compared with the picture on one grid. The noise that
+    // is left with all mistakes is subtracted. A shift of samples and a wrong pixel width are
+    // visible only at full resolution.
     let level = if last.behaviour.is_shifted() || last.is_filtered() {
         judge.central_crop()
     } else {
@@ -91,8 +98,8 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     let all = beyond(&before).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
-    // Takes the mistake first that leaves the least difference. The other mistakes may explain more
-    // afterwards, because it no longer hides them.
+    // The mistake that leaves the least difference comes first. Other mistakes may explain more
+    // once this one is accounted for, because it no longer hides them.
     let mut others: Vec<&Mistake> = last.mistakes.iter().collect();
     while !others.is_empty() {
         let with = |(at, mistake): (usize, &&Mistake)| {
@@ -134,7 +141,12 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     let correct = Candidate::correct(scene);
     let rest = (!is_explained).then(|| square(last) / square(&correct));
     let rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
-    mistakes.retain(|mistake| is_explained || mistake.explains > 0.0);
+    let least = if is_explained && mistakes.iter().all(|one| one.explains < NOTHING) {
+        0.0
+    } else {
+        NOTHING
+    };
+    mistakes.retain(|mistake| mistake.explains >= least);
     let is_named = !is_cut && !mistakes.is_empty() && is_explained;
     let (kind, mistakes, guesses) = if is_named {
         (Kind::Wrong, mistakes, Vec::new())
@@ -156,14 +168,21 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     }
 }
 
-/// Returns other rows of the table of mistakes that have the same identifier as `mistake` and
-/// explain the picture equally well in its place. The picture alone cannot decide between them.
+/// Returns other rows of the table of mistakes that explain the picture as well as `mistake` does,
+/// if they replace it. They describe a similar mistake. The picture alone cannot decide between
+/// them.
 fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> Vec<Mistake> {
     let Mistake::Row(row, object) = mistake else {
         return Vec::new();
     };
     let rows = mistakes::ROWS.iter().chain(mistakes::OBJECT_ROWS);
-    let others = rows.filter(|other| other.id == row.id && other.message != row.message);
+    // In a JPEG, a program that multiplies light cannot be told from one that multiplies bytes. So
+    // both rows are tried, although their identifiers differ.
+    let [gain, of_bytes] = ["not_divided", "bytes_scaled"];
+    let is_alike = |id: &str| {
+        id == row.id || [gain, of_bytes].contains(&id) && [gain, of_bytes].contains(&row.id)
+    };
+    let others = rows.filter(|other| is_alike(other.id) && **other != **row);
     let others = others.filter(|other| other.shows == Shows::InAreas);
     let others = others.map(|other| Mistake::Row(other, *object));
     let explains = |other: &Mistake| {

@@ -13,21 +13,21 @@ use super::{
 };
 use crate::film::Film;
 
-/// Replaces the pixels without a sample by NaN. Returns `None` if no pixel lacks one. `empty` is
-/// the colour that a pixel without a sample shows.
+/// Replaces the pixels that have no sample by NaN. Returns `None` if there are none. `empty` is the
+/// colour that such a pixel shows.
 ///
-/// A pixel may lack a sample if it has this colour and should have another one. All such pixels
-/// count as without a sample if they lie at random and are few enough. They lie at random if they
-/// are neighbours no more often than independent pixels. They are few enough if the noise of the
-/// other pixels implies as many: with n samples per pixel on average, a fraction e⁻ⁿ of the pixels
-/// has none.
+/// A pixel is suspected if it shows this colour and should show another one. The suspects count as
+/// pixels without a sample under two conditions. First, they are neighbours of each other no more
+/// often than independent pixels would be. Second, there are no more of them than the noise of the
+/// other pixels predicts: with n samples per pixel on average, a fraction e⁻ⁿ of the pixels has
+/// none.
 pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Option<Film> {
     let width = film.width() as usize;
     let is_empty = |at: usize| is_near(film.pixels()[at], empty);
     let may_be_empty = |at: usize| !is_near(moments.mean[at].into(), empty);
     let is_flat = |at: usize| moments.variance[at].max_element() < FLAT;
-    // `Some(true)` for a pixel that lacks a sample, `Some(false)` for a pixel that has one. `None`
-    // if this is not visible, because several colours meet in the pixel, or because it should show
+    // `Some(true)` for a pixel that seems to lack a sample, `Some(false)` for a pixel that has one.
+    // `None` if this cannot be seen: several colours meet in the pixel, or the pixel should show
     // `empty`.
     let states: Vec<Option<bool>> = (0..moments.mean.len())
         .map(|at| (is_flat(at) && may_be_empty(at)).then(|| is_empty(at)))
@@ -49,8 +49,9 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
         }
     }
     let both = share * share;
-    // Each pair of neighbours shares a pixel with six other pairs, so pairs are not independent.
-    // This factor is the variance of the number of pairs, relative to that of independent pairs.
+    // Two pairs of neighbours that share a pixel are not independent. Each pair shares a pixel with
+    // six others. `more` is the variance of the number of empty pairs, divided by the variance that
+    // it would have if pairs were independent.
     let more = 1.0 - both + 6.0 * share * (1.0 - share);
     if !is_chance(empty_pairs / more, pairs * both / more) {
         return None;
@@ -64,7 +65,8 @@ pub fn without_empty(film: &Film, moments: &Arc<Moments>, empty: [f64; 3]) -> Op
     let seen: Vec<DVec3> = without.pixels().iter().copied().map(DVec3::from).collect();
     let prediction = Prediction::new(&seen, width, Arc::clone(moments), Curve::Correct);
     // The noise gives the harmonic mean of the sample counts of all pixels with samples. It is less
-    // than n + 1, where n is the mean sample count of all pixels.
+    // than n + 1, where n is the mean sample count of all pixels. So the expected fraction of empty
+    // pixels, e⁻ⁿ, is less than e^(1 − `samples`).
     let samples = prediction.score().samples?;
     let expected = count * libm::exp(1.0 - samples);
     is_chance(found, expected).then_some(without)

@@ -33,7 +33,10 @@ use self::{
     hypotheses::{Candidate, Curve, mistakes},
     plain_facts::EmptyRows,
     scoring::{Moments, Rendering, Work, moments, work},
-    search::{Judge, forward_selection},
+    search::{
+        Judge,
+        forward_selection::{self, MAX_MISTAKES},
+    },
 };
 pub use self::{
     objects::ObjectVerdict,
@@ -69,9 +72,9 @@ pub struct Reference {
     effort: f64,
 }
 
-/// Number of bytes of memory per pixel. There are seven colours of three numbers: the exact mean,
-/// and twice a mean, its variance, and the variance of a sample, because two copies of these exist
-/// while they are computed.
+/// Number of bytes of memory per pixel: those of seven colours, each of three numbers. One colour
+/// is the exact mean. The other six are two copies of three colours: a mean, its variance, and the
+/// variance of a sample. Both copies exist while they are computed.
 const BYTES_A_PIXEL: u64 = 7 * size_of::<[f64; 3]>() as u64;
 
 impl fmt::Debug for Reference {
@@ -180,8 +183,8 @@ impl Reference {
         let Some(opacity) = &picture.opacity else {
             return self.judge_opaque(&picture.film, jpeg, cancel);
         };
-        // A transparent picture is judged as it appears on black, where it may be right. If it is
-        // not, or if no pixel is opaque, its colours are judged without alpha.
+        // First, a transparent picture is judged as it appears on black. If it is wrong there, or
+        // if no pixel is opaque, its colours are judged without alpha.
         let verdict = self.judge_opaque(&picture.film, jpeg, cancel)?;
         let is_right = matches!(verdict.kind, Kind::Right | Kind::Noise);
         if is_right && opacity.range[1] == 1.0 {
@@ -218,22 +221,24 @@ impl Reference {
             return Ok(verdict);
         }
         let Some(empty) = EmptyRows::of(film, exact) else {
-            return self.judge_full(film, jpeg, cancel);
+            return self.judge_full(film, jpeg, MAX_MISTAKES, cancel);
         };
-        // Rows of one colour may never have been written, or the camera may look elsewhere. They
-        // count as never written if the rest of the picture is right.
-        let rest = self.judge_full(&empty.removed_from(film), jpeg, cancel)?;
+        // If rows have one colour, either the program never wrote them, or its camera looks
+        // elsewhere. They count as never written if the rest of the picture is right.
+        let rest = self.judge_full(&empty.removed_from(film), jpeg, 0, cancel)?;
         match rest.kind {
             Kind::Right | Kind::Noise => Ok(rest.with_fact(empty.fact())),
-            Kind::Wrong | Kind::Unknown => self.judge_full(film, jpeg, cancel),
+            Kind::Wrong | Kind::Unknown => self.judge_full(film, jpeg, MAX_MISTAKES, cancel),
         }
     }
 
-    /// Judges a picture by a search for mistakes. Pixels without a sample are ignored.
+    /// Judges a picture by a search for its mistakes: at most `most`, and in addition some that are
+    /// visible only at edges. Pixels without a sample are ignored.
     fn judge_full(
         &self,
         film: &Film,
         jpeg: Option<Jpeg>,
+        most: usize,
         cancel: &AtomicBool,
     ) -> Result<Verdict, RenderError> {
         let empties = [self.scene.image.background.to_linear(), [0.0; 3]];
@@ -244,7 +249,7 @@ impl Reference {
         let film = without.map_or(Cow::Borrowed(film), Cow::Owned);
         let work = Work::new(self.part.pixels(), self.work, self.effort, cancel);
         let judge = Judge::new(&self.scene, &self.correct, &film, jpeg, work);
-        let found = forward_selection::run(&judge)?;
+        let found = forward_selection::run(&judge, most)?;
         // The verdict must be computed completely, so the budget of work does not limit this.
         let conclude = || conclusion::conclude(&judge, &film, found);
         let verdict = judge.work.without_limit(conclude);

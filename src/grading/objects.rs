@@ -13,12 +13,13 @@ use crate::{
     scene::{Checkerboard, Scene, Shape},
 };
 
-/// Displacement in the picture, in pixels, below which an object counts as not moved. The value is
-/// a choice.
+/// Displacement in the picture, in pixels, below which an object counts as not moved. With a
+/// smaller value, an object would count as wrong although its error is hardly visible.
 const HALF_PIXEL: f64 = 0.5;
 
 /// Distance from a wrong object, in pixels, within which errors are attributed to it instead of its
-/// neighbours. The value is a choice.
+/// neighbours. With a smaller value, neighbours would be blamed for the edges that they share with
+/// the object. With a larger one, their own errors would be missed.
 const BESIDE: usize = 2;
 
 /// The verdict on an object.

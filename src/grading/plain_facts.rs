@@ -10,17 +10,19 @@ use super::{
 };
 use crate::{area::Area, film::Film, scene::Scene};
 
-/// Ratio below which a picture is not noise: the mean squared difference of neighbouring pixels,
-/// divided by that of arbitrary pixels. In noise it is 1. In a picture of a scene it is smaller,
-/// because neighbours are alike. The value 0.8 is a choice.
+/// Ratio above which a picture is noise: the mean squared difference of neighbouring pixels,
+/// divided by the mean squared difference of two arbitrary pixels. In noise the ratio is 1. In a
+/// picture of a scene it is smaller, because neighbours are alike. The value leaves a margin for
+/// chance.
 const NOISE_RATIO: f64 = 0.8;
 
-/// Number of cells along the picture's longer side in which one ray each looks for objects. The
-/// value is a choice; objects smaller than a cell may be missed.
+/// Number of cells along the picture's longer side, when causes of an empty picture are tried. One
+/// ray per cell looks for objects. With fewer cells, more small objects are missed; with more, the
+/// search takes longer.
 const CELLS: u32 = 32;
 
-/// Maximum number of possible causes that are listed for an empty picture. The value is a choice
-/// that keeps the advice short.
+/// Maximum number of possible causes that are listed for an empty picture. Chosen to keep the
+/// advice short.
 const CAUSES: usize = 3;
 
 fn fact(id: &'static str, message: String, help: String) -> NamedMistake {
@@ -137,8 +139,8 @@ impl EmptyRows {
             let light = film.pixels()[at(0) * width];
             let are_empty = |y: &usize| row(film, at(*y)).iter().all(|pixel| *pixel == light);
             let count = (0..height).take_while(are_empty).count();
-            // A sky has one colour in any picture, even if that is wrong. So a row of the sky
-            // counts as empty only if its correct colour appears elsewhere in the picture.
+            // A sky has one colour in any picture, even if this colour is wrong. So a row of the
+            // sky counts as empty only if its correct colour appears elsewhere in the picture.
             let is_shown = |light| film.pixels().iter().any(|pixel| is_near(*pixel, light));
             let is_wrong = |y: &usize| {
                 let own = row(exact, at(*y));

@@ -43,8 +43,8 @@ pub struct NamedMistake {
     pub help: String,
     /// `--set` arguments that make the scene reproduce the mistake.
     pub set: Vec<String>,
-    /// Fraction of the squared difference from the exact picture, without noise, that the mistake
-    /// explains.
+    /// Fraction of the squared difference between the picture and the exact one that the mistake
+    /// explains. The part of the difference that is noise does not count.
     pub explains: f64,
 }
 
@@ -54,15 +54,16 @@ pub struct NamedMistake {
 pub struct Verdict {
     /// The result in one word.
     pub kind: Kind,
-    /// Number of independent samples per pixel that would cause as much noise; `None` if it is
-    /// unknown.
+    /// Number of independent samples per pixel that would cause as much noise as the picture has;
+    /// `None` if it is unknown.
     pub samples: Option<f64>,
     /// The mistakes that together explain the picture.
     pub mistakes: Vec<NamedMistake>,
     /// The mistakes that come nearest to the picture, if no known mistakes explain it.
     pub guesses: Vec<NamedMistake>,
-    /// Fraction of the squared difference from the exact picture that mistakes or guesses leave
-    /// unexplained, without noise. `None` if they leave only noise.
+    /// Fraction of the squared difference between the picture and the exact one that the mistakes
+    /// or guesses do not explain. The part of the difference that is noise does not count. `None`
+    /// if only noise is left.
     pub rest: Option<f64>,
     /// The verdict on each object.
     pub objects: Vec<ObjectVerdict>,

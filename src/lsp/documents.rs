@@ -87,8 +87,8 @@ impl Document {
     }
 }
 
-/// Returns the byte offset of a position in `text`, whose line index is `lines`. The start of the
-/// line after the last one is the end of the text. Returns `None` for later lines.
+/// Returns the byte offset of a position in `text`. `lines` is the index of the text's lines. The
+/// start of the line after the last one is the end of the text. Returns `None` for later lines.
 fn offset(text: &str, lines: &Lines, encoding: Encoding, (line, col): LineColumn) -> Option<usize> {
     let (line, col) = (line as usize, col as usize);
     let Some(range) = lines.range(line) else {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 /// Maximum number of JSON values in a message. A message with more values is refused, because it
 /// could fill the memory: a JSON object takes about 400 bytes of memory, even if its text has only
-/// eight bytes. An editor's message stays far below the limit, even with 40 000 changes of a text.
+/// eight bytes. Even a message with 40 000 changes of a text stays below the limit.
 const MOST_VALUES: usize = 1 << 19;
 
 /// Error: a text is not a valid message.

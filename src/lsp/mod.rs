@@ -4,8 +4,8 @@
 //! uses neither threads nor streams, so that any host can run it; [`stdio`] runs it on standard
 //! input and output. `text_requests` calls [`crate::editor`] for the answers, and `convert`
 //! converts them to the types of the protocol (`protocol`). `picture_requests` and `frames` answer
-//! Pinhole's own requests about the picture of a text, which docs/protocol.md describes.
-//! `scene_version` caches the data for these answers.
+//! requests about the picture of a text. These requests are Pinhole's own; docs/protocol.md
+//! describes them. `scene_version` caches the data for these answers.
 
 mod convert;
 mod documents;

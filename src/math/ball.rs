@@ -27,9 +27,9 @@ pub struct Ball<T: Real> {
 pub const UP: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 
 /// Factor of the bound on the rounding error of a ball's computed midpoint: the bound is four times
-/// [`UNIT`](Real::UNIT) times the midpoint. The error is at most one unit of the true number, which
-/// is less than two units of the computed one. The bound is twice as large, which costs nothing
-/// except an occasional decision in the next precision.
+/// [`UNIT`](Real::UNIT) times the midpoint. The error is at most `UNIT` times the true number,
+/// which is less than 2 · `UNIT` times the computed one. The bound is twice as large, which costs
+/// nothing except an occasional decision in the next precision.
 const ROUNDING: f64 = 4.0;
 
 impl<T: Real> Ball<T> {

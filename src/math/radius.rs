@@ -15,9 +15,9 @@ pub trait Radius:
     + Div<Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// Radius of a number that is known exactly.
+    /// Radius of a ball that contains only its midpoint.
     const ZERO: Self;
-    /// Radius of a number that is not known at all.
+    /// Radius of a ball that contains every number.
     const INFINITE: Self;
     /// Computes the square root.
     fn sqrt(self) -> Self;

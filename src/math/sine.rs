@@ -223,8 +223,8 @@ mod tests {
 
     #[test]
     fn angles_far_away_and_the_widest_balls_are_right() {
-        // Both parts of the angle are 45° from a quarter turn, so that its balls are as wide as
-        // possible.
+        // Both parts of the angle are 45° from a quarter turn, so that the balls of its sine and
+        // cosine are as wide as possible.
         assert!(is_right(-302176.406925716, -675013.4458038831 / 64.0));
         for radians in [1e7, -3e20, MAX_RADIANS, 1e300] {
             assert!(is_right(0.0, radians), "{radians}");

@@ -16,7 +16,8 @@ pub struct Bricks {
     rows: u64,
     /// Number of cells in a short row: n divided by the number of rows, rounded down.
     short: u64,
-    /// Number of rows in the upper half of the pixel that have one cell more than a short row.
+    /// Number of rows that have one cell more than a short row, counted in the upper half of the
+    /// pixel.
     longer: u64,
 }
 

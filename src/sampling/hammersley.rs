@@ -2,9 +2,9 @@
 //! (Cranley and Patterson 1976).
 //!
 //! φ₂(i) mirrors the binary digits of i at the binary point. A shifted point that leaves the pixel
-//! enters it again on the other side. The shift in y is arbitrary. In x, it moves points by whole
-//! columns of width 1/n and then places them within their columns, so that each of the n columns
-//! still contains exactly one point.
+//! enters it again on the other side. The shift along y is arbitrary. The shift along x moves
+//! points by whole columns of width 1/n and then places them within their columns, so that each of
+//! the n columns still contains exactly one point.
 
 use std::ops::Range;
 
@@ -57,7 +57,7 @@ impl Hammersley {
         let least = self.columns.least();
         let place = scale(within, least);
         // A column has `least` or `least` + 1 possible places. `more` is what has to be added to
-        // `place` in a column with one more: 0 or 1.
+        // `place` in a column with `least` + 1 places: 0 or 1.
         let more = scale(within, least + 1) - place;
         let turned = &self.turned[(columns + range.start) as usize..];
         for (x, column) in x.iter_mut().zip(turned) {

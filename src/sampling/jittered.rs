@@ -13,8 +13,8 @@ use super::{
 #[derive(Debug)]
 pub struct Jittered {
     bricks: Bricks,
-    /// Divisions of the pixel's width into equal columns, for a short row of cells and for a longer
-    /// row.
+    /// Two divisions of the pixel's width into equal columns: one for short rows of cells, and one
+    /// for longer rows.
     columns: [Strata; 2],
     /// Division of the pixel's height into n equal parts. A row of k cells is k of these parts
     /// tall.

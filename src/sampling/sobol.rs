@@ -108,7 +108,8 @@ fn pascal(mut bits: u64) -> u64 {
 struct Owen {
     key: Key,
     depth: u32,
-    /// Number of levels of the tree of random bits that the first hash decides.
+    /// Number of levels of the tree of random bits that the first hash decides, at most six.
+    /// Further hashes decide the levels below.
     levels: u32,
     /// Scrambled value of each combination of the first `levels` bits.
     top: [u8; 1 << LEVELS],

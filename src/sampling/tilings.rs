@@ -1,4 +1,4 @@
-//! Divisions of a pixel into n cells that the sampling methods guarantee to have one sample each.
+//! Divisions of a pixel into n cells, in each of which a sampling method guarantees one sample.
 //!
 //! In: a method and the number n of a pixel's samples. Out: the divisions that hold for every seed
 //! and every pixel. They follow from the methods' own files: `bricks` has the cells of regular and

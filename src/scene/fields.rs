@@ -48,8 +48,9 @@ impl FieldOwner {
     }
 
     /// Returns a mutable reference to the field `name`. Returns `None` if the owner does not use
-    /// the field. Also returns `None` for the width and the height of an image, which are not of
-    /// type `f64`, and for the fields of a box that are computed from its corners.
+    /// the field. Also returns `None` for the width and the height of an image, because they are
+    /// not of type `f64`, and for the `center` and the `size` of a box, because they are computed
+    /// from its corners.
     fn field_mut(&mut self, name: &str) -> Option<&mut dyn FieldValue> {
         match self {
             Self::Image(Image {

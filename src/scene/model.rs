@@ -186,9 +186,8 @@ impl Scene {
 }
 
 impl View {
-    /// Returns two points on a line in the view direction, which leads from the first to the
-    /// second: the eye and the point that is looked at, or the origin and the tip of the
-    /// `direction`.
+    /// Returns two points such that the view direction leads from the first to the second: the eye
+    /// and the point that is looked at, or the origin and the tip of the `direction`.
     pub fn ends(&self, eye: DVec3) -> (DVec3, DVec3) {
         match *self {
             Self::Lookat(point) => (eye, point),

@@ -255,7 +255,7 @@ fn is_target(block: &Block<'_>, target: &str, setting: Option<&schema::BlockRow>
     }
 }
 
-/// Sets a field of a block. Removes the field's old value, and fields that exclude it.
+/// Sets a field of a block. Removes the field's old value, and all fields that exclude the field.
 fn set_field<'s>(block: &mut Block<'s>, name: Name<'s>, value: Value<'s>) {
     let excluded = row(block)
         .into_iter()

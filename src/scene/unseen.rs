@@ -196,8 +196,8 @@ impl Sight {
             && !sides.any(|(_, side)| self.is_beyond(sphere, side, 0.0))
     }
 
-    /// Returns the unit normals of the pyramid's four sides, which point inwards, each with words
-    /// for the space beyond that side.
+    /// Returns the four sides of the pyramid. For each, returns words for the space beyond the
+    /// side, and the side's unit normal, which points inwards.
     fn sides(&self) -> [(&'static str, DVec3); 4] {
         let [right, top] = self.window;
         let side = |axis: DVec3, sign: f64| {

@@ -78,8 +78,8 @@ const STATEMENTS: &[[&str; 3]] = &[
     ["function fn def fun lambda return class struct", "functions of one's own", "give each result a name with `let NAME = VALUE`"],
 ];
 
-/// Returns a plural noun for the statements of another language that start with `word`, such as
-/// "loops", and the help. Returns `None` if `word` starts no such statement.
+/// In other languages, some statements start with `word`. Returns a plural noun for these
+/// statements, such as "loops", and the help. Returns `None` if `word` starts no such statement.
 pub fn statement(word: &str) -> Option<[&'static str; 2]> {
     let is_one = |row: &&[&str; 3]| row[0].split(' ').any(|start| start == word);
     STATEMENTS.iter().find(is_one).map(|row| [row[1], row[2]])

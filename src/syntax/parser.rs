@@ -38,7 +38,7 @@ use crate::{
     source::{Source, SourceId, Span},
 };
 
-/// Parser of the grammar's rules, which pest generates.
+/// Parser that pest generates from the rules of the grammar.
 #[derive(pest_derive::Parser)]
 #[grammar = "grammar/scn.pest"]
 struct Grammar;

@@ -32,8 +32,8 @@ pub struct Scan {
     /// value. Subtraction signs are counted as if they were negations, so the count may be too
     /// high. Error recovery reads the items at these offsets and counts exactly.
     pub deep: Vec<usize>,
-    /// Ascending offsets where a text without mistakes can be split: after a `}` or before a
-    /// `let`. Two of them are at least [`SPLIT_SPACING_BYTES`] apart.
+    /// Ascending offsets where a text without mistakes can be split: after a `}` or before a `let`.
+    /// Neighbouring offsets are at least [`SPLIT_SPACING_BYTES`] apart.
     pub split_points: Vec<usize>,
     /// Invisible characters that are not white space of the language, and carriage returns that
     /// end no line.
@@ -101,8 +101,9 @@ impl Scan {
         scan
     }
 
-    /// Records carriage returns that are not followed by a line feed. Those in comments matter,
-    /// too: other programs show a new line after one, but to the parser the comment continues.
+    /// Records carriage returns that are not followed by a line feed. Carriage returns in comments
+    /// matter, too: other programs show a new line after one, but to the parser the comment
+    /// continues.
     fn find_carriage_returns(&mut self, text: &str, id: SourceId, start: usize) {
         let rest = text.get(start..).unwrap_or_default();
         let alone = rest.match_indices('\r').filter_map(|(at, _)| {

@@ -1,7 +1,7 @@
 //! Bounds of an object in the view plane, and of its inverse depth.
 //!
-//! In: an object. Out: its bounds in the view plane's coordinates X and Y, from which the quadtree
-//! is built, and the maximum of its inverse depth. A sphere is bounded by its tangents from the
+//! In: an object. Out: its bounds in the view plane's coordinates X and Y, and the maximum of its
+//! inverse depth. The quadtree is built from both. A sphere is bounded by its tangents from the
 //! eye, a triangle or a box by the extremes of its corners.
 //!
 //! The bounds are those of the object's convex hull. They are widened by far more than all rounding

@@ -1,10 +1,11 @@
 //! Conservative visibility: which objects may be seen in a part of the picture.
 //!
 //! In: the world, and a rectangle of its view plane. Out: the objects that may be seen in the
-//! rectangle, which are all those not proved to be missed or hidden. The method is interval
-//! arithmetic: the range of each object's linear and quadratic forms over the rectangle, widened by
-//! the forms' error bounds. An object that every ray through the rectangle hits hides every other
-//! object whose maximum inverse depth is below the first object's minimum.
+//! rectangle. These are all objects except those that are proved to be hidden, or to be missed by
+//! every ray through the rectangle. The method is interval arithmetic: the range of each object's
+//! linear and quadratic forms over the rectangle, widened by the forms' error bounds. An object
+//! that every ray through the rectangle hits hides every other object whose maximum inverse depth
+//! is below the first object's minimum.
 
 use glam::DVec2;
 

@@ -48,7 +48,7 @@ pub(super) const SIDE: usize = 32;
 /// which are rounded up to whole vectors of eight.
 const LANES: usize = 40;
 
-/// The squares of a board that one pixel shows, known from the squares at the pixel's corners.
+/// The squares of a board in one pixel, derived from the squares at the pixel's corners.
 #[derive(Clone, Copy, Debug)]
 pub struct CheckerPixel {
     pub(crate) squares: CheckerForms,
@@ -82,14 +82,14 @@ struct CornerRow {
     sign: [f64; LANES],
 }
 
-/// The squares of a checkerboard that a run of pixels, or one pixel, shows.
+/// What a run of pixels, or one pixel, shows of a checkerboard.
 #[derive(Clone, Copy, Debug)]
 pub enum ShownSquares<'a> {
     /// A run of pixels that show one colour; `true` if it is the second colour.
     One(bool),
     /// A few squares, in one pixel.
     Squares(&'a CheckerPixel),
-    /// One pixel in which the squares are not known.
+    /// One pixel whose squares could not be determined.
     Unknown,
 }
 

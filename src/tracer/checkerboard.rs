@@ -1,12 +1,12 @@
 //! The checkerboard: an infinite horizontal plane of squares.
 //!
-//! In: the board's height and squares, and the camera. Out: for a ray, its crossing and the colour
-//! there. Below the horizon, the plane's inverse depth ℓ is positive, and x/square is a ratio of
-//! linear forms, N/ℓ. N is measured from the line between squares that is nearest to the eye.
-//! Measured from the world's origin, N would lose its precision to the number of whole squares
-//! between origin and eye. Only the parity of this number matters, and it is stored separately.
-//! Errors are those of the forms; a ratio whose error interval contains a whole number leaves the
-//! colour in doubt.
+//! In: the board's height, the side of its squares, and the camera. Out: for a ray, its crossing
+//! and the colour there. Below the horizon, the plane's inverse depth ℓ is positive, and x/square
+//! is a ratio of linear forms, N/ℓ. N is measured from the line between squares that is nearest to
+//! the eye. Measured from the world's origin, N would lose its precision to the number of whole
+//! squares between origin and eye. Only the parity of this number matters, and it is stored
+//! separately. Errors are those of the forms; a ratio whose error interval contains a whole number
+//! leaves the colour in doubt.
 
 use super::{
     camera::{Camera, Direction, Window},

@@ -45,8 +45,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
     }
     for (i, front) in &fronts {
         // An edge of the box's silhouette lies between a front face and a back face that are not
-        // parallel. If only one face is prepared, only the face's own edges are needed; the other
-        // edges follow from them.
+        // parallel. If only one face is prepared, only those edges are used that belong to the
+        // face, because the others do not bound it.
         let is_bound = |j: &u8| i / 2 != j / 2 && only.is_none_or(|only| [*i, *j].contains(&only));
         let bounding = backs.iter().filter(|(j, _)| is_bound(j));
         edges.extend(bounding.map(|(_, back)| front.minus(back)));
@@ -55,8 +55,8 @@ pub fn prepare<T: Real>(camera: &Camera<T>, shape: &scene::Cuboid, only: Option<
         return Convex::new(edges, fronts, backs);
     };
     // A ray enters the box through the farthest of the front planes, and leaves it through the
-    // nearest of the back planes. The face is therefore bounded by comparisons of its plane with
-    // the others on its side of the box.
+    // nearest of the back planes. A front face is therefore bounded by comparisons of its plane
+    // with the other front planes, and a back face by comparisons with the other back planes.
     for (mut faces, is_nearest) in [(fronts, false), (backs, true)] {
         let Some(at) = faces.iter().position(|(number, _)| *number == only) else {
             continue;

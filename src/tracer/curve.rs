@@ -2,11 +2,12 @@
 //!
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
 //! and the curves where their depths are equal, in the coordinates of the sub-pixel. The silhouette
-//! of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line, a plane and a
-//! sphere on the cone of rays through a circle, two spheres in their radical plane.
-//! Errors: each form is computed anew in the sub-pixel's coordinates and in high precision, with an
-//! error bound for its values there. The result is therefore right to the last bits of an `f64`,
-//! however far the sub-pixel is from the picture's centre.
+//! of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line. A plane and a
+//! sphere have equal inverse depths on the cone of rays through a circle. Two spheres have equal
+//! inverse depths in their radical plane. Errors: each form is computed anew in the sub-pixel's
+//! coordinates and in high precision, with an error bound for its values there. The result is
+//! therefore right to the last bits of an `f64`, however far the sub-pixel is from the picture's
+//! centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real};
 
@@ -14,8 +15,8 @@ use super::{camera::Camera, form::Form, interval::Interval, sphere::Sphere, sub_
 
 /// Minimum error bound of a boundary line ([`BoundaryLine::rad`]) at which the line is computed
 /// again in a higher precision than double-double. The value is eight unit roundoffs of `f64`. A
-/// much smaller one would be useless, because storing the line's factors as `f64` alone costs
-/// three.
+/// much smaller one would be useless, because storing the line's factors as `f64` alone causes an
+/// error of three unit roundoffs.
 pub(crate) const LOOSE_LINE: f64 = 8.0 / (1u64 << 53) as f64;
 
 /// A curve that separates what is seen in a pixel.

@@ -23,8 +23,8 @@ pub struct Form<T: Real> {
     rads: Option<Box<[T::Radius; 3]>>,
 }
 
-/// Number of roundings in a value of a linear form ([`Form`]). A coordinate has five, its product
-/// with a factor one, and the sum two. The total of eight is increased by half to cover the
+/// Number of roundings in a value of a linear form ([`Form`]). A coordinate has 5 roundings, its
+/// product with a factor has 1, and the sum has 2. The total is 8; the value 12 leaves room for
 /// products of rounding errors.
 const FORM_ROUNDINGS: f64 = 12.0;
 

@@ -1,9 +1,9 @@
 //! An object of any kind, prepared for one picture.
 //!
-//! In: an object of the scene and the camera in one precision. Out: what the rest of the tracer
-//! needs of every kind of object: crossings of a ray, intervals over a rectangle, and the curves
-//! that bound the object. Each kind computes these in its own file; this file only selects among
-//! the kinds.
+//! In: an object of the scene, and the camera in one precision. Out: what the rest of the tracer
+//! needs of every kind of object: the crossings of a ray, the intervals of inverse depths over a
+//! rectangle of the picture, and the curves that bound the object. Each kind computes these in its
+//! own file; this file only selects among the kinds.
 
 use super::{
     camera::{Camera, Direction, Window},

@@ -1,9 +1,9 @@
 //! Boxes whose faces have colours of their own, taken apart into their faces.
 //!
-//! In: a scene. Out: the scene in which every box with coloured faces is replaced by one object for
-//! each face that may be seen, and the index of the object in the file from which each new object
-//! comes. The tracer treats a face as a flat object. Two faces that share an edge have the same
-//! line for it, so that no ray passes between them.
+//! In: a scene. Out: a new scene, and for each of its objects the index in the file of the object
+//! from which it comes. In the new scene, every box with coloured faces is replaced by those of its
+//! faces that may be seen. The tracer treats each face as a flat object. Two faces that share an
+//! edge have the same line for it, so that no ray passes between them.
 
 use std::{array, borrow::Cow, sync::Arc};
 

@@ -1,10 +1,11 @@
 //! The sphere: a conic in the view plane.
 //!
-//! In: centre, radius and the camera. Out: for a ray, its crossings; for a rectangle, the ranges of
-//! the crossings' inverse depths. Let c be the centre relative to the eye, R the radius, and C =
-//! c·c − R² (the power of the eye). The ray λr hits the sphere where λ² r·r − 2λ c·r + C = 0. A
-//! quarter of the discriminant is Q = R² r·r − |c × r|² by Lagrange's identity. Unlike (c·r)² −
-//! (r·r) C, this does not subtract large squares if the sphere is small and far away.
+//! In: a sphere's centre and radius, and the camera. Out: for a ray, its crossings; for a
+//! rectangle, the ranges of the crossings' inverse depths. Let c be the centre relative to the eye,
+//! R the radius, and C = c·c − R² (the power of the eye). The ray λr hits the sphere where λ² r·r −
+//! 2λ c·r + C = 0. A quarter of the discriminant is Q = R² r·r − |c × r|² by Lagrange's identity.
+//! Unlike (c·r)² − (r·r) C, this does not subtract large squares if the sphere is small and far
+//! away.
 //!
 //! Q and c·r each have one error bound for the whole window, which includes rounding errors. C is
 //! computed exactly if it is small.

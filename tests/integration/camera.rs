@@ -25,10 +25,9 @@ fn rolled(roll: Angle) -> Camera {
     }
 }
 
-/// With the view direction (1, 1, 1), the x components of the camera's unrolled right and up axes
-/// have the ratio sin 60° : cos 60°. If the right axis is rolled by 60°, its x component is a
-/// difference of two equal products, i.e. exactly 0. If the products were rounded before they are
-/// subtracted, an error would remain.
+/// For the view direction (1, 1, 1), a roll of 60° turns the camera's right axis so that its x
+/// component is 0. This component is computed as the difference of two equal products. If each
+/// product were rounded before the subtraction, an error would remain.
 #[test]
 fn a_roll_into_a_coordinate_plane_is_exact() {
     for (x, degrees) in [(1.0, 60.0), (1.0, -120.0), (-1.0, -60.0)] {
@@ -65,8 +64,8 @@ fn views_along_the_up_vector_are_oriented_like_a_map() {
     }
 }
 
-/// A positive roll turns the right side of the picture's frame downwards. After quarter turns, the
-/// camera's axes must be exactly the turned ones.
+/// A positive roll turns the right side of the picture's frame downwards. A roll by any whole
+/// number of quarter turns gives camera axes without rounding errors.
 #[test]
 fn any_number_of_quarter_rolls_is_exact() {
     let (x, y) = (DVec3::X, DVec3::Y);

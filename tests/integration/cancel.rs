@@ -1,5 +1,5 @@
-//! Tests of cancellation. Reading a long text, by every function that reads scenes, ends soon after
-//! it is cancelled, and so does building the data of the tracer for many objects.
+//! Tests of cancellation. Each function that reads a scene ends soon after it is cancelled, even if
+//! the text is long. So does the preparation of the tracer for a scene with many objects.
 
 use std::{
     fmt::Write,

@@ -131,16 +131,17 @@ sampled_and_exhaustive!(culling_is_exact_for_scenes_full_of_ties);
 fn culling_is_exact_for_scenes_full_of_ties(effort: Effort) {
     let scenes = generated(Numbers::MultiplesOf(0.5), [8, 8], 77);
     for (_, scene) in effort.first(60, scenes.take(300)) {
-        // A single sample lies at the pixel's centre; several samples lie at odd eighths of a
-        // pixel. Many of them hit edges exactly, and many rays lie in planes of surfaces.
+        // A single sample lies at the pixel's centre. Of four samples, each lies 1/4 pixel from the
+        // centre along both axes; of 16, each lies 1/8 or 3/8 pixel from it. Many samples hit edges
+        // exactly, and many rays lie in planes of surfaces.
         for n in [1, 4, 16] {
             compare(&scene, Method::Regular, Count::PerPixel(n));
         }
     }
 }
 
-/// Renders overlapping triangles, half of them in a tilted plane and half in the board's plane. The
-/// second scene has more triangles than the tracer can cache in higher precision.
+/// Renders overlapping triangles, half of them in a tilted plane and half in the board's plane. One
+/// of the scenes has more triangles than the tracer can cache in higher precision.
 #[test]
 fn culling_is_exact_for_thousands_of_coplanar_triangles() {
     let mut random = Random::new(141);

@@ -1,8 +1,8 @@
 //! Tests with long tables of cases. A normal run tries only some cases of each table; an exhaustive
 //! run tries all.
 //!
-//! `cargo test -- --ignored` runs all cases, as the continuous integration does. It also needs
-//! Neovim, QEMU and Chromium.
+//! `cargo test -- --ignored` runs all cases, as the continuous integration does. It also runs tests
+//! that need other programs, such as Neovim, QEMU and Chromium.
 
 /// Choice of the cases that a test tries from its table.
 #[derive(Clone, Copy, PartialEq)]

@@ -39,8 +39,9 @@ const SAMPLES: u64 = 64;
 /// 10^13 means, so such a difference is an error of the program.
 const FAR: f64 = 0.49;
 
-/// Percentages of the numbers in a scene that may have any magnitude ([`Numbers::Wild`]). A quarter
-/// of the generated scenes has each of the four percentages, from ordinary to extreme scenes.
+/// Percentages of the numbers in a scene that may have any magnitude ([`Numbers::Wild`]). Each
+/// percentage is used for a quarter of the generated scenes. With 0, scenes are ordinary; with 100,
+/// all numbers may be extreme.
 const WILD: [u64; 4] = [0, 5, 30, 100];
 
 fn assert_light(film: &Film, text: &str) {
@@ -113,12 +114,13 @@ fn a_pixel_does_not_depend_on_the_crop(effort: Effort) {
         let scenes = generated(Numbers::Wild(wild), [1, 1], seed);
         for (index, (_, mut scene)) in scenes.take(count).enumerate() {
             if index % 5 == 0 {
-                // The eye is so far away that rounding removes coordinates near the origin from
-                // their difference to the eye.
+                // The eye is so far away that, after rounding, the difference between the eye and a
+                // point near the origin no longer depends on the point.
                 scene.camera.eye = dvec3(3e267, -3e267, 1e267) * random.within(0.0, 1.0);
             }
-            // The pictures are small, but extend over several cells of the grid that lists the
-            // objects that may be seen in each part of a picture.
+            // Most of these pictures have more than 32 columns or rows. The tracer divides a
+            // picture first into squares of 32 × 32 pixels, so these pictures extend over two
+            // squares.
             let (width, height) = [(37, 3), (3, 35), (7, 9)][index % 3];
             let scene = resized(scene, width, height);
             let mut below = |n: u32| random.bits() as u32 % n;
@@ -185,8 +187,9 @@ fn a_huge_sphere_that_touches_the_eye_covers_half_a_pixel() {
     }
 }
 
-/// Near the centre of such a picture, rays in the board's plane have tiny directions compared with
-/// all other rays. So are the numbers by which the tracer compares the depths of surfaces.
+/// Near the centre of a picture with an extremely wide view, rays in the board's plane have tiny
+/// directions compared with all other rays. The numbers by which the tracer compares the depths of
+/// surfaces are tiny, too.
 #[test]
 fn the_nearest_surface_is_seen_at_the_centre_of_the_widest_views() {
     for view in [

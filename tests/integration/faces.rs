@@ -1,4 +1,5 @@
-//! Compares boxes whose faces have different colours with triangles in place of the faces.
+//! Compares pictures of boxes with pictures of triangles that form the same boxes. The faces of a
+//! box have different colours.
 
 use glam::DVec3;
 use pinhole::{

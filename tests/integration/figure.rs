@@ -83,8 +83,8 @@ fn figures_keep_their_bytes() {
     assert_eq!(crate::program::names(&root.join("tests/figures")), expected);
 }
 
-/// Returns each text of a figure with its bounding box, which assumes the same letter width as the
-/// program.
+/// Returns each text of a figure with its bounding box. The box is computed with the letter width
+/// that the program assumes.
 fn texts(svg: &str) -> Vec<(String, [DVec2; 2])> {
     let mut found = Vec::new();
     for element in svg.split("<text ").skip(1) {

@@ -132,8 +132,9 @@ impl Generator {
             ),
             3 | 4 => {
                 let [a, b] = [(); 2].map(|()| self.length(2.5));
-                // No side is longer than the other two together, but often exactly as long. A
-                // triangle with the sides 2.5, 2.5 and 3 can have rational vertices.
+                // No side is longer than the other two together, but one is often exactly as long
+                // as the other two together. A triangle with the sides 2.5, 2.5 and 3 can have
+                // rational vertices.
                 let sides = match self.random.below(4) {
                     0 => [a, b, a + b],
                     1 => [a, b, (a - b).abs()],

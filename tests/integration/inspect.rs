@@ -179,8 +179,8 @@ fn probe_works_far_outside_the_picture_and_with_extreme_lenses() {
         let depths: Vec<_> = probe.hits.iter().map(|(hit, ..)| hit.depth).collect();
         assert_eq!(depths, [4.5, 5.5], "{lens}");
         let json = json_of(&inspected(&text)).to_string();
-        // In the widest view, the part of a pixel that the box covers is too small for an `f64`.
-        // The output then has `null` in place of four numbers.
+        // In the widest view, the box covers so little of a pixel that the fraction is too small
+        // for an `f64`. The output then has `null` in place of four numbers.
         let (facts, _) = json.split_once("\"seen\"").unwrap();
         assert_eq!(facts.matches("null").count(), 4, "{lens}: {json}");
     }

@@ -1,5 +1,5 @@
-//! Tests that the modules of the library import each other only in one direction, the order of
-//! `src/lib.rs`, and that no file is too long to be read in one sitting.
+//! Tests that the modules of the library import each other only in one direction, namely in the
+//! order of `src/lib.rs`. Also tests that no file is too long to be read in one sitting.
 
 use std::{
     collections::{BTreeMap, BTreeSet},

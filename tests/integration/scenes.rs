@@ -118,8 +118,8 @@ pub fn exact(scene: &Scene) -> Exact {
     render_exact(&World::new(scene), whole(scene), &Control::default()).unwrap()
 }
 
-/// Returns the contents of all fenced blocks of a document whose first line is three backticks and
-/// `kind`.
+/// Returns the contents of fenced blocks of a document. Only those blocks count whose first line is
+/// three backticks and `kind`.
 pub fn fenced<'p>(text: &'p str, kind: &str) -> Vec<&'p str> {
     let start = format!("```{kind}\n");
     let parts = text.split(&start).skip(1);

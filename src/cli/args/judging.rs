@@ -26,7 +26,7 @@ pub struct DiffArgs {
     /// on top]
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = not_negative)]
     pub tolerance: Option<f64>,
-    /// The part of the scene that A shows, where it does not say so itself
+    /// The part of the scene's picture that A shows, unless A says so itself
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Area>,
     /// Let the tolerance alone decide the exit status, so that sampling noise counts; --tolerance
@@ -50,7 +50,7 @@ pub struct DiffArgs {
 pub struct GradeArgs {
     /// The scene: a .scn file, or a PNG that Pinhole wrote
     pub scene: PathBuf,
-    /// The pictures, or folders or zip files with a folder or a file a student, as Moodle,
+    /// The pictures, or folders or zip files with a folder or a file per student, as Moodle,
     /// Gradescope and GitHub Classroom hand them out
     #[arg(required = true, value_name = "PICTURE")]
     pub pictures: Vec<PathBuf>,
@@ -59,11 +59,12 @@ pub struct GradeArgs {
     /// refused
     #[arg(short, long = "output", value_name = "DIR")]
     pub output: Option<PathBuf>,
-    /// Which files of a student may be the picture, such as `render*.png` or `out/**`; of several
-    /// the newest is [default: all that are named as pictures are]
+    /// Which files of a student may be the picture, such as `render*.png` or `out/**`; of
+    /// several, the newest [default: every file with a picture's ending]
     #[arg(long, value_name = "GLOB")]
     pub picture: Option<String>,
-    /// The part of the scene that pictures of its size show, where they do not say it themselves
+    /// The part of the scene's picture that pictures of its size show, unless they say so
+    /// themselves
     #[arg(long, value_name = "X,Y,W,H")]
     pub crop: Option<Area>,
     /// A JSON file that says what a right picture gets and what each mistake takes off
@@ -72,7 +73,7 @@ pub struct GradeArgs {
     /// Moodle's worksheet of grades, to be filled in by --format moodle
     #[arg(long, value_name = "FILE")]
     pub worksheet: Option<PathBuf>,
-    /// How a column of the worksheet is called there, such as `Grade=Bewertung`; repeatable
+    /// A column's heading in the worksheet, such as `Grade=Bewertung`; may be given several times
     #[arg(long, value_name = "COLUMN=HEADING")]
     pub columns: Vec<String>,
     #[command(flatten)]
@@ -93,7 +94,7 @@ pub struct GradeArgs {
 pub enum GradeFormat {
     /// Text for people
     Human,
-    /// JSON for programs, a line a student
+    /// JSON for programs, a line per student
     Json,
     /// A table for other programs
     Csv,
@@ -108,8 +109,7 @@ pub enum GradeFormat {
 /// Arguments that set how much work is spent on judging a picture.
 #[derive(Debug, clap::Args)]
 pub struct EffortArgs {
-    /// Spend up to so many times as much work on a picture before the search for what is wrong
-    /// ends
+    /// Spend up to N times as much work on a picture before the search for its mistakes ends
     #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = effort)]
     pub effort: f64,
 }

@@ -75,7 +75,7 @@ pub enum Command {
     #[cfg(feature = "lsp")]
     #[command(after_help = help::LSP_HELP)]
     Lsp {
-        /// What it does in any case; some editors say it
+        /// Use standard input and output, which is the default; some editors pass this option
         #[arg(long)]
         stdio: bool,
     },
@@ -217,8 +217,8 @@ pub struct StudioArgs {
 /// Arguments of `inspect`.
 #[derive(Debug, clap::Args)]
 pub struct InspectArgs {
-    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input; what is seen
-    /// is told of its first 100 objects
+    /// The scene: a .scn file, a PNG that Pinhole wrote, or `-` for standard input. The
+    /// visible area is computed for at most 100 objects
     pub scene: PathBuf,
     #[command(flatten)]
     pub overrides: Overrides,

@@ -27,8 +27,9 @@ pub enum Criterion {
     Hits,
 }
 
-/// Criteria with the prefixes of the ids of their mistakes, separated by spaces. An id with none of
-/// these prefixes is the name of a field of the camera or of an object.
+/// Criteria, each with prefixes that are separated by spaces. A mistake belongs to a criterion if
+/// the mistake's id begins with one of the criterion's prefixes. An id that begins with none of the
+/// prefixes is the name of a field of the camera or of an object.
 const BEGINNINGS: &[(Criterion, &str)] = &[
     (Criterion::Board, "board_"),
     (

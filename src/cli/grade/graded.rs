@@ -20,7 +20,7 @@ pub struct GradedStudent {
     pub compared: Vec<ComparedPicture>,
     /// The file-name pattern in `--picture`, if it was given.
     pub chosen: Option<String>,
-    /// Files of the student that were not compared. Some have the reason in parentheses.
+    /// Files of the student that were not compared. Some are followed by the reason in parentheses.
     pub not_compared: Vec<String>,
     /// Names of the other students whose best picture equals this student's best picture in every
     /// pixel.

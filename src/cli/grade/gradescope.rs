@@ -155,8 +155,8 @@ fn is_reserved(name: &str) -> bool {
         let rest = stem.strip_prefix(word);
         rest.is_some_and(|rest| rest.len() == 1 && rest != "0")
     };
-    // The last three names are those of the files and the folder that `grade` writes for its HTML
-    // page.
+    // Windows reserves the first four names. The others belong to files and to the folder that
+    // `grade` writes for its HTML page.
     matches!(
         &*stem,
         "con" | "prn" | "aux" | "nul" | "pictures" | "index" | "grade"

@@ -46,7 +46,8 @@ pub fn of_folder(folder: &str, slug: Option<&str>) -> String {
     own.strip_suffix(".zip").unwrap_or(own).to_owned()
 }
 
-/// Names of the students to whom the folders of a Gradescope export belong, by folder.
+/// Names of the students in a Gradescope export. Each folder of the export is mapped to the
+/// students to whom it belongs.
 #[derive(Debug, Default)]
 pub struct Submitters(BTreeMap<String, Vec<String>>);
 

@@ -51,8 +51,8 @@ pub struct SubmittedFile {
     /// CRC-32 checksum of the file, if it is in a zip file.
     pub sum: Option<u32>,
     pub content: ContentSource,
-    /// Whether the user named the file on the command line. Such a file is a picture, whatever its
-    /// name is.
+    /// Whether the user named the file on the command line. Such a file is taken for a picture,
+    /// whatever its name is.
     pub is_named: bool,
 }
 
@@ -105,7 +105,8 @@ impl SubmittedFile {
 #[derive(Debug, Default)]
 pub struct PictureChoice<'s> {
     pub pictures: Vec<&'s SubmittedFile>,
-    /// Names of the other files. Some have the reason in parentheses why they are not compared.
+    /// Names of the student's files that are not compared. Some are followed by the reason in
+    /// parentheses.
     pub others: Vec<String>,
 }
 

@@ -200,8 +200,8 @@ impl Limits {
     }
 }
 
-/// Range of a number that the conditions ([`Condition`]) on its fields in the schema allow. Like
-/// the number itself, the range of an angle is in degrees or in radians.
+/// Range that the schema allows for a number, by the conditions ([`Condition`]) on the fields that
+/// contain the number. Like the number itself, the range of an angle is in degrees or in radians.
 #[derive(Clone, Copy, Debug)]
 struct Bounds {
     least: f64,
@@ -221,8 +221,8 @@ const UNBOUNDED: Bounds = Bounds {
 };
 
 impl Bounds {
-    /// Returns the bounds of a number in a field's value that follow from the conditions on the
-    /// field. `unit` is the unit in which the number is written.
+    /// The conditions on a field bound each number in the field's value. Returns these bounds.
+    /// `unit` is the unit in which the number is written.
     fn of_field(field: &FieldRow, unit: Option<Unit>) -> Self {
         let two_to = |power: u32| (1_u64 << power) as f64;
         let mut bounds = UNBOUNDED;

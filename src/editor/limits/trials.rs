@@ -56,8 +56,8 @@ impl<'a, 's> Trials<'a, 's> {
     }
 
     /// Estimates how many objects the text contains if `value` takes the place of the literal
-    /// `count`. Assumes that the repeated block with the most indices uses this count for each of
-    /// them.
+    /// `count`. Assumes that `count` is the count of all indices of one block: the block with the
+    /// most indices.
     fn objects_with(&self, count: &Literal, value: f64) -> usize {
         let repetitions = self.analysis.blocks().flat_map(|it| &it.repetition);
         let indices = repetitions.map(|it| it.indices.len()).max().unwrap_or(0);

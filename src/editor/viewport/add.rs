@@ -215,8 +215,8 @@ fn free_height(scene: &Scene) -> f64 {
     bottoms.fold(below_eye, f64::min)
 }
 
-/// Returns the centre of a free position in front of the camera, and half of the side length of the
-/// cube that a new object there should fill.
+/// Returns the centre of a free position in front of the camera, and half of a cube's side length.
+/// A new object at this position should fill the cube.
 fn free_place(scene: &Scene) -> (DVec3, f64) {
     let projection = Projection::new(&scene.camera, &scene.image);
     let distance = distance(scene);

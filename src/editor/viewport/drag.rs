@@ -300,9 +300,9 @@ fn block<'a, 's>(
     Some((block, name.to_owned()))
 }
 
-/// Returns the names of the fields, such as `camera.lookat`, whose values differ between two scenes
-/// with the same blocks. Leaves out the dragged object itself. For other objects of its block,
-/// compares only the fields in `changes`.
+/// Compares two scenes with the same blocks. Returns the names of the fields, such as
+/// `camera.lookat`, whose values differ. Leaves out the dragged object itself. For other objects of
+/// its block, compares only the fields in `changes`.
 fn others_changed(
     analysis: &Analysis<'_>,
     dragged: Option<usize>,

@@ -38,8 +38,8 @@ impl FieldChange {
         }
     }
 
-    /// Returns a copy of `owner` for each number of the field that changes. In a copy, only this
-    /// number is changed, namely by 10^−`decimals`.
+    /// For each number of the field that changes, such as a coordinate of a point, returns a copy
+    /// of `owner` in which only this number is changed, namely by 10^−`decimals`.
     pub fn with_unit(&self, owner: FieldOwner, decimals: i32) -> Vec<FieldOwner> {
         let unit = libm::pow(10.0, f64::from(-decimals));
         let units = match self.by {
@@ -97,14 +97,14 @@ pub struct DecimalRounding {
     decimals: i32,
     /// Absolute values of the changes that [`together`] has rounded already. A number that changes
     /// by one of these amounts keeps all its old decimals and is not rounded to `decimals`. So the
-    /// points of the object that the pointer does not drag stay exactly in place.
+    /// points of the object that are not dragged stay exactly in place.
     exact: Vec<f64>,
 }
 
 /// Rounds changes to `decimals` decimals. If each change on an axis is the largest change on this
 /// axis times one of [`RATIOS`], the largest change is rounded, and the others become the same
-/// multiples of it as before. So the points of the object that the pointer does not drag stay
-/// exactly in place.
+/// multiples of it as before. So the points of the object that are not dragged stay exactly in
+/// place.
 pub fn together(changes: &[FieldChange], decimals: i32) -> (Vec<FieldChange>, DecimalRounding) {
     let mut changes = changes.to_vec();
     let mut exact = Vec::new();

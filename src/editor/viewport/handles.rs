@@ -118,7 +118,7 @@ pub fn handles(shape: &Shape, projection: &Projection, towards: DVec3) -> Vec<Ha
 
 /// Returns the direction from an object's centre in which its handles are placed while the pointer
 /// drags `handle` to the point `to` of the picture. Only the radius handle of a sphere depends on
-/// it: it stays on the side of the pointer.
+/// this direction: the handle stays on the pointer's side of the centre.
 pub fn side_held(shape: &Shape, handle: &str, to: DVec2, projection: &Projection) -> DVec3 {
     match shape {
         Shape::Sphere(_) if handle == SPHERE.radius.name => projection.ray(to),

@@ -61,8 +61,8 @@ pub struct Vanishing {
     /// The vanishing point; `None` if the axis is parallel to the view plane, because parallel
     /// lines then stay parallel in the picture.
     pub point: Option<DVec2>,
-    /// For each edge of a box that is parallel to the axis, a line along the edge that continues to
-    /// the vanishing point.
+    /// Lines along those edges of boxes that are parallel to the axis. Each line runs along one
+    /// edge and continues to the vanishing point.
     pub lines: Vec<Polyline>,
 }
 
@@ -143,8 +143,8 @@ pub fn overlays(scene: &Scene, which: &ShownObjects) -> Overlays {
     }
 }
 
-/// Removes the parts of the checkerboards' outlines that other objects hide. Otherwise, a square
-/// that is far larger than the objects would be drawn across all of them.
+/// Removes those parts of the checkerboards' outlines that are hidden by other objects. Otherwise,
+/// a square that is far larger than the objects would be drawn across all of them.
 pub fn hide(overlays: &mut Overlays, scene: &Scene, world: &World) {
     let is_seen = |index: usize, at: DVec2| {
         let hit = pick(scene, world, at).and_then(|(hit, _)| hit);

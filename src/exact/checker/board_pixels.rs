@@ -1,8 +1,8 @@
 //! Batches of eight pixels that show only a checkerboard and are crossed by few of its lines. Most
 //! pixels of more than one colour are of this kind.
 //!
-//! In: such pixels one by one, in any order, with the numbers of the board's squares at their
-//! corners. Out: the integral of the board's sign over each pixel. A board has two families of
+//! In: such pixels one by one, in any order. Each comes with the numbers of the squares that lie at
+//! its corners. Out: the integral of the board's sign over each pixel. A board has two families of
 //! lines, those between columns and those between rows of squares. All pixels of a batch are
 //! crossed by the same numbers of lines of the two families. When a batch has eight pixels,
 //! `strips_simd` computes them at once and bounds the errors. The result for a pixel depends
@@ -14,10 +14,9 @@ use super::{
 };
 use crate::tracer::{CheckerPixel, VisibilityCandidate};
 
-/// Maximum number of lines between a board's columns, or between its rows, that may cross a pixel
-/// of a batch. A pixel that more lines cross is computed alone. There is one batch for each pair of
-/// a number of column lines and a number of row lines, and few pixels have more lines. Not
-/// critical: with 8 or 128, the measured running time changes by at most about 10 %.
+/// Maximum number of lines of one family (those between a board's columns, or those between its
+/// rows) that may cross a pixel of a batch. A pixel that more lines cross is rare and is computed
+/// alone. Not critical: with 8 or 128, the measured running time changes by at most about 10 %.
 const MAX_LINES: usize = 32;
 
 /// A pixel that shows only a checkerboard.
@@ -138,8 +137,8 @@ mod tests {
         World::new(&scene)
     }
 
-    /// Returns the integrals of all pixels that show only the board and at whose corners the
-    /// board's squares are known.
+    /// Returns the integrals of all pixels that show only the board, except pixels in which the
+    /// squares at the corners could not be determined.
     fn sums(world: &World) -> Vec<(BoardPixel, Option<BoundedSum>)> {
         let [width, height] = SIZE;
         let mut batches = BoardBatches::new();
@@ -173,7 +172,7 @@ mod tests {
         let world = world(camera, 0.7);
         let known = sums(&world).into_iter().filter_map(|(_, sum)| sum);
         let sharp = known.filter(|sum| sum.bound < 1e-9).count();
-        // More than half of the picture's 18 rows of 24 pixels are below the horizon.
+        // The picture has 24 × 18 = 432 pixels, of which more than half are below the horizon.
         assert!(sharp > 100, "{sharp}");
     }
 

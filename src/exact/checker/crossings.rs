@@ -17,9 +17,9 @@ use std::f64::consts::PI;
 use multiversion::multiversion;
 
 /// Maximum number of terms of the series ([`EdgeSeries`]) by which a checkerboard is integrated
-/// along an edge. The omitted terms count as an error. With 20 terms, the last term is at most
-/// about 2e-17 of the first, because it is used only at distances of 18 squares (`NEAR_SQUARES`)
-/// and more; nearer squares are integrated one by one.
+/// along an edge. The omitted terms count as an error. The series is used only at distances of 18
+/// squares (`NEAR_SQUARES`) and more; nearer squares are integrated one by one. With 20 terms, the
+/// bound of the error therefore contains the factor 22!/2·(18π)⁻²⁰, about 5e-15.
 pub(super) const MAX_TERMS: usize = 20;
 /// Upper limit on the number of blocks into which the sum over an edge's crossings is divided. The
 /// truncation error of each block is limited to the tolerance divided by this number, so that all
@@ -91,9 +91,9 @@ impl EdgeSeries {
         size
     }
 
-    /// Returns how many terms of the series are needed in a sum over `lines` crossings, and the
-    /// sum's truncation error, which is at most `limit`. `depth` is the depth of the nearest
-    /// crossing.
+    /// Returns the least number of terms of the series with which the truncation error of a sum
+    /// over `lines` crossings is at most `limit`, and a bound on this error. `depth` is the depth
+    /// of the nearest crossing.
     fn terms_for(&self, depth: f64, lines: f64, limit: f64) -> (usize, f64) {
         let (mut terms, mut left) = (self.terms, 0.0);
         while terms > 1 {

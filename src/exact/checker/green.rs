@@ -3,8 +3,8 @@
 //!
 //! In: a convex polygon in which the depth m changes little from square to square, and which may
 //! reach the horizon. Out: the integral of the board's sign, with an error bound. The bound covers
-//! the truncation of the series and of sums over crossings, rounding errors, and the displacement
-//! of squares by rounding errors of the forms.
+//! three kinds of errors: the truncation of the series and of sums over crossings; rounding errors;
+//! and the displacement of squares by rounding errors of the forms.
 //!
 //! In the formulas, (a, b) is a point of the board's plane, in squares, and s is the square wave, 1
 //! and −1 in turn from square to square. A unit of the plane at the depth m covers K/m³ square

@@ -22,10 +22,10 @@ pub(in crate::exact) const UNIT: f64 = <f64 as Real>::UNIT;
 /// are finite. The error bound then covers the whole polygon.
 const MIN_DETERMINANT: f64 = 1e-100;
 
-/// Maximum displacement of the horizon by rounding errors, in pixels, at which
-/// [`Homography::corner`] moves corners onto the horizon that rounding may have kept off it. With a
-/// larger displacement, no corner is moved. The error bound includes the move; a move of this
-/// length adds about a hundredth of the default tolerance to it.
+/// Maximum displacement of the horizon by rounding errors, in pixels, at which corners are moved.
+/// [`Homography::corner`] moves a corner onto the horizon if their distance may be only a rounding
+/// error. With a larger displacement, no corner is moved. The error bound includes the move; a move
+/// of this length adds about a hundredth of the default tolerance to it.
 const MAX_HORIZON_DISPLACEMENT: f64 = 1e-11;
 
 /// An integral of a checkerboard's sign (1 on squares of one colour, −1 on the others), and a bound
@@ -110,7 +110,7 @@ impl BoundedSum {
         Self { value: 0.0, bound }
     }
 
-    /// Returns the sum over a polygon whose colours are unknown: 0, the mean of both colours, with
+    /// Returns the result for a polygon that is not integrated: 0, the mean of both colours, with
     /// the polygon's area as the bound.
     pub fn unknown(polygon: &[DVec2]) -> Self {
         Self::zero_within(measure(polygon).0.abs())

@@ -39,8 +39,9 @@ pub(super) use self::{
 
 /// Distance up to which squares are near, in squares, measured from the line in the board's plane
 /// where the depth is 0. Near squares are cut out one by one; the board beyond is integrated along
-/// its boundary by Green's theorem, as a series. Beyond 18 squares, term n of the series is at most
-/// n/(18π) of the previous term. Its 20 terms therefore fall to 20!/(18π)²⁰, about 2e-17.
+/// its boundary by Green's theorem, as a series of at most 20 terms. With 18 squares, the error
+/// bound of 20 terms contains the factor 22!/2·(18π)⁻²⁰, about 5e-15. A smaller distance would make
+/// this factor larger; with a larger one, more squares would have to be cut out.
 const NEAR_SQUARES: f64 = 18.0;
 /// Maximum number of squares in a polygon at which all of them are cut out one by one, at any
 /// distance. With more squares, only those within [`NEAR_SQUARES`] are. Not critical: with 6 or 96,
@@ -49,8 +50,8 @@ const MAX_CUT_SQUARES: f64 = 24.0;
 /// Maximum depth at which squares are cut out one by one. The depth is 1 over the form L
 /// ([`Homography`]), which is 0 on the horizon. At this depth, a point of the picture is only a
 /// thousand rounding errors away from the horizon, because the largest factor of L is about 1. If
-/// squares are so large that even farther ones count as near, the colours beyond this depth are
-/// treated as unknown.
+/// squares are so large that even farther ones count as near, the area beyond this depth is not
+/// integrated and counts as an error.
 const MAX_DEPTH: f64 = 1e13;
 
 impl Homography {

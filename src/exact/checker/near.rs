@@ -20,15 +20,15 @@ use super::{
 use crate::math::two_sum;
 
 /// Maximum number of corners that cutting may add to a polygon. Squares are cut off the polygon one
-/// after another, and each cut changes what is left. If this has more corners, cutting ends, and
-/// its area is added to the error bound. Exact cuts add at most two corners, both on the last line.
-/// Many more show that the lines are closer to each other than rounding errors, so that cutting is
-/// useless.
+/// after another, and each cut changes what is left. If the rest has more corners, cutting ends,
+/// and the rest's area is added to the error bound. Exact cuts add at most two corners, both on the
+/// last line. Many more show that the lines are closer to each other than rounding errors, so that
+/// cutting is useless.
 const MAX_EXTRA_CORNERS: usize = 32;
 
 /// Maximum absolute value of a board coordinate, in squares, in a polygon that is cut into squares.
-/// In a polygon with larger coordinates, the integral is unknown. Up to this value, the number of a
-/// square and those of its neighbours are exact in `f64`.
+/// A polygon with larger coordinates is not cut; its area is added to the error bound. Up to this
+/// value, the number of a square and those of its neighbours are exact in `f64`.
 const MAX_SQUARE: f64 = 1e15;
 
 /// Integrates the board's sign over a convex polygon that does not reach the horizon, in square
@@ -121,7 +121,8 @@ impl Cutter {
             });
     }
 
-    /// Returns the number of strips that are left, or infinity if they are unknown.
+    /// Returns the number of strips that are left, or infinity if the polygon cannot be cut,
+    /// because it is empty or a coordinate is not below [`MAX_SQUARE`].
     fn count(&self) -> f64 {
         self.strips
             .map_or(f64::INFINITY, |(first, last)| (last - first + 1) as f64)
@@ -129,7 +130,7 @@ impl Cutter {
 
     /// Cuts the next strip, between the lines i and i + 1, off the rest. Moves the strip to
     /// `piece`, adds the cut's error to `tally`, and returns i. Returns `None` if nothing is left
-    /// or the strips are unknown.
+    /// or the polygon cannot be cut.
     fn next(&mut self, tally: &mut CompensatedSum) -> Option<f64> {
         let (i, last) = self.strips?;
         if self.rest.len() < 3 {
@@ -167,9 +168,9 @@ impl Cutter {
         }
         let Some([from, to]) = chord else { return };
         let size = |k: usize| self.across[k].abs() + (n * self.below[k]).abs();
-        // The factors of the line's form have three roundings of terms of the given size, and its
-        // value has four. The chord's end points have four more roundings, which are added to the
-        // error below.
+        // The factors of the line's form have three roundings of terms of at most `size`, and the
+        // form's value has four. The chord's end points have four more roundings, which are added
+        // to the error below.
         let off = 7.0 * UNIT * (0.5 * (size(0) + size(1)) + size(2));
         let step = (to - from).abs();
         tally.bound += (off / line[0].abs().max(line[1].abs()) + 4.0 * UNIT) * (step.x + step.y);

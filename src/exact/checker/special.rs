@@ -35,9 +35,9 @@ pub(super) fn reduce_double(x: &Double) -> Double {
     Double::from_f64(reduce(x.hi)).plus(&Double::from_f64(reduce(x.lo)))
 }
 
-/// Returns `n`·`angle`, both in half turns, reduced by whole turns. `angle` must already be
-/// reduced, and `n` must be below 2^51. Even a small result has a relative error of only one
-/// rounding, except for the error of the double-double product.
+/// Returns `n`·`angle`, both angles in half turns, reduced by whole turns. `angle` must already be
+/// reduced, and `n` must be below 2^51. The product is computed in double-double before it is
+/// reduced, so that a small result is accurate, too.
 pub(super) fn reduced_multiple(n: f64, angle: &Double) -> f64 {
     let Double { hi, lo } = two_product(n, angle.hi);
     let turns = (0.5 * hi + ROUND) - ROUND;
@@ -407,7 +407,7 @@ mod tests {
                 sum = [sum[0] + (1.0 - x) * wave[0], sum[1] + (1.0 - x) * wave[1]];
             }
             // Near x = 1, the integrand oscillates too fast for the midpoint rule. The part of the
-            // integral from x on, which is then wrong, is of order (1 − x)².
+            // integral beyond this x is only of order (1 − x)².
             close(third(y), sum.map(|x| x / f64::from(STEPS)), 1e-4);
         }
     }

@@ -1,9 +1,10 @@
 //! The integral of the board's sign over eight pixels at once, in lanes that the compiler
 //! vectorises.
 //!
-//! In: eight pixels that show only a checkerboard. The board has two families of lines, and the
-//! same number of lines of each family cross every pixel. Out: the integral over each pixel, with a
-//! bound on the rounding errors of areas and on the displacement of lines by rounding.
+//! In: eight pixels that show only a checkerboard. The board has two families of lines, those
+//! between columns and those between rows of squares. The pixels agree in the number of lines of
+//! each family that cross them. Out: the integral over each pixel, with a bound on the rounding
+//! errors of areas and on the displacement of lines by rounding.
 //!
 //! The lines of the family with fewer lines cut the pixel into strips. The sign σ_i = (−1)^i
 //! alternates from strip to strip. Let H_k be the side of line k of the other family on which
@@ -63,9 +64,9 @@ pub(super) struct BoardLanes {
     /// has the second. The first square is the one in the first of the pixel's columns of squares
     /// and in the first of its rows.
     sign: Lanes,
-    /// Numbers of the squares at the four corners of each pixel. Of the board's two families of
-    /// lines (columns and rows), squares are counted in the direction that crosses the family with
-    /// fewer lines in the pixel. The square with the smallest number has the number 0.
+    /// Number of the square at each of the four corners of each pixel. Of the board's two families
+    /// of lines (those between columns, and those between rows), one has fewer lines in the pixel.
+    /// The squares are counted in the direction that crosses this family, from 0.
     squares: [Lanes; 4],
 }
 

@@ -323,9 +323,9 @@ fn the_end_is_the_limit() {
     }
 }
 
-/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, in which a
-/// pixel far to the side sees a single straight line on the floor. Returns the integral up to the
-/// distance `most` along this line, and the area of the polygon that shows the rest of it.
+/// Integrates the board's sign over `polygon` in the limit of a view of 180 degrees, where a pixel
+/// far to the side sees one straight line on the floor. Returns the integral up to the distance
+/// `most` along the line, and the area of the part that shows the line's rest.
 fn brute_limit(view: &PixelView, polygon: &[DVec2], most: f64) -> (f64, f64) {
     // The distance is q = height·x/y at the point (x, y) relative to the middle of the horizon. The
     // board's coordinates are linear in q. Each q at which one is an integer cuts the polygon.
@@ -458,7 +458,7 @@ fn from_straight_above() {
     );
 }
 
-/// An integral is returned as unknown if its work exceeds the budget or the picture is cancelled.
+/// Beyond the budget or after a cancellation, the integral is 0 and the bound is the whole area.
 #[test]
 fn nothing_is_computed_beyond_the_budget() {
     let below = [0.0, 0.0, 1.0];
@@ -473,7 +473,7 @@ fn nothing_is_computed_beyond_the_budget() {
     assert_eq!(board.alone(&PIXEL).value, 0.0);
 }
 
-/// The integral is known if a single square reaches up to the horizon, whatever the square's size.
+/// The error bound is small if a single square, of any size, reaches up to the horizon.
 #[test]
 fn a_square_that_goes_to_the_horizon_is_known() {
     // The eye is 10^−`exponent` squares above the board, and one square fills nearly all of the

@@ -72,8 +72,9 @@ pub enum Rays {
     NewRight,
     /// The roll turns the right vector only, not the upward direction. This skews the picture.
     RightAlone,
-    /// Rays are parallel. They start in a window whose pixels are as large as those of a
-    /// perspective picture at this distance from the eye, in metres.
+    /// Rays are parallel and start in a window. A pixel of this window is as large as the part of
+    /// the scene that a perspective camera shows in a pixel, at a certain distance from the eye.
+    /// The number is this distance, in metres.
     Parallel(f64),
     /// The projection is that of a fisheye lens: the angle between a ray and the view direction is
     /// proportional to the distance from the picture's middle.
@@ -86,15 +87,18 @@ pub enum Spheres {
     /// Intersections are computed by the correct formula.
     #[default]
     Correct,
-    /// Intersections are computed by the formula for rays of length 1, although the rays reach to
-    /// the view plane. The number is the distance of the view plane from the eye, in metres.
+    /// Intersections are computed by the formula for ray directions of length 1, but the direction
+    /// vectors reach from the eye to the view plane. The number is the distance of the view plane
+    /// from the eye, in metres.
     UnitRays(f64),
     /// Only the nearer of the two intersections counts.
     LesserRoot,
     /// Only the farther of the two intersections counts.
     GreaterRoot,
-    /// The quadratic formula multiplies its roots by a, the squared length of the ray, instead of
-    /// dividing them. The number is the distance of the view plane from the eye, in metres.
+    /// The solution of the quadratic equation a·t² + b·t + c = 0 multiplies by a instead of
+    /// dividing by it. Here a is the squared length of the ray's direction vector, which reaches
+    /// from the eye to the view plane. The number is the distance of the view plane from the eye,
+    /// in metres.
     TimesA(f64),
 }
 
@@ -106,8 +110,8 @@ pub enum Shading {
     None,
     /// Colours are multiplied by the cosine of the angle between the ray and the surface normal.
     OfRay,
-    /// Colours are multiplied by the cosine of the angle between the surface normal and this
-    /// direction to a light.
+    /// Colours are multiplied by the cosine of the angle between the surface normal and a light's
+    /// direction. The vector is this direction.
     To(DVec3),
 }
 
@@ -152,7 +156,7 @@ pub struct Behaviour {
     pub board_normal: usize,
     /// How the colour of a surface is shaded.
     pub shading: Shading,
-    /// Index of the one object with which rays are intersected wrongly, and the fault.
+    /// The one object with which rays are intersected wrongly: its index, and the fault.
     pub hit: Option<(usize, HitFault)>,
 }
 
@@ -182,7 +186,8 @@ impl Behaviour {
         self == Self::default()
     }
 
-    /// Returns whether no object is seen in a place where a correct program does not show it.
+    /// Returns whether each object is seen only inside the outline that it has in a correct
+    /// picture. Which of several objects is visible, and in which colour, may still be wrong.
     pub fn is_in_place(self) -> bool {
         !self.is_shifted()
             && self.pixel == 1.0

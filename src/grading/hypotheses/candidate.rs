@@ -12,7 +12,7 @@ use super::{
 use crate::scene::{FieldOwner as Part, Scene};
 
 /// One mistake of a program.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Mistake {
     /// A row of the table of mistakes. If the row is about a single object, the index of the object
     /// comes with it.
@@ -36,14 +36,20 @@ pub struct MistakeRow {
     pub id: &'static str,
     /// Where in the picture the mistake is visible.
     pub shows: Shows,
-    /// Message that says what is wrong. In a row about a single object, it lacks the object's name,
-    /// which is put before it.
+    /// Message that says what is wrong. In a row about a single object, the message lacks the
+    /// object's name, which is put before it.
     pub message: &'static str,
     /// Advice on how to correct the mistake.
     pub help: &'static str,
     /// Function that applies the mistake to a hypothesis. Its second argument is the object's
     /// index, which is unused unless the row is about an object.
     pub change: fn(&mut Candidate, usize),
+}
+
+impl PartialEq for MistakeRow {
+    fn eq(&self, other: &Self) -> bool {
+        (self.id, self.message) == (other.id, other.message)
+    }
 }
 
 /// Where in a picture a mistake is visible.
@@ -53,8 +59,8 @@ pub enum Shows {
     InAreas,
     /// Only at edges, where colours meet.
     AtEdges,
-    /// Inside areas and at edges, but weakly. Such a mistake is tested on single pixels, with the
-    /// mistakes at edges, if areas of one colour are wrong.
+    /// Inside areas and at edges, but weakly. Such a mistake is tested on single pixels, and only
+    /// if areas of one colour are wrong.
     Everywhere,
 }
 
@@ -62,15 +68,9 @@ impl Mistake {
     /// Returns whether two mistakes are the same except for their numbers.
     pub fn is_same_kind(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Row(row, object), Self::Row(other, of)) => {
-                row.message == other.message && object == of
-            }
             (Self::Numbers(one, _), Self::Numbers(other, _)) => one == other,
-            (Self::ColorsExchanged(one, two), Self::ColorsExchanged(first, second)) => {
-                [one, two] == [first, second]
-            }
             (Self::Patch(..), Self::Patch(..)) | (Self::Filter(_), Self::Filter(_)) => true,
-            _ => false,
+            _ => self == other,
         }
     }
 
@@ -104,7 +104,8 @@ pub struct Candidate {
     pub curve: Curve,
     /// How the program arranges pixels in the picture.
     pub layout: Layout,
-    /// What the program does to the picture's light afterwards, in this order.
+    /// Changes that the program makes to the light of the traced picture, in the order in which it
+    /// makes them.
     pub effects: Vec<Effect>,
     /// Mistakes that turn a correct program into this one.
     pub mistakes: Vec<Mistake>,
@@ -141,8 +142,8 @@ impl Candidate {
         }
     }
 
-    /// Adds a mistake. Returns `None` if it is impossible in the scene, or if it is a row of the
-    /// table or an exchange of colours that changes nothing.
+    /// Adds a mistake. Returns `None` if it is impossible in the scene. Also returns `None` if a
+    /// row of the table, or an exchange of colours, changes nothing.
     pub fn with(&self, mistake: Mistake) -> Option<Self> {
         let mut candidate = self.clone();
         match &mistake {
@@ -186,7 +187,8 @@ impl Candidate {
         Some(candidate)
     }
 
-    /// Iterates over the mistakes that consist in wrong numbers: the field, and its numbers.
+    /// Iterates over the mistakes of the kind [`Mistake::Numbers`]. Each item is a field of the
+    /// scene and its wrong numbers.
     pub fn numeric(&self) -> impl Iterator<Item = (&Parameter, &[f64])> {
         self.mistakes.iter().filter_map(|mistake| match mistake {
             Mistake::Numbers(parameter, numbers) => Some((parameter, &numbers[..])),
@@ -208,8 +210,8 @@ impl Candidate {
         self.numeric().flat_map(steps).collect()
     }
 
-    /// Replaces the wrong numbers of all mistakes, in the order of [`Self::numbers`]. Returns
-    /// `None` if the new ones are impossible.
+    /// Replaces the wrong numbers of all mistakes by `numbers`, which are in the order of
+    /// [`Self::numbers`]. Returns `None` if the scene cannot have them.
     pub fn with_numbers(&self, scene: &Scene, mut numbers: &[f64]) -> Option<Self> {
         let mut mistakes = self.mistakes.clone();
         for mistake in &mut mistakes {
@@ -247,8 +249,8 @@ impl Candidate {
         self.behaviour.is_correct() && !self.is_filtered()
     }
 
-    /// Returns whether both hypotheses have the same mistakes except for numbers, or are the same
-    /// program without effects on light.
+    /// Returns whether both hypotheses have the same mistakes, apart from the numbers of these.
+    /// Also returns `true` if both programs are equal and make no change to the picture's light.
     pub fn is_same_kind(&self, other: &Self) -> bool {
         if self.effects.is_empty() && other.effects.is_empty() && self.shows_as(other) {
             return true;
@@ -258,7 +260,7 @@ impl Candidate {
         self.mistakes.len() == other.mistakes.len() && own.all(has)
     }
 
-    /// Returns whether both hypotheses are the same program apart from effects on light.
+    /// Returns whether both programs are equal, apart from their `effects` on the picture's light.
     pub fn shows_as(&self, other: &Self) -> bool {
         self.traces_as(other)
             && self.behaviour == other.behaviour
@@ -267,7 +269,7 @@ impl Candidate {
     }
 
     /// Returns whether both hypotheses render the same scene and decode colours in the same way.
-    /// They may differ in how they trace rays, and in everything that follows.
+    /// They may differ in how they trace rays, arrange pixels and encode light.
     pub fn traces_as(&self, other: &Self) -> bool {
         let (one, two) = (&self.scene, &other.scene);
         one.camera == two.camera

@@ -33,11 +33,21 @@ pub fn map_channels(c: &mut Candidate, curve: fn(f64) -> f64) {
     }
 }
 
-/// Multiplies each channel by a factor that is fitted to the picture. The first function is applied
-/// before it, the second after it. Does nothing if there is another effect on light already.
+/// Lets the program multiply each channel by a factor, which is fitted to the picture. The first of
+/// `functions` is applied before the multiplication, the second after it. Does nothing if the
+/// program has another effect on light already.
 pub fn multiply(c: &mut Candidate, functions: [fn(f64) -> f64; 2]) {
     if c.effects.is_empty() {
         c.effects.push(Effect::Gain(functions));
+    }
+}
+
+/// Reverses the normal of a triangle, if the scene describes the triangle by its normal.
+pub fn reverse_normal(c: &mut Candidate, object: usize) {
+    if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object)
+        && let TriangleOutline::Centered(centered) = &mut triangle.outline
+    {
+        centered.normal = -centered.normal;
     }
 }
 
@@ -155,8 +165,8 @@ pub fn exchange_sides(c: &mut Candidate) {
     }
 }
 
-/// Multiplies the distance of the view plane from the eye. If the scene gives a field of view, its
-/// angle is changed accordingly.
+/// Multiplies the distance of the view plane from the eye by `by`. If the scene gives a field of
+/// view instead of the distance, the angle is changed to the same effect.
 pub fn lengthen(c: &mut Candidate, by: f64) {
     match &mut c.scene.camera.lens {
         Lens::Distance(d) => *d *= by,
@@ -164,14 +174,14 @@ pub fn lengthen(c: &mut Candidate, by: f64) {
     }
 }
 
-/// Returns an angle whose half has a tangent `by` times that of half of `angle`.
+/// Returns the angle β with tan(β/2) = `by` · tan(α/2), where α is `angle`.
 fn widened(angle: Angle, by: f64) -> Angle {
     let half = libm::atan(by * libm::tan(angle.in_radians() / 2.0));
     Angle::from_degrees((2.0 * half).to_degrees())
 }
 
-/// Multiplies the distance of the view plane from the eye by a factor, or divides the angle of the
-/// field of view by it.
+/// Multiplies the distance of the view plane from the eye by `by`. If the scene gives a field of
+/// view instead, divides its angle by `by`, unless the result would be 180° or more.
 pub fn zoom(c: &mut Candidate, by: f64) {
     let is_less = |angle: Angle| angle.in_radians() < std::f64::consts::PI;
     match &mut c.scene.camera.lens {
@@ -192,8 +202,8 @@ pub fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
     }
 }
 
-/// Moves a triangle so that the result of `point`, which is computed from its vertices, lies where
-/// its centroid should.
+/// Moves a triangle as a program does that takes another point for its centroid. `point` computes
+/// this other point from the vertices. The other point then lies where the centroid should.
 pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) {
     if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object) {
         let point = point(vertices(&triangle.outline));

@@ -12,8 +12,8 @@ pub struct Layout {
     pub is_upside_down: bool,
     /// Whether rows and columns are exchanged, after mirroring. Set only in a square picture.
     pub is_transposed: bool,
-    /// Number of pixels by which each row starts too late in the sequence of all pixels, relative
-    /// to the row above it. This is applied last.
+    /// Number of pixels by which each row starts too late, relative to the row above it, if all
+    /// rows are written one after another. The shift is applied after mirroring and transposition.
     pub stride: i32,
 }
 

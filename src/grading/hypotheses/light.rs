@@ -67,8 +67,7 @@ impl Curve {
         }
     }
 
-    /// Returns the difference in light between neighbouring 8-bit values near some light, if the
-    /// curve encodes it.
+    /// Returns how much light an 8-bit step is worth near `light`, if the curve encodes it.
     pub fn step(self, light: f64) -> f64 {
         let at = (light.clamp(0.0, 1.0) * LIGHTS as f64).round() as usize;
         self.table()[at][0]
@@ -96,8 +95,8 @@ impl Curve {
     }
 }
 
-/// Number of intervals in a table of a function of light. With 4096, tests show that interpolation
-/// is accurate to a thousandth of white, and that sRGB is accurate to a hundredth of an 8-bit step.
+/// Number of intervals in a table of a function of light. With 4096 intervals, tests show that all
+/// curves are accurate to a thousandth of white, and sRGB to a hundredth of an 8-bit step.
 const LIGHTS: usize = 4096;
 
 /// Interpolates a function of light from 0 to 1. `value` returns entry i of its table, the value at
@@ -111,8 +110,8 @@ fn interpolated(light: f64, value: impl Fn(usize) -> f64) -> f64 {
 
 /// Encodes light from 0 to 1 as sRGB from 0 to 1, accurate to a hundredth of an 8-bit step.
 pub fn encoded_quickly(light: f64) -> f64 {
-    // A viewer undoes one of two encodings, so what is seen of light that was encoded twice is its
-    // sRGB encoding.
+    // If light is encoded twice, a viewer undoes only one of the two encodings. So the viewer sees
+    // the light's sRGB encoding.
     Curve::Twice.seen_quickly(light)
 }
 
@@ -137,13 +136,16 @@ impl Tabulated {
     }
 }
 
+/// Index that stands for no colour channel, where 0, 1 and 2 stand for red, green and blue.
+pub const NONE: usize = 3;
+
 /// An effect of a program on the light of its picture.
 #[derive(Clone, Copy, Debug)]
 pub enum Effect {
     /// The colour channels are in another order. The numbers are the channels that appear as red,
-    /// green and blue.
+    /// green and blue; [`NONE`] appears as 0.
     Channels([usize; 3]),
-    /// Each channel shows the mean of all channels with these weights.
+    /// Each channel shows the weighted mean of all channels, with these weights.
     Gray([f64; 3]),
     /// A function is applied to each channel.
     PerChannel(fn(f64) -> f64),
@@ -179,7 +181,8 @@ mod tests {
     #[test]
     fn interpolated_light_is_near_the_function() {
         for curve in Curve::ALL {
-            // The ends of the table's intervals, and 15 points inside each of them.
+            // The tested lights are the ends of the table's intervals, and 15 points inside each
+            // interval.
             for light in (0..=16 * LIGHTS).map(|at| at as f64 / (16 * LIGHTS) as f64) {
                 let off = (curve.seen_quickly(light) - curve.seen(light)).abs();
                 assert!(off < 1e-3, "{curve:?} of {light}: {off}");

@@ -13,11 +13,11 @@ use super::{
     },
     changes::{
         anchor, distance, exchange_colors, exchange_faces, exchange_sides, gray_of_encoded,
-        has_board, is_square, lengthen, look_back, map_channels, multiply, set_aspect,
-        set_averaging, set_encoding, set_hit_fault, set_order, set_seen_surface, set_sphere_fault,
-        set_square_rule, shapes, shift, sides, stretch, zoom,
+        has_board, is_square, lengthen, look_back, map_channels, multiply, reverse_normal,
+        set_aspect, set_averaging, set_encoding, set_hit_fault, set_order, set_seen_surface,
+        set_sphere_fault, set_square_rule, shapes, shift, sides, stretch, zoom,
     },
-    light::{Curve, Effect},
+    light::{Curve, Effect, NONE},
 };
 use crate::{
     color::{linear_to_srgb, srgb_to_linear},
@@ -33,6 +33,7 @@ const AHEAD: &str = "a hit counts only if t > 0";
 const CLIPPED: &str = "a hit counts only if near < depth < far";
 const SQUARES: &str = "a square has the first colour where floor(x/square) + floor(z/square) is even; floor(−0.5) is −1, and −1 % 2 may be −1";
 const WINDOW: &str = "the window is view_height tall, and its width is view_height · width/height";
+const PERSPECTIVE: &str = "all rays leave from the eye, along x u + y v − d w";
 const HALVES: &str = "the window is view_height tall: from −view_height/2 to view_height/2";
 const STRIDE: &str = "a row of a picture has width pixels: a pixel's index is row · width + column, wherever it is read or written";
 const MIDDLE: &str = "the middle of the pixel in column x and row y is at (x + 1/2, y + 1/2)";
@@ -64,12 +65,14 @@ const fn row(
     }
 }
 
-/// Writes a row of the table of mistakes for one of several similar mistakes, whose rows differ
-/// only in a part of the message and in a number or function.
+/// Writes a row of the table of mistakes for one of several similar mistakes. The first word says
+/// which kind it is. Mistakes of a kind differ only in a part of the message, and in a number or a
+/// function.
 #[rustfmt::skip]
 macro_rules! family {
     (window $window:literal, $aspect:expr) => { row("aspect", InAreas, concat!("the picture is stretched: its window is ", $window, ", though the picture is not"), WINDOW, |c, _| set_aspect(c, $aspect)) };
     (channels $order:literal, $channels:expr) => { row("channels", InAreas, concat!("the colour channels are in the order ", $order), ORDER, |c, _| c.effects.push(Effect::Channels($channels))) };
+    (without $channel:literal, $channels:expr) => { row("channels", InAreas, concat!("the ", $channel, " channel is 0 everywhere"), CHANNELS, |c, _| c.effects.push(Effect::Channels($channels))) };
     (brighter $light:literal, $factor:expr) => { row("not_divided", InAreas, concat!("the light is ", $light), DIVIDE, |c, _| map_channels(c, |light| ($factor * light).min(1.0))) };
     (finite $reach:literal) => { row("board_finite", InAreas, concat!("the checkerboard ends at ±", $reach, " along x and z"), "a checkerboard is a whole plane: a ray hits it at t = (y − e_y)/d_y, wherever that is", |c, _| if has_board(c) && c.behaviour.board_reach.is_infinite() { c.behaviour.board_reach = f64::from($reach) }) };
     (shaded $light:literal, $shading:expr) => { row("shaded", InAreas, concat!("colours are shaded by the cosine of their surface's angle with ", $light), "an object has its own colour wherever it is seen: multiply it by nothing", |c, _| if c.behaviour.shading == Shading::None { c.behaviour.shading = $shading }) };
@@ -116,12 +119,21 @@ pub const ROWS: &[MistakeRow] = &[
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far up and left", MIDDLE, |c, _| shift(c, [-0.25, -0.25])),
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far down and right", MIDDLE, |c, _| shift(c, [0.25, 0.25])),
     row("half_pixel", AtEdges, "pixels are spread over the window as if it had one less in a row and in a column: (i + r)/(width − 1)", MIDDLE, |c, _| c.behaviour.spread = sides(c).map(|side| if side > 1.0 { side / (side - 1.0) } else { 1.0 })),
+    row("half_pixel", AtEdges, "the first and the last pixel of a row or column look through the window's border, not half a pixel within it: i/(width − 1)", MIDDLE, |c, _| {
+        c.behaviour.spread = sides(c).map(|side| if side > 1.0 { side / (side - 1.0) } else { 1.0 });
+        let spread = c.behaviour.spread;
+        shift(c, spread.map(|spread| -0.5 * spread))
+    }),
+    row("half_pixel", AtEdges, "samples lie only in the upper left quarter of each pixel", MIDDLE, |c, _| { shift(c, [-0.25, -0.25]); c.behaviour.pixel = 0.5 }),
     row("window_one_less", AtEdges, "the window is divided by one less than it has rows, so pixels are too large: s = view_height/(height − 1)", MIDDLE, |c, _| { let height = sides(c)[1]; if height > 1.0 { lengthen(c, (height - 1.0) / height) } }),
     family!(channels "blue, green, red", [2, 1, 0]),
     family!(channels "red, blue, green", [0, 2, 1]),
     family!(channels "green, red, blue", [1, 0, 2]),
     family!(channels "green, blue, red", [1, 2, 0]),
     family!(channels "blue, red, green", [2, 0, 1]),
+    family!(without "red", [NONE, 1, 2]),
+    family!(without "green", [0, NONE, 2]),
+    family!(without "blue", [0, 1, NONE]),
     row("gray", InAreas, "the picture is gray: its channels have their luminance", CHANNELS, |c, _| c.effects.push(Effect::Gray([0.2126, 0.7152, 0.0722]))),
     row("gray", InAreas, "the picture is gray: its channels have their mean", CHANNELS, |c, _| c.effects.push(Effect::Gray([1.0 / 3.0; 3]))),
     row("gray", InAreas, "the picture is gray: its channels have the mean of their encoded values", CHANNELS, |c, _| gray_of_encoded(c, [1.0 / 3.0; 3])),
@@ -184,7 +196,8 @@ pub const ROWS: &[MistakeRow] = &[
     row("board_swapped", InAreas, "the checkerboard's colours are exchanged, or it is turned by a quarter or moved by a square", SQUARES, |c, _| exchange_colors(c)),
     row("roll_sign", InAreas, "the roll has the wrong sign", "u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v: a positive roll dips the right side", |c, _| c.scene.camera.roll = -c.scene.camera.roll),
     row("roll_ignored", InAreas, "the roll is ignored", "turn u and v by the roll about the view direction", |c, _| c.scene.camera.roll = Angle::default()),
-    // The angle is converted back to degrees, the unit of angles in a scene.
+    // A roll of 2 degrees becomes 2 radians. They are converted to degrees, the unit of angles in a
+    // scene.
     row("roll_unit", InAreas, "the roll's degrees are taken for radians", "sin and cos take radians: 180 degrees are π", |c, _| c.scene.camera.roll = Angle::from_degrees(c.scene.camera.roll.degrees.to_degrees() % 360.0)),
     row("roll_new_u", InAreas, "the roll is done with the new u in the place of the old one, so the picture is skewed", "keep u before it is changed: v' = sin ψ u + cos ψ v has the old u, and your v is built from the new one", |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::NewRight }),
     row("roll_u_alone", InAreas, "u alone is turned by the roll, v is not, so the picture is skewed", "a roll turns both: u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v", |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::RightAlone }),
@@ -197,8 +210,9 @@ pub const ROWS: &[MistakeRow] = &[
             let length = camera.up.normalize_or_zero().cross(ahead.normalize_or_zero()).length();
             if length > 0.0 { lengthen(c, 1.0 / length) }
         }),
-    row("parallel_rays", InAreas, "the rays are parallel: they leave from the window along −w", "all rays leave from the eye, along x u + y v − d w", |c, _| c.behaviour.rays = Rays::Parallel(distance(c))),
-    row("fisheye", InAreas, "the picture is that of a fish eye: the angle of a ray grows as the distance from the middle does", "rays leave from the eye, along x u + y v − d w", |c, _| c.behaviour.rays = Rays::Fisheye),
+    row("parallel_rays", InAreas, "the rays are parallel: they leave from the window along −w", PERSPECTIVE, |c, _| c.behaviour.rays = Rays::Parallel(distance(c))),
+    row("parallel_rays", InAreas, "the rays are parallel: they leave along −w from a window as large as what the camera sees at the point that it looks at", PERSPECTIVE, |c, _| if let View::Lookat(point) = c.scene.camera.view { c.behaviour.rays = Rays::Parallel(point.distance(c.scene.camera.eye)) }),
+    row("fisheye", InAreas, "the picture is that of a fish eye: the angle of a ray grows as the distance from the middle does", PERSPECTIVE, |c, _| c.behaviour.rays = Rays::Fisheye),
     row("sphere_unit_rays", InAreas, "spheres are hit by −b ± √(b² − c), which is for rays of length 1, and rays are not: their direction is not divided by its length", "a t² + b t + c = 0 has the roots (−b ± √(b² − 4 a c))/(2 a), a being the square of the ray's length", |c, _| set_sphere_fault(c, Spheres::UnitRays(distance(c)))),
     row("sphere_near_root", InAreas, "of a sphere's two roots only the lesser is tried: where the near plane or the eye is within it, nothing of it is seen", "if the lesser root does not count, the greater may", |c, _| set_sphere_fault(c, Spheres::LesserRoot)),
     row("sphere_far_root", InAreas, "of a sphere's two roots the greater is taken, so what is inside of it or cuts through it hides it", "of the roots that count, the lesser is the nearer", |c, _| set_sphere_fault(c, Spheres::GreaterRoot)),
@@ -248,6 +262,7 @@ pub const OBJECT_ROWS: &[MistakeRow] = &[
     family!(faces "y and z", [0, 2, 1]),
     row("triangle_anchor", InAreas, "is placed by its first vertex: its centroid is taken for that", CENTROID, |c, object| anchor(c, object, |[left, ..]| left)),
     row("triangle_anchor", InAreas, "is placed by the middle of its base: its centroid is taken for that", CENTROID, |c, object| anchor(c, object, |[left, right, _]| left.midpoint(right))),
+    row("normal", InAreas, "has its normal reversed", "its corners lie counter-clockwise as seen from the tip of its normal: seen from the other side, it is mirrored", |c, object| reverse_normal(c, object)),
     row("triangle_parallelogram", InAreas, "is a parallelogram: that its two coordinates add to no more than 1 is not asked", EDGES, |c, object| set_hit_fault(c, object, HitFault::Parallelogram)),
     row("triangle_edge", InAreas, "has no edge against its second vertex", EDGES, |c, object| set_hit_fault(c, object, HitFault::WithoutEdge(0))),
     row("triangle_edge", InAreas, "has no edge against its third vertex", EDGES, |c, object| set_hit_fault(c, object, HitFault::WithoutEdge(1))),

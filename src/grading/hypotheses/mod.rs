@@ -1,10 +1,10 @@
 //! Hypotheses about the program that made a picture.
 //!
-//! In: a scene. Out: a `candidate`, which is a hypothesis about the program, described by its
-//! mistakes. A mistake is a row of the table in `mistakes`, applied by a function of `changes`; or
-//! wrong numbers of the scene (`parameters`), an extra patch, exchanged colours, or a wrong pixel
-//! width. Mistakes change the scene that is rendered, the `behaviour` of the ray tracer, the
-//! `layout` of the pixels, or their `light`.
+//! In: a scene. Out: a `candidate`, i.e. a hypothesis about the program, described by its mistakes.
+//! There are five kinds of mistakes: rows of the table in `mistakes`, which functions of `changes`
+//! apply; wrong numbers of the scene (`parameters`); an extra patch; exchanged colours; and a wrong
+//! pixel width. A mistake changes one of four things: the scene that is rendered, the `behaviour`
+//! of the ray tracer, the `layout` of the pixels, or their `light`.
 
 mod behaviour;
 mod candidate;

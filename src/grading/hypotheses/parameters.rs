@@ -27,10 +27,11 @@ pub enum Owner {
     Object(usize),
 }
 
-/// A field of a scene whose numbers may be wrong; or the camera's `eye` and `lookat` together.
+/// A field of a scene whose numbers may be wrong, or two fields that are changed together, such as
+/// the camera's `eye` and `lookat`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parameter {
-    /// What the fields belong to.
+    /// Image, camera or object to which the fields belong.
     pub owner: Owner,
     /// Names of the fields.
     pub fields: Vec<&'static str>,
@@ -131,7 +132,7 @@ impl Owner {
         }
     }
 
-    /// Returns the indices of the objects after this one that the same block describes.
+    /// Returns the indices of the later objects that the same block of the file describes.
     fn others(self, scene: &Scene) -> Range<usize> {
         let Self::Object(index) = self else {
             return 0..0;
@@ -302,8 +303,8 @@ impl Parameter {
             .collect()
     }
 
-    /// Returns for each number the change that moves the picture by about `pixels` pixels. For a
-    /// channel of a colour it is 8 of 255.
+    /// Returns for each number the change that moves the picture by about `pixels` pixels. Colours
+    /// move nothing; for their channels, the change is 8 of 255.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
         let projection = Projection::quick(&scene.camera, &scene.image);
         // Width of a pixel at the distance of a point, in metres.
@@ -315,7 +316,7 @@ impl Parameter {
             Owner::Object(index) => pixel_of(&scene.objects[index]).unwrap_or(0.0),
             _ => match scene.camera.view {
                 View::Lookat(point) => pixel_at(point),
-                // Pixels are measured at the nearest object.
+                // Without a point to look at, the width of a pixel is taken at the nearest object.
                 View::Direction(_) => {
                     let pixels = scene.objects.iter().filter_map(pixel_of);
                     pixels.reduce(f64::min).unwrap_or(projection.pitch)

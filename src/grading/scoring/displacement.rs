@@ -1,4 +1,4 @@
-//! Tests whether edges of a picture are displaced against a prediction, or whether its pixels have
+//! Tests whether the edges of a picture lie elsewhere than predicted, or whether its pixels have
 //! another width.
 //!
 //! To first order, a displaced picture differs from the original by its gradient times the
@@ -15,13 +15,14 @@ use super::{linear_system::solve, prediction::Prediction};
 /// deviations. A χ² variable with six degrees of freedom exceeds 50 with a probability below 10⁻⁸.
 const CHANCE: f64 = 50.0;
 
-/// Displacement that one sample per pixel may seem to cause, in pixels. With n samples it is an nth
-/// of this. Samples at the same places in all pixels may lie off the pixels' middles together;
-/// those of a Hammersley set do by 1/(2n). The value is greater than 1/2 because n is estimated
-/// from the noise, and the estimate is too large for such samples.
+/// Displacement of edges that a single sample per pixel may seem to cause, in pixels. For n samples
+/// per pixel, it is divided by n. If the samples have the same places in all pixels, their mean may
+/// lie off the pixel's middle; for a Hammersley set it does by 1/(2n). The value is greater than
+/// 1/2 because n is estimated from noise, and the estimate is too large for such samples.
 const OFF_MIDDLE: f64 = 0.75;
-/// Maximum displacement that is attributed to few samples per pixel, in pixels. A larger one counts
-/// as a mistake, however few the samples are. The value is a choice.
+/// Maximum displacement that is attributed to few samples per pixel, in pixels. A larger
+/// displacement counts as a mistake, however few the samples are. With a larger limit, mistakes in
+/// pictures with few samples would be overlooked.
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
 /// Number of coefficients of an affine displacement: a constant and the slopes in x and y, for each
@@ -33,18 +34,20 @@ const TERMS: usize = 6;
 const SURE: f64 = 8.0;
 
 /// Greatest squared width of a pixel, in squared pixels, that counts as correct in a picture
-/// without noise. The correct value is 1; the margin is a choice.
+/// without noise. The correct value is 1. With a smaller margin, errors of the estimate would be
+/// reported; with a larger one, slight blurs would be overlooked.
 const WIDE: f64 = 1.4;
 /// Addition to the greatest squared pixel width that counts as correct ([`WIDE`]), for one sample
-/// per pixel, in squared pixels. For n samples per pixel, an nth of it is added. Few samples at the
-/// same places in all pixels make a correct picture less sharp. The value is a choice.
+/// per pixel, in squared pixels. For n samples per pixel, an nth of it is added. It is needed
+/// because few samples at the same places in all pixels make a correct picture less sharp.
 const WIDER: f64 = 3.0;
-/// Difference from 1 by which a squared pixel width may be too small and still count as correct in
-/// a picture without noise, in squared pixels. The value is a choice.
+/// Greatest amount by which a squared pixel width may lie below 1, the correct value, without being
+/// reported, in squared pixels. It holds for a picture without noise. With a larger value, pixels
+/// that are slightly too narrow would be overlooked.
 const NARROW: f64 = 0.25;
-/// Addition to the amount by which a squared pixel width may be too small ([`NARROW`]), for one
-/// sample per pixel, in squared pixels. For n samples per pixel, an nth of it is added. Few samples
-/// make a correct picture sharper. The value is a choice.
+/// Addition to the amount by which a squared pixel width may lie below 1 ([`NARROW`]), for one
+/// sample per pixel, in squared pixels. For n samples per pixel, an nth of it is added. It is
+/// needed because few samples make a correct picture sharper.
 const NARROWER: f64 = 5.0;
 
 /// Greatest squared width of a pixel, in squared pixels, that counts as correct in a JPEG, whose
@@ -55,8 +58,8 @@ const WIDE_IN_CODED: f64 = 5.5;
 /// Least pixel width that is reported, in pixels. A smaller estimate, which may be 0, is raised to
 /// it.
 const LEAST_WIDTH: f64 = 0.1;
-/// Greatest pixel width that is reported, in pixels. A larger estimate is lowered to it. The value
-/// is a choice.
+/// Greatest pixel width that is reported, in pixels. A larger estimate is lowered to it, because
+/// the estimate is only of second order and therefore inexact for wide pixels.
 const MOST_WIDTH: f64 = 6.0;
 
 /// A displacement of edges that is too large to be chance.
@@ -64,43 +67,66 @@ const MOST_WIDTH: f64 = 6.0;
 pub struct Displacement {
     /// Root mean square of the displacement perpendicular to the edges, in pixels.
     pub length: f64,
-    /// Displacement in the middle of the group of pixels, in pixels to the right and down.
+    /// Displacement in the middle of the pixels to which it was fitted, to the right and down, in
+    /// pixels.
     pub by: [f64; 2],
     /// Squared length of the fitted displacement, in squared standard deviations.
     pub square: f64,
 }
 
+/// A symmetric matrix; only the entries on the diagonal and to the left of it are used.
+type Symmetric = [[f64; TERMS]; TERMS];
+
 /// Normal equations of the least-squares fit of a displacement to a group of pixels.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct NormalEquations {
-    normal: Vec<Vec<f64>>,
-    variance: Vec<Vec<f64>>,
-    right_side: Vec<f64>,
+    normal: Symmetric,
+    variance: Symmetric,
+    right_side: [f64; TERMS],
 }
 
 impl NormalEquations {
-    /// Solves for the displacement. `off_middle` is subtracted: the displacement, in pixels, that
-    /// few samples may cause. Returns `None` if the displacement may be chance.
-    fn displacement(&self, off_middle: f64) -> Option<Displacement> {
+    /// Adds the equation of one channel of a pixel. `row` has the factors of the six unknown
+    /// coefficients. The sum of the products should be `difference`, whose variance is `variance`.
+    fn add(&mut self, row: &[f64; TERMS], difference: f64, weight: f64, variance: f64) {
+        for (j, one) in row.iter().enumerate() {
+            let weighted = weight * one;
+            self.right_side[j] += weighted * difference;
+            for (k, other) in row[..=j].iter().enumerate() {
+                let product = weighted * other;
+                self.normal[j][k] += product;
+                self.variance[j][k] += weight * variance * product;
+            }
+        }
+    }
+
+    /// Solves for the displacement, and reduces it by up to `off_middle` pixels in each direction,
+    /// which few samples may cause. `noise` is the ratio of the errors' real variance to the
+    /// assumed one. Returns `None` if the displacement may be chance.
+    fn displacement(&self, off_middle: f64, noise: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let full = |matrix: &Symmetric| -> Vec<Vec<f64>> {
+            let row = |i: usize| (0..TERMS).map(move |j| matrix[i.max(j)][i.min(j)]);
+            (0..TERMS).map(|i| row(i).collect()).collect()
+        };
         // Adds a small diagonal, so that a coefficient that no edge determines becomes 0.
-        let solved = |matrix: &[Vec<f64>]| {
-            let mut matrix = matrix.to_vec();
+        let solved = |mut matrix: Vec<Vec<f64>>| {
             let most = (0..TERMS).map(|i| matrix[i][i]).fold(0.0, f64::max);
             (0..TERMS).for_each(|i| matrix[i][i] += 1e-3 * most + 1e-30);
-            solve(matrix, self.right_side.clone())
+            solve(matrix, self.right_side.to_vec())
         };
-        let square = dot(&self.right_side, &solved(&self.variance)?);
-        let mut fitted = solved(&self.normal)?;
+        let square = dot(&self.right_side, &solved(full(&self.variance))?);
+        let normal = full(&self.normal);
+        let mut fitted = solved(normal.clone())?;
         let by = [fitted[0], fitted[3]];
         for at in [0, 3] {
             fitted[at] -= fitted[at].clamp(-off_middle, off_middle);
         }
-        let product = fitted.iter().zip(&self.normal);
+        let product = fitted.iter().zip(&normal);
         let product: f64 = product.map(|(x, row)| x * dot(&fitted, row)).sum();
         // Only the part of a displacement along the gradient is visible.
-        let length = (product / (self.normal[0][0] + self.normal[3][3])).sqrt();
-        (square > CHANCE).then_some(Displacement { length, by, square })
+        let length = (product / (normal[0][0] + normal[3][3])).sqrt();
+        (square > CHANCE * noise).then_some(Displacement { length, by, square })
     }
 }
 
@@ -110,13 +136,14 @@ impl Prediction<'_> {
     /// another cause.
     pub fn is_noise_everywhere(&self) -> bool {
         /// Greatest squared error of a pixel that counts as exact, relative to the variance of one
-        /// sample. The value corresponds to 10 000 samples per pixel; it is a choice.
+        /// sample. It is the mean squared error with 10 000 samples per pixel.
         const EXACT: f64 = 1e-4;
         /// Squared error, relative to the variance of one sample, above which a pixel counts as
-        /// wrong if most pixels are exact. The value is a choice.
+        /// wrong if most pixels are exact. It is the mean squared error with two samples per pixel,
+        /// which cannot occur among exact pixels.
         const OTHER: f64 = 0.5;
-        /// Number of wrong pixels among exact ones that is too large to be chance. The value is a
-        /// choice.
+        /// Least number of wrong pixels that cannot be chance if most pixels are exact. With a
+        /// smaller number, a few odd pixels would make a picture wrong.
         const CHANCE: usize = 4;
         /// Variance of one sample in a pixel, in squared linear light, below which the pixel is not
         /// tested. Rounding to bytes would dominate its error.
@@ -131,7 +158,7 @@ impl Prediction<'_> {
         };
         let mut shares: Vec<f64> = (0..self.observed.len()).filter_map(share).collect();
         shares.sort_by(f64::total_cmp);
-        // The picture counts as exact if three quarters of the pixels are.
+        // The picture counts as exact if three quarters of the tested pixels are exact.
         let is_exact = shares
             .get(shares.len() * 3 / 4)
             .is_some_and(|most| *most < EXACT);
@@ -139,8 +166,9 @@ impl Prediction<'_> {
         !is_exact || others.count() < CHANCE
     }
 
-    /// Returns the squared differences in pixels that mix several colours, relative to the variance
-    /// of one sample in each. For n independent samples per pixel this is about 1/n.
+    /// Returns the ratio of two sums over the pixels that mix several colours: the sum of their
+    /// squared differences, and the sum of their variances of one sample. With n independent
+    /// samples per pixel, the ratio is about 1/n. It is at most 1.
     pub fn share(&self) -> f64 {
         let (mut squares, mut variances) = (0.0, 0.0);
         for at in (0..self.observed.len()).filter(|&at| !self.is_flat(at)) {
@@ -191,13 +219,14 @@ impl Prediction<'_> {
     }
 
     /// Returns the displacement of each group of pixels, or `None` if it may be chance. `groups`
-    /// has the group of each pixel. `share` is the variance of a pixel's error relative to that of
-    /// one sample: 1/n for n samples per pixel.
+    /// has the index of each pixel's group. `share` is the variance of a pixel's error relative to
+    /// that of one sample: 1/n for n samples per pixel. `is_coded` says that the picture is a JPEG.
     pub fn displacements(
         &self,
         deviations: &[f64],
         share: f64,
         groups: &[usize],
+        is_coded: bool,
     ) -> Vec<Option<Displacement>> {
         let off_middle = (OFF_MIDDLE * share).min(MOST_OFF_MIDDLE);
         let (width, count) = (self.width, self.observed.len());
@@ -212,46 +241,44 @@ impl Prediction<'_> {
             let ([x, y], own) = (place(at), &mut boxes[*group]);
             *own = [own[0].min(x), own[1].max(x), own[2].min(y), own[3].max(y)];
         }
-        let empty = NormalEquations {
-            normal: vec![vec![0.0; TERMS]; TERMS],
-            variance: vec![vec![0.0; TERMS]; TERMS],
-            right_side: vec![0.0; TERMS],
-        };
-        let mut sums = vec![empty; all];
+        let mut sums = vec![NormalEquations::default(); all];
+        let (mut observed, mut expected) = (0.0, 0.0);
         for (at, group) in groups.iter().enumerate() {
             let (x, y) = (at % width, at / width);
             let is_inside = x > 0 && y > 0 && x + 1 < width && y + 1 < height;
             if !is_inside || self.observed[at].x.is_nan() {
                 continue;
             }
-            let difference = self.difference(at);
-            let error = self.error(at, share);
+            let gradient = |by: usize| (mean[at + by] - mean[at - by]) / 2.0;
+            let [right, down] = [gradient(1), gradient(width)];
+            if right == DVec3::ZERO && down == DVec3::ZERO {
+                continue;
+            }
+            let (difference, error) = (self.difference(at), self.error(at, share));
             let [x0, x1, y0, y1] = boxes[*group];
             let reach = ((x1 - x0).max(y1 - y0) / 2.0).max(1.0);
             let [x, y] = place(at);
             let (x, y) = ((x - (x0 + x1) / 2.0) / reach, (y - (y0 + y1) / 2.0) / reach);
             for i in 0..3 {
-                let right = (mean[at + 1][i] - mean[at - 1][i]) / 2.0;
-                let down = (mean[at + width][i] - mean[at - width][i]) / 2.0;
-                if right == 0.0 && down == 0.0 {
-                    continue;
-                }
+                let (right, down) = (right[i], down[i]);
                 let row = [right, right * x, right * y, down, down * x, down * y];
                 let deviation = deviations[3 * at + i];
                 let weight = 1.0 / (deviation * deviation);
-                let own = &mut sums[*group];
-                for j in 0..TERMS {
-                    own.right_side[j] += weight * row[j] * difference[i];
-                    for k in 0..TERMS {
-                        let product = weight * row[j] * row[k];
-                        own.normal[j][k] += product;
-                        own.variance[j][k] += weight * product * error[i];
-                    }
-                }
+                sums[*group].add(&row, difference[i], weight, error[i]);
+                let weight = weight * (right * right + down * down);
+                observed += weight * difference[i] * difference[i];
+                expected += weight * error[i];
             }
         }
+        // The predicted errors of a JPEG's coding are too large. So they are scaled down, by the
+        // ratio of observed to expected errors in the whole picture.
+        let noise = if is_coded {
+            f64::min(observed / f64::max(expected, 1e-300), 1.0)
+        } else {
+            1.0
+        };
         sums.iter()
-            .map(|sums| sums.displacement(off_middle))
+            .map(|sums| sums.displacement(off_middle, noise))
             .collect()
     }
 }

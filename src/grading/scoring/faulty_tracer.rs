@@ -1,9 +1,9 @@
-//! A ray tracer made of textbook formulas that takes samples. Mistakes in it can be switched on.
+//! A ray tracer that takes samples, made of textbook formulas. Mistakes in it can be switched on.
 //!
 //! In: a scene, the mistakes, a part of its picture, and a number of samples per pixel. Out: the
-//! mean and the variance of one sample in each pixel of the part, estimated from samples at fixed
-//! places. The tracer is fast enough to compare hundreds of faulty programs with a picture in a
-//! second. It does not decide what is correct; the exact picture does.
+//! mean of each pixel in the part, and the variance of one sample in it, both estimated from
+//! samples at fixed places. The tracer is fast enough to compare hundreds of faulty programs with a
+//! picture in a second. It does not decide what is correct; the exact picture does.
 
 use glam::{DVec2, DVec3};
 
@@ -21,13 +21,14 @@ use crate::{
 /// infinity, so any value far beyond the scene works.
 const FAR: f64 = 1e9;
 
-/// Stride between the samples that are tested first, to find out whether a cell has one colour.
-/// Every fourth sample is a choice: more tests take longer, and fewer miss small details.
+/// Stride between the samples that are tested first, to find out whether a cell has one colour. A
+/// smaller stride tests more samples, which takes longer; a larger one misses more small details.
 const EACH: usize = 4;
 
 /// Places near the corners of a cell, in units of its side. A cell counts as having one colour if
-/// these places and every fourth sample (`EACH`) show one colour. An edge that passes between these
-/// places and a corner cuts off only about a thousandth of the cell.
+/// these places and every fourth sample (`EACH`) show one colour. In most directions, an edge that
+/// misses all of them cuts off less than 0.5 % of the cell. An edge parallel to a side may cut off
+/// 4 %.
 const CORNERS: [DVec2; 4] = [
     DVec2::new(0.04, 0.04),
     DVec2::new(0.96, 0.96),
@@ -115,7 +116,8 @@ impl FaultyTracer {
 
     /// Takes samples in each pixel of a part of the picture, and returns their means and variances.
     pub fn moments(&self, part: Area, samples: usize) -> Moments {
-        // Scales the places of samples around the middle of the pixel.
+        // The places of samples are spread around the middle of the pixel as the program spreads
+        // them.
         let of_pixel = |place: DVec2| 0.5 + (place - 0.5) * self.behaviour.pixel;
         let places: Vec<DVec2> = lattice(samples).into_iter().map(of_pixel).collect();
         let corners = CORNERS.map(of_pixel);
@@ -182,7 +184,7 @@ impl FaultyTracer {
         }
         let length = match (self.behaviour.clips_distances, self.behaviour.rays) {
             (true, _) => ray.length(),
-            // Depth per unit of the ray's parameter t. It is 1 for all other rays.
+            // Depth per unit of the ray's parameter t. It is 1 for rays of other kinds.
             (false, Rays::UpAsTop | Rays::Fisheye) => ray.dot(self.projection.ahead),
             (false, _) => 1.0,
         };
@@ -291,8 +293,9 @@ impl FaultyTracer {
         }
     }
 
-    /// Returns the parameter t of the hit that is seen, given the two hits of one object, the
-    /// lesser first.
+    /// Returns the parameter t of the hit that is seen, out of the two hits of one object.
+    /// `crossings` has the parameters of both hits, the lesser first. `length` is the depth or the
+    /// distance per unit of t, whichever is compared with the near and far planes.
     fn first(&self, crossings: [f64; 2], length: f64) -> Option<f64> {
         let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t, length)));
         match counting {

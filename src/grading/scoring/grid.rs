@@ -1,5 +1,5 @@
 //! Divides the compared part of a picture into cells. For the search, which must be fast, a cell
-//! spans several pixels; for the final judgement, it is a single pixel.
+//! spans several pixels; for the final judgement, a cell is a single pixel.
 //!
 //! The cells are the pixels of a smaller picture of the same scene with the same middle, so they
 //! are rendered like any picture.
@@ -30,7 +30,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Covers a part of a picture with a grid. Its longer side has at most `longest` cells.
+    /// Covers a part of a picture with a grid. The part's longer side has at most `longest` cells.
     pub fn new(image: &Image, part: Area, longest: u32) -> Self {
         let of = |factor: u32| {
             let size = [image.width / factor, image.height / factor];
@@ -114,12 +114,12 @@ impl Grid {
         (camera, image)
     }
 
-    /// Averages the pixels of the part over each cell, ignoring NaN. `pixel` returns the pixel in a
-    /// column and row of the part.
+    /// Averages the pixels in each cell, ignoring NaN. `pixel` returns the pixel in a column and
+    /// row of the compared part.
     pub fn reduce(&self, pixel: impl Fn(u32, u32) -> DVec3) -> Vec<DVec3> {
         let factor = f64::from(self.factor);
-        // Iterates over the columns that a cell overlaps, or over the rows, with the length of each
-        // overlap in pixels.
+        // Iterates over the columns, or the rows, of pixels that a cell overlaps. Each comes with
+        // the length of the overlap, in pixels.
         let shares = |cell: u32, margin: f64, corner: f64| {
             let start = margin + f64::from(cell) * factor - corner;
             let end = start + factor;

@@ -88,8 +88,8 @@ pub fn variances(jpeg: &Jpeg, prediction: &Prediction, factor: usize) -> Vec<DVe
             // Truncation has a mean squared error of 1/3, which is four times that of rounding.
             let share = SHARES[i] * SHARES[i];
             let steps = square(&jpeg.luma) + share * square(&jpeg.chroma) + 4.0 * (2.0 + share);
-            // An 8-bit step is worth more light in bright areas. So light is measured several
-            // deviations farther up, and the difference is divided by their number.
+            // An 8-bit step is worth more light in bright areas. So the change of light over five
+            // standard deviations upwards is computed, and divided by five (`DEVIATIONS`).
             let by = DEVIATIONS * STEP * (steps / 12.0).sqrt();
             let own = [mean[at][i], by];
             if known[i].0 != own {

@@ -64,9 +64,9 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns a copy of the level with the sampling error added to the observed light. The error
-    /// is the difference between a sampled and an exact prediction, so it cancels in comparisons
-    /// with other sampled predictions.
+    /// Returns a copy of the level in which the error of sampling is added to the observed light.
+    /// The error is the difference between two predictions for one hypothesis, a sampled and an
+    /// exact one. It cancels in comparisons with other sampled predictions.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.corner, self.samples, self.jpeg);
         level.base = self.base.clone();
@@ -102,7 +102,7 @@ impl<'a> Level<'a> {
         self.base.replace(Some(rendering));
     }
 
-    /// Returns the light of the cells that the picture shows, assuming that the program encoded it
+    /// Returns the light that the picture shows in each cell, assuming that the program encoded it
     /// by `curve`.
     pub fn observed(&self, curve: Curve) -> &[DVec3] {
         self.observed[curve as usize].get_or_init(|| {

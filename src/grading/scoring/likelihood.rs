@@ -15,12 +15,12 @@ use glam::DVec3;
 use super::prediction::{FLAT, Prediction};
 use crate::grading::hypotheses::Curve;
 
-/// Number of degrees of freedom of Student's t distribution, by which errors are modelled. It is
-/// small, so that a few large errors hardly change a fit. The value is a choice.
+/// Number of degrees of freedom of Student's t distribution, by which errors are modelled. With a
+/// larger number, a few large errors would change a fit more.
 const FREEDOM: f64 = 2.0;
 
-/// Number of rounds of fitting 1/n, where n is the number of samples per pixel. Each round more
-/// than halves the remaining error, so 8 rounds leave less than 1/256 of it.
+/// Number of rounds of fitting 1/n, where n is the number of samples per pixel. Each round leaves
+/// less than half of the error of the round before, so 8 rounds leave less than 1/256.
 const ROUNDS: usize = 8;
 
 /// How well a prediction fits a picture.
@@ -28,8 +28,8 @@ const ROUNDS: usize = 8;
 pub struct Score {
     /// Logarithm of the picture's likelihood, up to a constant.
     pub likelihood: f64,
-    /// Number of independent samples per pixel that would cause as much noise; `None` if there is
-    /// no noise.
+    /// Number of independent samples per pixel that would cause as much noise as the picture has;
+    /// `None` if it has no noise.
     pub samples: Option<f64>,
     /// Squared error of each pixel relative to its variance, summed over the channels.
     pub chi_squares: Vec<f64>,
@@ -42,8 +42,8 @@ pub struct Score {
     pub share: f64,
 }
 
-/// Difference between a pixel and its prediction, with two variances: that of one sample, and that
-/// of rounding and of the predicted mean's uncertainty.
+/// Difference between a pixel and its prediction, and two variances. `variance` is that of one
+/// sample. `rounding` is the variance of rounding plus the variance of the predicted mean.
 struct PixelError {
     difference: DVec3,
     variance: DVec3,
@@ -82,8 +82,8 @@ impl PixelError {
     }
 }
 
-/// Returns the variance of a pixel's error that does not come from sampling: that of rounding, and
-/// of the predicted mean's uncertainty.
+/// Returns the variance of a pixel's error that does not come from sampling: the variance of
+/// rounding plus the variance of the predicted mean.
 fn rounding(prediction: &Prediction, at: usize) -> DVec3 {
     let steps = prediction.steps(at);
     steps * steps / 12.0 + prediction.moments.mean_variance[at]
@@ -94,12 +94,15 @@ impl Prediction<'_> {
     pub fn score(&self) -> Score {
         let errors = (0..self.observed.len()).map(|at| PixelError::of(self, at));
         let errors: Vec<PixelError> = errors.collect();
+        // Pixels of one colour have no sampling error, so they say nothing about `share`.
+        let has_several = |one: &&PixelError| one.variance != DVec3::ZERO;
+        let mixed: Vec<&PixelError> = errors.iter().filter(has_several).collect();
         // Variance of errors relative to that of one sample: 1/n for n samples per pixel. At most
         // 1.
         let mut share: f64 = 1.0;
         for _ in 0..ROUNDS {
             let (mut above, mut below) = (0.0, 0.0);
-            for one in &errors {
+            for one in &mixed {
                 let weight = (FREEDOM + 3.0) / (FREEDOM + one.chi_square(share));
                 let total = one.total(share);
                 let part = one.variance / (total * total);
@@ -134,7 +137,7 @@ impl Prediction<'_> {
             let has_several = one.variance.cmpgt(DVec3::ZERO);
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
-        // Noise that is less than that of 100 000 samples cannot be distinguished from rounding.
+        // Noise that is less than that of 100 000 samples per pixel cannot be told from rounding.
         let is_known = beyond > 1e-5 * of_samples;
         Score {
             likelihood,
@@ -152,7 +155,7 @@ impl Prediction<'_> {
     /// variance of both predictions is used. `score` belongs to this prediction.
     pub fn observed_share(&self, score: &Score, other: &Self) -> [f64; 2] {
         let mut deviations = self.deviations();
-        // The variances of light that is encoded by another curve are not comparable.
+        // If the two predictions assume different encodings, their variances are not comparable.
         let is_alike = self.curve == other.curve;
         if is_alike {
             let others = deviations.iter_mut().zip(other.deviations());

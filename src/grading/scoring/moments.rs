@@ -76,8 +76,9 @@ pub fn range(values: &[DVec3], width: usize, at: usize, around: usize) -> [DVec3
     [least, most]
 }
 
-/// Returns a function of a colour: each of its channels, decoded by a curve, and the squares of
-/// these. The means of both over a pixel give the mean and the variance of a sample.
+/// Returns a function that maps a colour to six numbers: its channels, decoded by `decoding`, and
+/// the squares of these. The means of the six numbers over a pixel give the mean and the variance
+/// of a sample.
 pub fn numbers(decoding: Curve) -> impl Fn(Color) -> [f64; 6] {
     move |color| {
         let [r, g, b] = color.to_linear().map(|light| decoding.light(light));

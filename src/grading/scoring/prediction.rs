@@ -21,11 +21,13 @@ pub const FLAT: f64 = 1e-9;
 /// Light of a channel, from 0 to 1, above which the channel counts as full. The program may have
 /// computed more light, which was clipped. Only the two greatest bytes are above 0.99.
 const FULL: f64 = 0.99;
-/// Light of a channel, from 0 to 1, below which it is not used to estimate a factor. Rounding
-/// changes small bytes too much. The value is a choice.
+/// Light of a channel, from 0 to 1, below which the channel is not used to estimate by which factor
+/// light is multiplied. Rounding to bytes changes a light of 0.01 by up to 3 %, and less light by
+/// more.
 const EMPTY: f64 = 0.01;
-/// Relative difference below which two factors count as equal. Rounding to bytes changes the light
-/// of a channel above `EMPTY` by at most about as much.
+/// Relative difference below which two factors between observed and predicted light count as equal.
+/// Where a channel's light exceeds 0.01 (`EMPTY`), rounding it to a byte changes it by at most
+/// about 3 %.
 const ALIKE: f64 = 0.03;
 
 /// Mean change of a value that is truncated to 8 bits, in steps: truncation loses between 0 and 1
@@ -35,7 +37,7 @@ const CUT_OFF: f64 = -0.5;
 /// Predicted and observed light of the cells of a picture.
 #[derive(Clone, Debug)]
 pub struct Prediction<'a> {
-    /// Observed light of the cells, decoded by `curve`; NaN if it is unknown.
+    /// Observed light of the cells, decoded by `curve`; NaN in cells without a pixel to compare.
     pub observed: &'a [DVec3],
     /// Number of cells in a row.
     pub width: usize,
@@ -45,8 +47,8 @@ pub struct Prediction<'a> {
     pub curve: Curve,
     /// Whether the program truncates values to bytes instead of rounding them.
     pub is_cut_off: bool,
-    /// Fitted factor by which the program multiplies light; 1 unless it has the effect
-    /// `Effect::Gain`.
+    /// Fitted factor by which the program multiplies light. It is 1 unless the program has the
+    /// effect `Effect::Gain`.
     pub gain: f64,
     /// Differences between observed and predicted light if bytes are truncated, cached because they
     /// take long to compute.
@@ -182,7 +184,9 @@ impl<'a> Prediction<'a> {
             match *effect {
                 Effect::Channels(order) => {
                     for one in mean.iter_mut().chain(variance.iter_mut()) {
-                        *one = order.map(|i| one[i]).into();
+                        let light = one.to_array();
+                        let at = |i: usize| light.get(i).copied().unwrap_or(0.0);
+                        *one = order.map(at).into();
                     }
                 }
                 Effect::Gray(weights) => {
@@ -272,8 +276,8 @@ impl<'a> Prediction<'a> {
         self.moments.mean[at].map(|light| self.curve.step(light))
     }
 
-    /// Returns the observed light of a cell minus the predicted light. Returns 0 if the observed
-    /// light is unknown.
+    /// Returns the observed light of a cell minus the predicted light. Returns 0 in a cell without
+    /// a pixel to compare.
     pub fn difference(&self, at: usize) -> DVec3 {
         if !self.is_cut_off {
             let seen = self.observed[at];
@@ -290,7 +294,7 @@ impl<'a> Prediction<'a> {
         all[at]
     }
 
-    /// Encodes light as the picture's file does, from 0 to 1.
+    /// Encodes light as the program does. The light and the result are from 0 to 1.
     pub fn encoded(&self, light: f64) -> f64 {
         match self.curve {
             Curve::Correct => encoded_quickly(light),
@@ -335,8 +339,9 @@ impl<'a> Prediction<'a> {
             .collect()
     }
 
-    /// Returns standard deviations of the differences of all cells, channel by channel. They hold
-    /// for one sample per cell and edges that are displaced by up to a cell.
+    /// Returns standard deviations of the differences of all cells, channel by channel. They are
+    /// what one sample per cell may cause. Each is the greatest in the cell's neighbourhood, so
+    /// that it also holds if edges are displaced by a cell.
     pub fn deviations(&self) -> Vec<f64> {
         let cells = 0..self.observed.len();
         let deviations = cells.flat_map(|at| {

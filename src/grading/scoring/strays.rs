@@ -15,8 +15,8 @@ pub const WRONG: f64 = 0.75;
 /// Errors of a picture that no sampling can explain, if a hypothesis about the program is correct.
 #[derive(Debug, Default)]
 pub struct Strays {
-    /// Indices of the pixels that should show one colour and show another one. Their difference is
-    /// greater than an edge could cause that moves by half a pixel.
+    /// Indices of the pixels that should show one colour and show another one. They differ by more
+    /// than an edge explains that is moved by half a pixel.
     pub pixels: Vec<usize>,
     /// Sum of the squared differences of the pixels in `pixels`.
     square: f64,
@@ -25,9 +25,9 @@ pub struct Strays {
 }
 
 impl Strays {
-    /// Returns the squared differences that sampling cannot explain. These are the differences of
-    /// pixels that should show one colour, plus what pixels that mix several colours have beyond
-    /// the variance of one sample each.
+    /// Returns the sum of the squared differences that sampling cannot explain. In pixels that
+    /// should show one colour, the whole difference counts. In pixels that mix several colours,
+    /// only what exceeds the variance of one sample counts.
     pub fn square(&self) -> f64 {
         let beyond = |(_, square, variance): &(usize, f64, f64)| square - variance;
         let beyond: f64 = self.edges.iter().map(beyond).sum();
@@ -60,7 +60,7 @@ impl Strays {
             }
         }
         // Light is at most 1, so the squared error of a pixel, summed over three channels, is at
-        // most 3. So the variance of the squared error is at most three times its expected value.
+        // most 3. Therefore its variance is at most three times its expected value.
         let is_noise = |(squares, expected): (f64, f64)| {
             squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
         };
@@ -103,8 +103,8 @@ impl Prediction<'_> {
         ((most - least) / 2.0).max(variance.map(f64::sqrt))
     }
 
-    /// Returns the difference of a pixel that rounding and the uncertainty of its predicted mean
-    /// can explain, for each channel.
+    /// Returns the greatest difference of a pixel that rounding and the uncertainty of the
+    /// predicted mean can explain, for each channel.
     fn allowed(&self, at: usize) -> DVec3 {
         WRONG * self.steps(at) + DEVIATIONS * self.moments.mean_variance[at].map(f64::sqrt)
     }

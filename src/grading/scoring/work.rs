@@ -56,8 +56,8 @@ pub fn of_exact(units: u64, objects: usize, pixels: usize) -> f64 {
 }
 
 impl<'a> Work<'a> {
-    /// Creates the budget for judging a picture. `effort` multiplies its limit, and `spent` is the
-    /// work that was spent before.
+    /// Creates the budget for judging a picture. `effort` multiplies its limit. `spent` is the work
+    /// that was spent before, on the exact picture.
     pub fn new(pixels: u64, spent: f64, effort: f64, cancel: &'a AtomicBool) -> Self {
         Self {
             spent: Cell::new(spent),
@@ -117,8 +117,8 @@ impl<'a> Work<'a> {
         Some(Moments::exact(pixels?.iter().map(moments)))
     }
 
-    /// Spends the work of sampling a part of a picture. Returns `None` if less work is left, and
-    /// spends what is left.
+    /// Spends the work of sampling a part of a picture. If less work is left, spends what is left
+    /// and returns `None`.
     pub fn pay_for_samples(&self, objects: usize, samples: usize, part: Area) -> Option<()> {
         let (objects, cells) = (objects as f64, part.pixels() as f64);
         let rays = samples as f64 * cells;

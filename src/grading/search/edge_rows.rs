@@ -10,10 +10,9 @@ use std::sync::Arc;
 use super::{
     judge::{CELL_STEP, Judge, least},
     plain_numbers::shortened,
-    residual::Residual,
 };
 use crate::grading::{
-    hypotheses::{Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows},
+    hypotheses::{Behaviour, Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows},
     scoring::Level,
 };
 
@@ -21,60 +20,66 @@ use crate::grading::{
 /// a coarser grid comes before.
 pub const ROUNDS: usize = 4;
 
-/// Maximum error of the observed fraction of a predicted change. A mistake at edges predicts how
-/// the picture changes, and it is named if the observed fraction of this change is 1, except for at
-/// most this error. The value is a choice.
+/// Greatest deviation from 1 of the observed fraction of a predicted change. A mistake at edges
+/// predicts how the picture changes. It is named only if the whole change is observed, i.e. if the
+/// fraction is 1 ± 0.3. With a larger tolerance, mistakes with a similar effect would be confused.
 const SHARE_TOLERANCE: f64 = 0.3;
-/// Minimum significance of the observed fraction of a predicted change, in standard deviations. A
-/// mistake at edges predicts how the picture changes, and it is named if the observed fraction of
-/// this change is at least this far from 0. The value is a choice, at which chance is negligible.
+/// Least observed fraction of a predicted change, in standard deviations of this fraction. A
+/// mistake at edges predicts how the picture changes. It is named only if the observed fraction of
+/// this change is certainly not 0. At seven standard deviations, chance is negligible.
 const SURE: f64 = 7.0;
-/// Maximum fraction of the squared difference from a JPEG that a mistake at edges may leave. If it
-/// leaves more, it is not named. The value is a choice.
+/// Maximum fraction of the squared difference between a JPEG and its prediction that may be left
+/// after a mistake at edges is assumed. If more is left, the mistake is not named. With a larger
+/// value, mistakes would be named that explain only a part of the difference.
 const LEFT_IN_CODED: f64 = 0.25;
 
 /// Identifiers of the mistakes that move samples by a few pixels at most.
 const SHIFT_IDS: [&str; 2] = ["half_pixel", "window_one_less"];
 
-/// Identifier of the only mistake at edges that can be recognised in a JPEG: samples are averaged
-/// after encoding.
+/// Identifier of the only mistake at edges that can be recognised in a JPEG. A program with this
+/// mistake encodes samples before it averages them.
 const CODED_ID: &str = "averaged_encoded";
 
-/// Factors by which the estimated width of pixels that are too wide is multiplied. The most likely
-/// of the results is taken. The values are a choice.
+/// Maximum fraction of the squared difference beyond noise that may be left after another pixel
+/// width is assumed. If more is left, the width is not named. Otherwise a slight blur could be
+/// named that only hides the effect of another mistake.
+const LEFT_BY_FILTER: f64 = 0.5;
+
+/// Factors by which an estimated pixel width greater than 1 is multiplied. Of the products, the
+/// most likely width is taken. More factors would find the width more precisely, but take longer.
 const WIDTHS: [f64; 4] = [0.7, 0.8, 0.9, 1.0];
 /// Least width of pixels that are reported as too wide, in pixels. A smaller estimate is raised to
-/// it, because 1 is the correct width. The value is a choice.
+/// it, so that it differs from the correct width, 1.
 const LEAST_WIDE: f64 = 1.1;
 /// Widths, in pixels, that are tried for pixels that are too narrow. The most likely one is taken.
 /// A few values suffice, because edges determine a narrow width only roughly.
 const NARROW_WIDTHS: [f64; 3] = [0.25, 0.5, 0.7];
 
-/// Number of pixels per wrong pixel, below which a picture counts as wrong in large parts. The
-/// value 50 stands for 2 % of the pixels; it is a choice.
+/// Number n such that a picture counts as wrong in large parts if more than one in n pixels is
+/// wrong. The value 50 stands for 2 %. In such a picture, mistakes that are weakly visible
+/// everywhere are tried even if the wrong pixels do not lie at edges.
 const MUCH_WRONG: usize = 50;
 
 /// Maximum difference between the estimated shift of all edges in the picture and the shift that a
-/// mistake causes. Beyond it, the mistake is not tried. The unit is a pixel; for a shift of more
-/// than a pixel, the difference is relative to the shift. The value is a choice.
+/// mistake causes. If the difference is greater, the mistake is not tried. The unit is a pixel; for
+/// a shift of more than a pixel, the difference is relative to the shift.
 const MAX_SHIFT_ERROR: f64 = 0.5;
 
 /// Maximum number of mistakes that are tried to explain a shift of all edges, those with the most
-/// similar shift first. The value is a choice.
+/// similar shift first. More would take longer, and explain the shift less well.
 const SHIFTS: usize = 4;
 
-/// Minimum significance of the observed fraction of a predicted change on the coarsest grid, in
-/// standard deviations. If a mistake reaches it, the mistake is tested on single pixels, although a
-/// correct program explains the picture. The value is low because of this second test; it is a
-/// choice.
+/// Least observed fraction of a predicted change on the coarsest grid, in standard deviations of
+/// this fraction. A mistake that reaches it is tested on single pixels, even if a correct program
+/// explains the picture. The value is low, because the second test decides.
 const HINTED: f64 = 3.0;
-/// Minimum observed fraction of a predicted change on the coarsest grid. If a mistake reaches it,
-/// the mistake is tested on single pixels, although a correct program explains the picture. The
-/// value is a choice.
+/// Least observed fraction of a predicted change on the coarsest grid. A mistake that reaches it is
+/// tested on single pixels, even if a correct program explains the picture. The value is low,
+/// because the second test decides.
 const HINTED_SHARE: f64 = 0.3;
 
 /// Fits all numbers of a hypothesis's mistakes to a picture at one resolution. Returns `None` if
-/// there are none, or if the budget of work is used up.
+/// there are no numbers, or if the budget of work is used up.
 pub fn refitted(
     judge: &Judge,
     candidate: &Candidate,
@@ -95,7 +100,7 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let edges = judge.central_crop();
     // What is found so far is tested even if the budget of work is used up.
     let (residual, null) = judge.work.without_limit(|| {
-        let residual = Residual::of_candidate(judge, candidate);
+        let residual = judge.residual(candidate);
         residual.zip(judge.judged(candidate, edges))
     })?;
     // Truncated bytes and wrong encodings are visible in whole areas, so they are tried even if the
@@ -162,25 +167,31 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
             WIDTHS.map(|by| (width * by).max(LEAST_WIDE)).to_vec()
         };
         let widths = widths.into_iter().filter_map(|width| {
-            let with = candidate.with(Mistake::Filter(width))?;
-            Some((judge.judged(&with, edges)?.cost, with))
+            let with = judge.judged(&candidate.with(Mistake::Filter(width))?, edges)?;
+            Some((with.cost, with))
         });
         let (_, with) = least(widths, 1).pop()?;
-        fitted_with(judge, with)
+        let noise = with.score.noise;
+        let [before, after] = [&null, &with].map(|one| one.score.squares - noise);
+        let is_clear = after < LEFT_BY_FILTER * before;
+        is_clear.then(|| fitted_with(judge, with.candidate().clone()))?
     };
     best.or_else(filtered)
         .or_else(|| residual.is_noise().then(|| candidate.clone()))
 }
 
-/// Returns the mistakes that shift samples by about `by` pixels to the right and down, the nearest
-/// first.
+/// Returns the mistakes that shift samples by about `by` pixels to the right and down, those with
+/// the most similar shift first.
 fn shifts(candidate: &Candidate, by: [f64; 2]) -> Vec<Mistake> {
     let rows = ROWS.iter().filter(|row| SHIFT_IDS.contains(&row.id));
     let by = candidate.layout.source_direction(by);
+    let sides = [candidate.scene.image.width, candidate.scene.image.height].map(f64::from);
     let off = |row: &'static MistakeRow| {
         let mistake = Mistake::Row(row, None);
-        let shift = candidate.with(mistake.clone())?.behaviour.offset;
-        let off = |i: usize| (by[i] - shift[i]).abs() / shift[i].abs().max(1.0);
+        let Behaviour { offset, spread, .. } = candidate.with(mistake.clone())?.behaviour;
+        // The shift, in pixels, that the mistake causes in the middle of the picture.
+        let shift = |i: usize| offset[i] + (spread[i] - 1.0) * sides[i] / 2.0;
+        let off = |i: usize| (by[i] - shift(i)).abs() / shift(i).abs().max(1.0);
         Some((off(0).max(off(1)), mistake))
     };
     let near = rows.filter_map(off).filter(|one| one.0 <= MAX_SHIFT_ERROR);
@@ -194,7 +205,7 @@ fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     if judge.explains(&with) {
         return Some(with);
     }
-    if !Residual::of_candidate(judge, &with)?.is_at_edges {
+    if !judge.residual(&with)?.is_at_edges {
         return None;
     }
     let fitted = refitted(judge, &with, judge.fitting(&with), [0, ROUNDS])?;
@@ -237,7 +248,9 @@ pub fn rows_in_areas(objects: &[usize]) -> impl Iterator<Item = Mistake> {
         pairs.flat_map(|(at, &one)| objects[at + 1..].iter().map(move |&other| (one, other)));
     let exchanged =
         pairs.map(|(one, other)| Mistake::ColorsExchanged(one.min(other), one.max(other)));
-    rows.map(|row| Mistake::Row(row, None))
-        .chain(of_objects)
+    // Of mistakes that change a picture in the same way, the first in this list is kept. A missing
+    // object comes before a formula by which the object is not hit, because it is more usual.
+    of_objects
         .chain(exchanged)
+        .chain(rows.map(|row| Mistake::Row(row, None)))
 }

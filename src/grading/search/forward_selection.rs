@@ -1,9 +1,9 @@
 //! Forward selection with a beam: extends the few best sets of mistakes by one mistake at a time,
 //! until a set explains the picture.
 //!
-//! The tiny grid, which is the coarsest, selects the sets that are worth examining. Their numbers
-//! are fitted to the coarse grid, and also to the middle grid if little error remains. Sets are
-//! judged on the middle grid. Mistakes that are visible only at edges are judged on single pixels.
+//! The coarsest grid (`tiny`) selects the sets that are worth examining. Their numbers are fitted
+//! to the grid `coarse`, and also to the grid `middle` if little error remains. Sets are judged on
+//! the grid `middle`. Mistakes that are visible only at edges are judged on single pixels.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +15,6 @@ use super::{
     numeric_mistakes::{numeric_mistakes, slightly_wrong},
     patch::patch,
     plain_numbers::plain,
-    residual::Residual,
 };
 use crate::{
     cancel::{self, Cancelled},
@@ -25,58 +24,73 @@ use crate::{
     },
 };
 
-/// Maximum number of mistakes in a set, not counting those that are visible only at edges. The
-/// value is a choice; each further mistake takes another round of the search.
-const MAX_MISTAKES: usize = 3;
+/// Maximum number of mistakes in a set, not counting those that are visible only at edges. Each
+/// further mistake takes another round of the search, so a larger number takes longer.
+pub const MAX_MISTAKES: usize = 3;
 
 /// Maximum number of sets of each size that are examined and extended. A wider beam finds more
-/// mistakes, at proportionally more work. The value is a choice.
+/// mistakes, at proportionally more work.
 const BEAM_WIDTH: usize = 6;
 
-/// Factor by which a set's difference from the picture is multiplied for each of its mistakes, so
-/// that a larger set must explain more. The value is a choice.
+/// Factor by which a set's difference from the picture is multiplied, once for each of its
+/// mistakes. So a larger set must explain more. With a smaller factor, sets would get mistakes that
+/// explain nothing; with a larger one, mistakes with a small effect would be missed.
 const MISTAKE_PENALTY: f64 = 1.05;
-/// Factor by which a set's difference from the picture is multiplied for each parameter of its
-/// mistakes, so that a set with more parameters must explain more. The value is a choice.
+/// Factor by which a set's difference from the picture is multiplied, once for each parameter of
+/// its mistakes. So a set with more parameters must explain more. With a smaller factor, wrong
+/// numbers would be preferred to simpler mistakes; with a larger one, they would be missed.
 const NUMBER_PENALTY: f64 = 1.03;
 
-/// Maximum number of mistakes that are compared on an exact picture, those with the least
-/// difference on the coarsest grid first. Comparing all of them would double the time in which a
-/// single mistake is found.
+/// Maximum number of mistakes that are compared on an exact picture. Those with the least
+/// difference on the coarsest grid come first. Comparing all mistakes in this way would double the
+/// time in which a single mistake is found.
 const EXACT_ROWS: usize = 32;
 
-/// Maximum number of combinations from `joint_rows` that are examined, those with the least
-/// difference from the picture first. Their mistakes may explain the picture only together. The
-/// value is a choice.
+/// Maximum number of combinations of mistakes that are examined because their mistakes may explain
+/// the picture only together. Those with the least difference from the picture come first. A larger
+/// number takes longer.
 const JOINT_SETS: usize = 2;
 
-/// Ratio of a set's difference from the picture to that of the set it extends. Below it, the set is
-/// examined at once, because the other kinds of mistakes need not be tried if it explains the
-/// picture. The value is a choice.
+/// Ratio below which an extended set of mistakes is examined at once: its difference from the
+/// picture, divided by that of the set that it extends. If it explains the picture, the other kinds
+/// of mistakes need not be tried. With a larger ratio, more sets would be examined in vain.
 const PROMISING: f64 = 0.5;
 
-/// Fraction of a correct program's squared error below which a hypothesis counts as close to the
-/// picture. Only errors that sampling cannot explain count. The value is a choice.
+/// Greatest fraction of a correct program's squared error that a hypothesis may leave to count as
+/// close to the picture. Errors that sampling can explain are ignored. Only close hypotheses are
+/// fitted completely, because this takes long.
 const NEAR_RATIO: f64 = 0.1;
 
-/// Maximum number of objects that are suspected to be wrong, those with the largest error in and
-/// beside them first. The work of a search grows with this number. The value is a choice.
+/// Maximum ratio of the error that a hypothesis leaves to the least error that any hypothesis has
+/// left so far. If the ratio is larger, the numbers of the hypothesis are not fitted further. A
+/// mistake at edges, which may be added to it later, hardly reduces its error.
+const WORSE: f64 = 4.0;
+/// Fraction of a correct program's squared error. Hypotheses that leave less count as equally close
+/// to the picture. Without this limit, a hypothesis that leaves no error at all would exclude all
+/// others.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Maximum number of objects that are suspected to be wrong. Those with the largest error in and
+/// beside them come first. The work of a search grows with this number.
 const MAX_SUSPECTS: usize = 12;
 
 /// Fraction of the largest error at an object below which other objects are not suspected to be
-/// wrong. Smaller errors are mostly noise. The value is a choice.
+/// wrong. Smaller errors are mostly noise.
 const SUSPECT_RATIO: f64 = 0.03;
 
-/// Searches for the mistakes that explain a picture best. Returns the best hypothesis, i.e. set of
-/// mistakes, and whether it explains the picture.
-pub fn run(judge: &Judge) -> Result<Option<(Judged, bool)>, Cancelled> {
+/// Searches for the mistakes that explain a picture best: at most `most`, and in addition some that
+/// are visible only at edges. Returns the best hypothesis, i.e. set of mistakes, and whether it
+/// explains the picture.
+pub fn run(judge: &Judge, most: usize) -> Result<Option<(Judged, bool)>, Cancelled> {
     let mut search = Search {
         judge,
         examined: Vec::new(),
+        completed: Vec::new(),
+        least_left: f64::INFINITY,
         nearest: None,
         explained: None,
     };
-    search.run();
+    search.run(most);
     // The budget of work may have run out before the numbers of the last set were fitted.
     if search.explained.is_none() && judge.work.is_cut() {
         let nearest = search.nearest.clone();
@@ -117,6 +131,11 @@ struct Search<'a> {
     judge: &'a Judge<'a>,
     /// Hypotheses, i.e. sets of mistakes, that were examined so far.
     examined: Vec<Candidate>,
+    /// Sets of mistakes with completely fitted numbers that do not explain the picture, even with a
+    /// mistake at edges.
+    completed: Vec<Vec<Mistake>>,
+    /// Least error that any hypothesis left so far, as a fraction of a correct program's error.
+    least_left: f64,
     /// Hypothesis with the least cost so far, and its cost.
     nearest: Option<(f64, Candidate)>,
     /// Hypothesis that explains the picture, and its cost. Of several, the one with the fewest
@@ -125,17 +144,17 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn run(&mut self) {
+    fn run(&mut self, most: usize) {
         let judge = self.judge;
         let mut beam = Vec::from_iter(self.examine(&Candidate::correct(judge.scene)));
-        for _ in 0..MAX_MISTAKES {
+        for size in 1..=most {
             let mut examined: Vec<Judged> = Vec::new();
             let mut next: Vec<(f64, Candidate)> = Vec::new();
             for extension in beam.iter().map_while(|from| Extension::from(judge, from)) {
                 let enough =
                     PROMISING * penalised(extension.difference, extension.from.candidate());
                 for kind in Extension::KINDS {
-                    if self.explained.is_some() || !judge.work.may_go_on() {
+                    if self.is_explained_by(size) || !judge.work.may_go_on() {
                         break;
                     }
                     for (less, one) in extension.improvements(kind) {
@@ -186,10 +205,18 @@ impl Search<'_> {
         }
         judge.compare_with(best.candidate());
         for one in slightly_wrong(judge, best.candidate(), &suspects(judge, best)) {
-            // The extended set is examined even if one of the same kind was, because the numbers of
-            // that one were fitted to few samples.
+            // The set is examined even if one with the same mistakes but other numbers was examined
+            // before, because those numbers were fitted to few samples.
             examined.extend(self.examine(&one));
         }
+    }
+
+    /// Returns whether a set of at most `size` mistakes explains the picture. A larger set does not
+    /// end the search: it may consist of a row of the table and a mistake at edges, while a single
+    /// wrong number explains the picture, too.
+    fn is_explained_by(&self, size: usize) -> bool {
+        let explained = self.explained.as_ref();
+        explained.is_some_and(|(_, explained)| explained.mistakes.len() <= size)
     }
 
     /// Returns whether a hypothesis was found that explains the picture with fewer parameters, or
@@ -202,8 +229,8 @@ impl Search<'_> {
     }
 
     /// Fits a hypothesis's numbers, and judges it on the middle grid. Remembers it if it has the
-    /// least cost so far, or explains the picture. Returns `None` if a better one explains the
-    /// picture.
+    /// least cost so far, or explains the picture. Returns `None` if a better hypothesis explains
+    /// the picture already, or if the budget of work is used up.
     fn examine(&mut self, candidate: &Candidate) -> Option<Judged> {
         let judge = self.judge;
         if self.has_better(candidate, f64::NEG_INFINITY) {
@@ -212,26 +239,38 @@ impl Search<'_> {
         self.examined.push(candidate.clone());
         let fitted = refitted(judge, candidate, &judge.coarse, [2, 1]);
         let mut judged = judge.judged(fitted.as_ref().unwrap_or(candidate), &judge.middle)?;
-        // A hypothesis far from the picture is not fitted further.
-        if is_near(judge, judged.candidate()) {
+        // A hypothesis far from the picture, or much farther than another, is not fitted further.
+        let left = left(judge, judged.candidate())?;
+        self.least_left = self.least_left.min(left);
+        let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
+        if candidate.mistakes.is_empty() || left <= most {
             let level = judge.fitting(judged.candidate());
             let fitted = refitted(judge, judged.candidate(), level, [0, ROUNDS]);
             if let Some(fitted) = fitted {
                 judged = judge.judged(&fitted, &judge.middle)?;
             }
+            // The hypothesis cannot become better than the one that explains the picture already.
+            if self.has_better(judged.candidate(), judged.cost) {
+                return Some(judged);
+            }
             // Slightly wrong numbers leave errors at edges, which a mistake at edges would seem to
             // explain.
             let has_numbers = judged.candidate().numeric().next().is_some();
-            let residual = || Residual::of_candidate(judge, judged.candidate());
+            let residual = || judge.residual(judged.candidate());
             if has_numbers && residual().is_some_and(|residual| residual.is_at_edges) {
                 let plain = plain(judge, judged.candidate());
                 judged = judge.judged(&plain, &judge.middle).unwrap_or(judged);
             }
-            let explained = explained_with(judge, judged.candidate());
-            if let Some(explained) =
-                explained.filter(|explained| !self.has_better(explained, judged.cost))
-            {
-                self.explained = Some((judged.cost, explained));
+            if !self.completed.contains(&judged.candidate().mistakes) {
+                match explained_with(judge, judged.candidate()) {
+                    Some(explained) if !self.has_better(&explained, judged.cost) => {
+                        self.explained = Some((judged.cost, explained));
+                    }
+                    None if !judge.work.is_cut() => {
+                        self.completed.push(judged.candidate().mistakes.clone());
+                    }
+                    _ => {}
+                }
             }
         }
         if self.nearest.as_ref().is_none_or(|one| judged.cost < one.0) {
@@ -250,18 +289,31 @@ fn patched(judge: &Judge, from: &Judged) -> Option<Candidate> {
     explained_with(judge, &patched)
 }
 
-/// Returns whether a hypothesis leaves little of a correct program's error. Only errors that
-/// sampling cannot explain count.
+/// Returns whether a hypothesis is close to the picture: it leaves at most a tenth of a correct
+/// program's error (`NEAR_RATIO`), or has no mistakes.
 fn is_near(judge: &Judge, candidate: &Candidate) -> bool {
-    let square = |candidate: &Candidate| {
-        let predicted = judge.predicted(candidate, &judge.middle);
-        predicted.map(|predicted| predicted.strays().square())
-    };
-    let squares = square(candidate).zip(square(&Candidate::correct(judge.scene)));
-    candidate.mistakes.is_empty() || squares.is_some_and(|(own, all)| own <= NEAR_RATIO * all)
+    candidate.mistakes.is_empty() || left(judge, candidate).is_some_and(|left| left <= NEAR_RATIO)
 }
 
-/// Removes mistakes as long as the remaining ones explain the picture.
+/// Returns the fraction of a correct program's squared error that a hypothesis leaves. Only errors
+/// that sampling cannot explain count. Returns `None` if the budget of work is used up.
+fn left(judge: &Judge, candidate: &Candidate) -> Option<f64> {
+    let square = |candidate: &Candidate| {
+        let predicted = judge.predicted(candidate, &judge.middle)?;
+        Some(predicted.strays().square())
+    };
+    let all = match judge.square_of_correct.get() {
+        Some(all) => *all,
+        None => {
+            let all = square(&Candidate::correct(judge.scene))?.max(f64::MIN_POSITIVE);
+            *judge.square_of_correct.get_or_init(|| all)
+        }
+    };
+    Some(square(candidate)? / all)
+}
+
+/// Removes mistakes from a hypothesis that explains the picture, as long as the remaining mistakes
+/// explain it, too.
 fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
     let without = |candidate: &Candidate, at: usize| {
         let mut mistakes = candidate.mistakes.clone();
@@ -315,13 +367,14 @@ struct Extension<'a> {
     from: &'a Judged,
     tiny: Level<'a>,
     suspects: Vec<usize>,
-    /// Difference of the set from the picture on the coarsest grid.
+    /// Difference between the picture and the prediction from the mistakes in `from`, on the
+    /// coarsest grid (`tiny`). Only extensions with a smaller difference are improvements.
     difference: f64,
 }
 
 impl<'a> Extension<'a> {
-    /// Functions that extend a set, each by another kind of mistakes, cheapest first. Each returns
-    /// hypotheses with their differences from the picture on the coarsest grid.
+    /// Functions that extend a set of mistakes, each by mistakes of another kind, the cheapest
+    /// first. Each returns hypotheses with their differences from the picture on the coarsest grid.
     const KINDS: [fn(&Self) -> Rated; 3] = [Self::rows, Self::numbers, Self::joint];
 
     /// Prepares the extension of a set of mistakes. Returns `None` if the budget of work is used
@@ -339,8 +392,9 @@ impl<'a> Extension<'a> {
         })
     }
 
-    /// Returns the extensions of one kind that reduce the set's difference from the picture. Each
-    /// has its difference, multiplied by the penalties for its size; the least comes first.
+    /// Returns the extensions of one kind whose difference from the picture is less than that of
+    /// the set itself. Each comes with its difference, multiplied by the penalties for its mistakes
+    /// and parameters. The least comes first.
     fn improvements(&self, kind: fn(&Self) -> Rated) -> Rated {
         let less = kind(self).into_iter().filter(|one| one.0 < self.difference);
         least(
@@ -384,8 +438,8 @@ impl<'a> Extension<'a> {
     }
 }
 
-/// Keeps, of all rows with the same identifier and object, the one with the least difference.
-/// Otherwise, variants of one mistake would fill the beam.
+/// Keeps only one of all rows with the same identifier and object: the one with the least
+/// difference. Otherwise, variants of one mistake would fill the beam.
 fn best_of_each_id(rows: Rated) -> Rated {
     let mut known = BTreeSet::new();
     let mut best = least(rows.into_iter(), usize::MAX);

@@ -1,5 +1,5 @@
-//! Mistakes that explain something only together: in the arrangement of pixels, the visible
-//! surfaces, the order of channels, and the encoding of light.
+//! Finds mistakes that explain a picture only together. They are of four kinds: mistakes in the
+//! arrangement of pixels, the visible surfaces, the order of channels, and the encoding of light.
 //!
 //! One of them alone may explain nothing. For example, truncated squares of a checkerboard are not
 //! recognised in a picture that is upside down. So all combinations are tried on the coarsest grid,
@@ -14,21 +14,22 @@ use crate::grading::{
     scoring::{Level, Prediction},
 };
 
-/// Number of combinations of mistakes that are kept and combined with a second effect on light,
-/// those with the least difference from the picture first. The value is a choice.
+/// Number of combinations of mistakes that are kept and combined with a second effect on light.
+/// Those with the least difference from the picture come first. A larger number takes longer.
 const BEST: usize = 8;
 
 /// Number of combinations of pixel arrangements and visible surfaces that are combined with effects
-/// on light, those with the highest correlation with the picture first. Combining all of them took
-/// most of the time of judging a wrong picture.
+/// on light. Those with the highest correlation with the picture come first. Combining all of them
+/// took most of the time of judging a wrong picture.
 const CORRELATED: usize = 32;
 
-/// Ratio by which each further mistake has to reduce the difference from the picture. It prevents
-/// mistakes that explain almost nothing. The value is a choice.
+/// Ratio to which each further mistake has to reduce the difference from the picture, at least. The
+/// value 0.95 rejects mistakes that explain less than 5 % of it.
 const ROW_RATIO: f64 = 0.95;
 
-/// Returns the absolute correlation of observed and predicted light, summed over the channels of
-/// each pixel. Effects on light hardly change it, not even an inversion.
+/// Returns the absolute value of the correlation between observed and predicted light. The light of
+/// a cell is the sum of its channels. Effects on light hardly change the correlation; even an
+/// inversion changes only its sign.
 fn correlation(prediction: &Prediction) -> f64 {
     let (mut count, mut sums, mut products) = (0.0, [0.0; 2], [0.0; 3]);
     for (seen, mean) in prediction.observed.iter().zip(&prediction.moments.mean) {
@@ -68,7 +69,7 @@ pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, C
     let (layout, seen): (Vec<_>, Vec<_>) = others
         .into_iter()
         .partition(|(one, _)| one.layout != right.layout);
-    // Returns the hypothesis itself, and the hypothesis with each of the mistakes.
+    // Returns the hypothesis itself, and the hypothesis with each one of the mistakes added.
     let with = |candidate: &Candidate, rows: &[(Candidate, Mistake)]| {
         let changed = rows
             .iter()

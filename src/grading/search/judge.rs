@@ -1,39 +1,44 @@
 //! A picture that is judged: its resolutions, its budget of work, and the operations of the search.
 
-use std::sync::Arc;
+use std::{
+    cell::{OnceCell, RefCell},
+    collections::VecDeque,
+    sync::Arc,
+};
 
 use super::levenberg_marquardt::{Fitted, absolute, fit};
 use crate::{
     area::Area,
     film::{Film, Jpeg},
     grading::{
-        hypotheses::{Candidate, Effect},
-        scoring::{Grid, Level, Prediction, Rendering, Score, Work, work},
+        hypotheses::{Candidate, Effect, Mistake},
+        scoring::{Displacement, Grid, Level, Prediction, Rendering, Score, Work, work},
     },
     scene::Scene,
 };
 
 /// Number of cells along the longer side of the coarsest grid, on which mistakes are selected. A
-/// finer grid takes longer for each of hundreds of mistakes. The value is a choice.
+/// finer grid takes longer for each of hundreds of mistakes. A coarser one hides small objects.
 const TINY: u32 = 32;
-/// Number of cells along the longer side of the grid on which numbers are fitted first. The value
-/// is a choice.
+/// Number of cells along the longer side of the grid on which numbers are fitted first. A finer
+/// grid takes longer. A coarser one determines the numbers less well.
 const COARSE: u32 = 48;
-/// Number of cells along the longer side of the grid on which sets of mistakes are judged. The
-/// value is a choice; single pixels decide in the end.
+/// Number of cells along the longer side of the grid on which sets of mistakes are judged. A finer
+/// grid takes longer. A coarser one is enough for most mistakes, because single pixels decide in
+/// the end.
 const MIDDLE: u32 = 96;
 
-/// Change of the picture, in cells, by which a number is varied to find its derivative. The value
-/// is a choice: a smaller change is less visible, and a larger one is less linear.
+/// Change of the picture, in cells, by which a number is varied to find its derivative. A smaller
+/// change is less visible, and a larger one is less linear.
 pub const CELL_STEP: f64 = 0.25;
 
 /// Number of samples per cell of the coarsest grid, on which mistakes are selected. It is a
-/// Fibonacci number, because the samples form a Fibonacci lattice. The value is a choice: more
-/// samples are less noisy, but take longer.
+/// Fibonacci number, because the samples form a Fibonacci lattice. More samples are less noisy, but
+/// take longer.
 const SAMPLES: usize = 5;
 
 /// Number of pixels in the central crop of a picture, on which edges are judged. More pixels
-/// determine edges better, at proportionally more work. The value is a choice.
+/// determine edges better, at proportionally more work.
 const CENTRAL_PIXELS: u64 = 20_000;
 
 /// A picture at several resolutions, to which hypotheses about the program are compared.
@@ -46,6 +51,42 @@ pub struct Judge<'a> {
     /// The central crop at full resolution; `None` if the picture has no more pixels than the crop.
     central: Option<Level<'a>>,
     pub work: Work<'a>,
+    /// Mistakes of each of the last few hypotheses, and what the hypothesis left unexplained.
+    pub residuals: RefCell<VecDeque<(Vec<Mistake>, Residual)>>,
+    /// Squared difference between the picture and that of a correct program, at the resolution
+    /// `middle`. Counts only what the noise of sampling cannot explain. Computed on demand; what
+    /// hypotheses leave unexplained is measured as a fraction of it.
+    pub square_of_correct: OnceCell<f64>,
+}
+
+/// What a hypothesis leaves unexplained in the pixels of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Residual {
+    /// Number of pixels that should show one colour and show another one.
+    pub strays: usize,
+    /// Whether areas of one colour are right, and errors in all other pixels look like noise. In
+    /// the areas, a few wrong pixels are allowed if samples may have missed them.
+    pub are_areas_right: bool,
+    /// Whether almost all wrong pixels lie near edges.
+    pub is_at_edges: bool,
+    /// Whether errors in pixels that mix several colours look like sampling noise.
+    pub is_noise_everywhere: bool,
+    /// Displacement of edges; `None` if it may be chance. Tested only if the wrong pixels lie near
+    /// edges.
+    pub displacement: Option<Displacement>,
+    /// Width of the pixel filter, in pixels; `None` if it may be 1. Tested only if the wrong pixels
+    /// lie near edges.
+    pub width: Option<f64>,
+}
+
+impl Residual {
+    /// Returns whether sampling noise explains all errors.
+    pub fn is_noise(&self) -> bool {
+        self.are_areas_right
+            && self.displacement.is_none()
+            && self.width.is_none()
+            && self.is_noise_everywhere
+    }
 }
 
 /// A hypothesis about the program that was judged at one resolution.
@@ -65,8 +106,8 @@ impl Judged {
 }
 
 impl<'a> Judge<'a> {
-    /// Prepares a picture for judging. `exact` is the rendering of a correct program, in the same
-    /// part.
+    /// Prepares a picture for judging. `exact` is a correct program's rendering of the same part of
+    /// the scene.
     pub fn new(
         scene: &'a Scene,
         exact: &Arc<Rendering>,
@@ -88,6 +129,8 @@ impl<'a> Judge<'a> {
             fine: level(part, u32::MAX, None),
             central: central(part).map(|part| level(part, u32::MAX, None)),
             work,
+            residuals: RefCell::default(),
+            square_of_correct: OnceCell::new(),
         };
         let levels = [&judge.coarse, &judge.middle, &judge.fine];
         for level in levels.into_iter().chain(&judge.central) {
@@ -127,9 +170,9 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Returns the coarsest level for comparisons with a hypothesis. If the exact picture of the
-    /// hypothesis is known, the error of sampling it is added to the observed light, so that the
-    /// error cancels.
+    /// Returns the coarsest resolution of the picture, for comparisons with variants of a
+    /// hypothesis. If the hypothesis can be rendered exactly, the error of sampling it is added to
+    /// the observed light. All variants are sampled in the same way, so the error cancels.
     pub fn tiny(&self, candidate: &Candidate) -> Option<Level<'a>> {
         let level = &self.tiny;
         let sampled = level.render(candidate, &self.work)?;
@@ -179,9 +222,10 @@ impl<'a> Judge<'a> {
         })
     }
 
-    /// Fits the numbers of a hypothesis's mistakes whose indices are `free`. To find derivatives,
-    /// each number is varied so that the picture moves by about `cells` cells. `rounds` are the
-    /// maximum numbers of rounds by least squares, and by a robust loss.
+    /// Fits those numbers of a hypothesis's mistakes that have the indices `free`. To find
+    /// derivatives, each number is varied so that the picture moves by about `cells` cells.
+    /// `rounds` has the maximum number of rounds by least squares, and that of rounds by a robust
+    /// loss.
     pub fn fit(
         &self,
         candidate: &Candidate,
@@ -208,9 +252,9 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// Returns the cost of `fitted` parameters: half the logarithm of the number of cells for each. The
-/// cells of the whole picture count even if a part is judged, because almost anything could be
-/// fitted to a few pixels.
+/// Returns the cost of `fitted` parameters. Each costs half the logarithm of the number of cells.
+/// The cells of the whole picture count even if only a part is judged, because almost anything
+/// could be fitted to a few pixels.
 pub fn price(level: &Level, fitted: usize) -> f64 {
     let [width, height] = level.grid.size().map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)

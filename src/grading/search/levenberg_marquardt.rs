@@ -8,8 +8,8 @@
 
 use crate::grading::scoring::solve;
 
-/// Largest move of a number at which the fit counts as converged, relative to the change by which
-/// the number's derivative is found. The value is a choice.
+/// Largest move of a number at which the fit counts as converged. The unit is the change by which
+/// the number's derivative is found. With a smaller value, the fit takes more rounds.
 const CLOSE: f64 = 0.05;
 
 /// The result of a fit.
@@ -19,7 +19,8 @@ pub struct Fitted {
     pub numbers: Vec<f64>,
     /// Sum of the absolute differences that remain.
     pub left: f64,
-    /// Standard deviation of each number, if the picture's errors are those of rounding.
+    /// Standard deviation of each number, if the picture's differences have the standard deviations
+    /// that [`fit`] was given. It is meaningful only after a round with Huber's loss.
     pub errors: Vec<f64>,
 }
 
@@ -54,7 +55,7 @@ impl Loss {
 ///
 /// First, squared differences are minimised, because they have a single minimum. Then Huber's loss
 /// is minimised, in units of the standard deviations, so that errors that no numbers explain do not
-/// distort the fit. `rounds` are the maximum numbers of rounds of both.
+/// distort the fit. `rounds` has the maximum number of rounds of each of the two.
 pub fn fit(
     start: Vec<f64>,
     steps: &[f64],
@@ -154,7 +155,7 @@ pub fn fit(
 }
 
 /// Updates derivatives by the effect of a move, by Broyden's method. Varying each number again
-/// would take most of the time.
+/// instead would take most of the time of a fit.
 fn update(slopes: &mut [Vec<f64>], moves: &[f64], before: &[f64], after: &[f64]) {
     let square: f64 = moves.iter().map(|by| by * by).sum();
     for at in 0..before.len() {

@@ -1,14 +1,14 @@
 //! Finds the set of mistakes that explains a picture.
 //!
 //! In: a picture and its scene, as a `judge`, which has the picture at several resolutions and a
-//! budget of work. Out: the best hypothesis about the program and whether it explains the picture.
-//! It does if its `residual`, which is what it leaves unexplained, is sampling noise.
+//! budget of work. Out: the best hypothesis about the program, and whether it explains the picture.
+//! It does if what it leaves unexplained, its `residual`, is sampling noise.
 //!
-//! `forward_selection` extends the few best sets of mistakes by one mistake at a time. A mistake is
-//! a row of the table, or several rows that only explain something together (`joint`); wrong
-//! numbers of the scene (`numeric_mistakes`); or an extra `patch`. Numbers are fitted by
-//! `levenberg_marquardt`, and simplified by `plain_numbers`. `edge_rows` adds mistakes that are
-//! visible only at edges. `labels` finds which object a cell shows.
+//! `forward_selection` extends the few best sets of mistakes by one mistake at a time. It tries
+//! three kinds of mistakes: rows of the table, alone or in combinations that explain something only
+//! together (`joint`); wrong numbers of the scene (`numeric_mistakes`); and an extra `patch`.
+//! Numbers are fitted by `levenberg_marquardt`, and simplified by `plain_numbers`. `edge_rows` adds
+//! mistakes that are visible only at edges. `labels` finds which object a cell shows.
 
 mod edge_rows;
 pub mod forward_selection;

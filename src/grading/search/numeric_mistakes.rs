@@ -15,11 +15,11 @@ use crate::{
 };
 
 /// Number of starting values from which a field of the scene is fitted on the coarsest grid, the
-/// best first. The value is a choice between work and the risk of a wrong minimum.
+/// best first. More starting values take longer, but a fit ends less often in a wrong minimum.
 const STARTS: usize = 2;
 
-/// Number of fields of the scene that are fitted on the coarsest grid, those with the best starting
-/// value first. The value is a choice; the work grows with it.
+/// Number of fields of the scene that are fitted on the coarsest grid. Those with the best starting
+/// value come first. A larger number takes longer.
 const STARTED: usize = 12;
 
 /// Fits the fields of the scene that may be wrong to the coarsest grid. Returns hypotheses, i.e.
@@ -55,7 +55,8 @@ pub fn numeric_mistakes(
     let started = least(started, STARTED).into_iter();
     let fitted = started.filter_map(|(_, (parameter, tried))| {
         let fit = |(left, start): (f64, Candidate)| {
-            // A colour is taken from the picture unchanged, unless the program changes light.
+            // A colour was read from the picture, so it is not fitted, unless the program changes
+            // light.
             if parameter.is_color() && candidate.effects.is_empty() {
                 return Some((left, start));
             }
@@ -69,9 +70,9 @@ pub fn numeric_mistakes(
     fitted.collect()
 }
 
-/// Number of fields of the scene that are fitted on the coarse grid, starting from the scene's own
-/// numbers: those with the least difference from the picture after one round. The value is a
-/// choice.
+/// Number of fields of the scene that are fitted completely on the coarse grid, starting from the
+/// scene's own numbers. All fields are fitted for one round, and those with the least difference
+/// from the picture come first. A larger number takes longer.
 const NEAR_OWN: usize = 3;
 
 /// Fits each field of the camera and of checkerboards that may be wrong to the coarse grid,
@@ -134,8 +135,9 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
     all
 }
 
-/// Returns the median colour of the picture in the pixels in which the prediction shows only one of
-/// the given colours, for each of these.
+/// Returns a colour of the picture for each of the given colours: the median over the pixels in
+/// which only the given colour is predicted. `numbers` has the bytes of the given colours, three
+/// for each.
 fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     let color = |own: &[f64; 3]| {
         let light = DVec3::from(Color { srgb: *own }.to_linear());
@@ -159,8 +161,8 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     colors.iter().flat_map(color).collect()
 }
 
-/// Returns starting values for the depth of a clipping plane: its own, and depths around that of
-/// the point that the camera looks at. Each is a fifth farther than the one before.
+/// Returns starting values for the depth of a clipping plane: the plane's own depth, and depths
+/// around that of the point that the camera looks at. Each of these is 1.2 times the one before.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     const FROM: i32 = -12;
     const TO: i32 = 24;
@@ -173,7 +175,7 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     std::iter::once(numbers).chain(depths).collect()
 }
 
-/// Returns starting values for a field's numbers: its own numbers, others near them, and the
+/// Returns starting values for a field's numbers: its own numbers; other numbers near them; and the
 /// results of slips, such as a wrong sign, two exchanged numbers, a double or a half.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];

@@ -5,14 +5,14 @@ use glam::DVec2;
 use super::judge::{Judge, Judged};
 use crate::grading::hypotheses::{Mistake, is_near};
 
-/// Least number of pixels in a patch. Fewer may be noise. The value is a choice.
+/// Least number of pixels in a patch. Fewer may be noise.
 const SMALLEST: usize = 4;
 
-/// Least fraction of its bounding rectangle that a patch must fill, so that it is compact. The
-/// value is a choice.
+/// Least fraction of its bounding rectangle that a patch must fill. It keeps thin or scattered
+/// shapes from counting as a patch.
 const FILLED: f64 = 0.25;
-/// Greatest fraction of the picture that a patch's bounding rectangle may cover. A larger one would
-/// explain almost anything. The value is a choice.
+/// Greatest fraction of the picture that a patch's bounding rectangle may cover. A larger patch
+/// would explain almost anything.
 const MOST: f64 = 0.2;
 
 /// Finds the largest connected area of one colour that a hypothesis does not explain. Returns

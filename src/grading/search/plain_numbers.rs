@@ -12,19 +12,19 @@ use crate::{
     scene::Scene,
 };
 
-/// Greatest displacement of an edge that rounding a number may cause in the first round, in pixels.
-/// The value is a choice.
+/// Greatest displacement of an edge, in pixels, that rounding a number may cause in the first
+/// round. With a larger value, shorter numbers are tried first, which are more often rejected.
 const TENTH: f64 = 0.1;
-/// Maximum number of rounds of rounding. Each allows a quarter of the displacement of the round
-/// before, so the fifth allows 0.0004 pixels. The value is a choice.
+/// Maximum number of rounds of rounding. Each round allows a quarter of the displacement of the
+/// round before. The fifth allows 0.0004 pixels, so more rounds would hardly change a picture.
 const QUARTERS: i32 = 5;
 
-/// Number of standard deviations of a fitted number by which rounding may change it. The value is a
-/// choice; a test of the rounded numbers follows.
+/// Number of standard deviations of a fitted number by which rounding may change it. The value may
+/// be generous, because a test of the rounded numbers follows.
 const DEVIATIONS: f64 = 8.0;
 
 /// Maximum number of rounds of fitting the other numbers, after one was replaced by the scene's
-/// own. The value is a choice.
+/// own. More rounds take longer; with fewer, the other numbers may not reach their best values.
 const ROUNDS: usize = 8;
 
 /// Returns a hypothesis with simplified numbers.
@@ -72,9 +72,10 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     candidate.clone()
 }
 
-/// Returns variants of wrong numbers in which more numbers are the scene's own, those with the
-/// fewest free numbers first. Of a vector, one or two coordinates remain free; of `eye` and
-/// `lookat` together, one of both points. Each variant comes with the indices of its free numbers.
+/// Returns variants of wrong numbers in which more numbers are the scene's own. The others are
+/// free, i.e. may be fitted again; variants with few free numbers come first. Of a vector, one or
+/// two coordinates are free. Of `eye` and `lookat` together, one point is free. Each variant comes
+/// with the indices of its free numbers.
 fn plainer(
     scene: &Scene,
     parameter: &Parameter,
@@ -131,8 +132,8 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     let Some(long) = judge.judged(candidate, level) else {
         return candidate.clone();
     };
-    // A short number counts as not fitted, which saves its cost. In return, the rest of the cost
-    // may grow by as much.
+    // A short number counts as not fitted, so it has no price. In return, the rest of the cost may
+    // grow by the prices that are saved.
     let most = long.cost + price(level, free.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {

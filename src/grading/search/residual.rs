@@ -1,9 +1,12 @@
 //! What a hypothesis about the program leaves unexplained in the pixels of a picture.
 
-use super::{judge::Judge, labels::labels};
+use super::{
+    judge::{Judge, Residual},
+    labels::labels,
+};
 use crate::grading::{
-    hypotheses::Candidate,
-    scoring::{Displacement, Prediction, Strays, work},
+    hypotheses::{Candidate, Mistake},
+    scoring::{Displacement, Prediction, work},
 };
 
 /// Number n such that one in n pixels may be wrong if the prediction is not exact, i.e. if it was
@@ -29,19 +32,25 @@ const IGNORED: f64 = 0.06;
 /// by trial.
 const IGNORED_WITH_ONE_SAMPLE: f64 = 0.06;
 
-/// Greatest displacement of the edges of a single object that is ignored, in pixels. The first
-/// number holds without noise. The second is added with one sample per pixel; with n samples, it is
-/// divided by √n. The third takes its place in a JPEG, most of whose noise is from coding. Samples
-/// on a regular grid move an edge parallel to the grid by up to half of their distance.
+/// Greatest displacement of the edges of a single object that is ignored, in pixels. It is the
+/// first number, plus another one divided by √n for n samples per pixel. The other one is the third
+/// in a JPEG, which has noise from coding, and otherwise the second. The reason for √n is that
+/// samples on a regular grid, whose distance is 1/√n, move an edge parallel to the grid by up to
+/// half of it.
 const IGNORED_OF_OBJECT: [f64; 3] = [0.12, 0.5, 0.7];
 
 /// Displacement of all edges of a JPEG, in pixels to the right or down, above which it is reported,
 /// provided that it is significant (see `SURELY_MOVED`). JPEG coding hides most of a displacement.
-/// Three samples at the same places in all pixels lie less than this off the middle.
+/// The value is greater than the 1/6 pixel by which three samples at the same places in all pixels
+/// may lie off the middle.
 const MOVED: f64 = 0.2;
 /// Squared length of a displacement of a JPEG's edges, in squared standard deviations, above which
 /// it is significant enough to be reported. Chosen by trial.
 const SURELY_MOVED: f64 = 150.0;
+
+/// Number of hypotheses whose residuals are remembered. The search asks several times for the
+/// residual of the same hypothesis, but of few hypotheses in turn.
+const RESIDUALS: usize = 4;
 
 impl Judge<'_> {
     /// Returns whether a hypothesis explains the picture: no pixel that should have one colour
@@ -55,13 +64,26 @@ impl Judge<'_> {
             || self
                 .predicted(candidate, &self.middle)
                 .is_some_and(|prediction| prediction.strays().are_no_more(0));
-        let is_explained = || {
-            let prediction = self.predicted(candidate, &self.fine)?;
-            let strays = prediction.strays();
-            let are_areas_right = strays.are_no_more(self.missed(candidate));
-            Some(are_areas_right && Residual::of(self, candidate, &prediction, &strays).is_noise())
-        };
-        is_possible && is_explained() == Some(true)
+        is_possible
+            && self
+                .residual(candidate)
+                .is_some_and(|residual| residual.is_noise())
+    }
+
+    /// Returns what a hypothesis leaves unexplained. Remembers it for the last few hypotheses.
+    /// Returns `None` if the budget of work is used up.
+    pub fn residual(&self, candidate: &Candidate) -> Option<Residual> {
+        let mut known = self.residuals.borrow_mut();
+        let is_same = |(mistakes, _): &(Vec<Mistake>, Residual)| *mistakes == candidate.mistakes;
+        if let Some((_, residual)) = known.iter().find(|one| is_same(one)) {
+            return Some(*residual);
+        }
+        let residual = residual_of(self, candidate, &self.predicted(candidate, &self.fine)?);
+        if known.len() == RESIDUALS {
+            known.pop_front();
+        }
+        known.push_back((candidate.mistakes.clone(), residual));
+        Some(residual)
     }
 
     /// Returns how many pixels that should have one colour may show another one. Samples may miss
@@ -81,75 +103,32 @@ impl Judge<'_> {
     }
 }
 
-/// What a hypothesis leaves unexplained in the pixels of a picture.
-#[derive(Clone, Copy, Debug)]
-pub struct Residual {
-    /// Number of pixels that should show one colour and show another one.
-    pub strays: usize,
-    /// Whether areas of one colour are right, except for a few pixels that samples may miss, and
-    /// errors in pixels that mix several colours look like noise.
-    pub are_areas_right: bool,
-    /// Whether almost all wrong pixels lie near edges.
-    pub is_at_edges: bool,
-    /// Whether errors in pixels that mix several colours look like sampling noise.
-    pub is_noise_everywhere: bool,
-    /// Displacement of edges; `None` if it may be chance. Tested only if the wrong pixels lie near
-    /// edges.
-    pub displacement: Option<Displacement>,
-    /// Width of the pixel filter, in pixels; `None` if it may be 1. Tested only if the wrong pixels
-    /// lie near edges.
-    pub width: Option<f64>,
-}
-
-impl Residual {
-    /// Computes what a hypothesis leaves unexplained. Returns `None` if the budget of work is used
-    /// up.
-    pub fn of_candidate(judge: &Judge, candidate: &Candidate) -> Option<Self> {
-        let prediction = judge.predicted(candidate, &judge.fine)?;
-        Some(Self::of(
-            judge,
-            candidate,
-            &prediction,
-            &prediction.strays(),
-        ))
-    }
-
-    /// Computes what a prediction leaves unexplained. `strays` are the errors that no sampling can
-    /// explain.
-    fn of(judge: &Judge, candidate: &Candidate, prediction: &Prediction, strays: &Strays) -> Self {
-        let level = &judge.fine;
-        judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
-        let missed = judge.missed(candidate);
-        let reach = level.jpeg.map_or(EDGE_REACH, |_| CODED_EDGE_REACH);
-        let is_inside = |at: &&usize| {
-            level
-                .grid
-                .around(**at, reach)
-                .all(|at| prediction.is_flat(at))
-        };
-        let inside = strays.pixels.iter().filter(is_inside).count();
-        let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
-        let (displacement, width) = if is_at_edges {
-            displacement_and_width(judge, candidate, prediction)
-        } else {
-            (None, None)
-        };
-        Self {
-            strays: strays.pixels.len(),
-            are_areas_right: strays.are_no_more(missed),
-            is_at_edges,
-            is_noise_everywhere: candidate.is_filtered() || prediction.is_noise_everywhere(),
-            displacement,
-            width,
-        }
-    }
-
-    /// Returns whether sampling noise explains all errors.
-    pub fn is_noise(&self) -> bool {
-        self.are_areas_right
-            && self.displacement.is_none()
-            && self.width.is_none()
-            && self.is_noise_everywhere
+/// Computes what the prediction of a hypothesis leaves unexplained.
+fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) -> Residual {
+    let (level, strays) = (&judge.fine, prediction.strays());
+    judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
+    let missed = judge.missed(candidate);
+    let reach = level.jpeg.map_or(EDGE_REACH, |_| CODED_EDGE_REACH);
+    let is_inside = |at: &&usize| {
+        level
+            .grid
+            .around(**at, reach)
+            .all(|at| prediction.is_flat(at))
+    };
+    let inside = strays.pixels.iter().filter(is_inside).count();
+    let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
+    let (displacement, width) = if is_at_edges {
+        displacement_and_width(judge, candidate, prediction)
+    } else {
+        (None, None)
+    };
+    Residual {
+        strays: strays.pixels.len(),
+        are_areas_right: strays.are_no_more(missed),
+        is_at_edges,
+        is_noise_everywhere: candidate.is_filtered() || prediction.is_noise_everywhere(),
+        displacement,
+        width,
     }
 }
 
@@ -165,7 +144,7 @@ fn displacement_and_width(
     let background = judge.scene.objects.len();
     let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
     let share = match level.jpeg {
-        // In a JPEG, the effect of coding on edges would otherwise be attributed to few samples.
+        // In a JPEG, the score would attribute the effect of coding on edges to few samples.
         Some(_) => prediction.share(),
         None => {
             let score = prediction.score();
@@ -175,7 +154,7 @@ fn displacement_and_width(
     let deviations = prediction.deviations();
     let beyond = |groups: &[usize], is_beyond: &dyn Fn(&Displacement) -> bool| {
         let all = prediction
-            .displacements(&deviations, share, groups)
+            .displacements(&deviations, share, groups, level.jpeg.is_some())
             .into_iter();
         let all = all.flatten().filter(is_beyond);
         all.max_by(|one, other| one.length.total_cmp(&other.length))

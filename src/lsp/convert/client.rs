@@ -42,9 +42,9 @@ impl Client {
     }
 }
 
-/// Returns the unit in which columns are counted: the first one in `offered`, the client's list in
-/// its order of preference, that the server supports. Returns UTF-16 if the list contains no such
-/// unit.
+/// Returns the unit in which columns are counted: the first unit in `offered` that the server
+/// supports. `offered` is the client's list, in its order of preference. Returns UTF-16 if the list
+/// contains no such unit.
 fn encoding<'a>(mut offered: impl Iterator<Item = &'a str>) -> Encoding {
     let known = offered.find_map(|kind| match kind {
         "utf-8" => Some(Encoding::Utf8),

@@ -280,7 +280,7 @@ pub fn changes(params: &Value) -> Result<Vec<TextChange>, Refusal> {
     changes.iter().map(change).collect()
 }
 
-/// Escapes the characters of a text that have a meaning in a snippet.
+/// Escapes all characters that have a special meaning in a snippet.
 pub(super) fn escaped(text: &str) -> String {
     text.replace('\\', "\\\\")
         .replace('$', "\\$")

@@ -20,8 +20,8 @@ use crate::{
     scene::{Camera, Lens},
 };
 
-/// Hard cases of the camera, in the order of the report. The first ones test the camera's axes, and
-/// the others what is seen.
+/// Hard cases of the camera, in the order of the report. The first cases test the camera's axes,
+/// and the other cases test what is seen.
 #[rustfmt::skip]
 pub const CASES: &[Case] = &[
     Case { id: "C1", title: "up within 1e-1 … 1e-200 of the view direction", bound: 4.0, subject: Axes(nearly_parallel) },

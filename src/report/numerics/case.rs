@@ -17,8 +17,9 @@ pub struct Case {
     pub id: &'static str,
     /// Description of what is difficult in the case, for tables.
     pub title: &'static str,
-    /// Maximum error of a number that Pinhole guarantees, in the unit that [`unit`](Self::unit)
-    /// returns. Errors in decisions, such as which object is seen, are never allowed.
+    /// Guaranteed upper bound of the errors of Pinhole's numbers, in the unit that
+    /// [`unit`](Self::unit) returns. Errors in decisions, such as which object is seen, are never
+    /// allowed.
     pub bound: f64,
     pub(super) subject: Question,
 }
@@ -26,11 +27,12 @@ pub struct Case {
 /// What a case tests, with a generator of random inputs.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Question {
-    /// Which object is seen at points of a scene's picture, at which distance and place. Errors of
-    /// numbers are in units in the last place (ulp).
+    /// Tests points of a scene's picture: which object is seen there, how far away it is, and at
+    /// which place it is hit. Errors of the distance and the place are in units in the last place
+    /// (ulp).
     Seen(fn(&mut CaseRng) -> CaseScene),
-    /// The axes of a camera, which are unit vectors. Errors of their components are in units of
-    /// 2^−53.
+    /// Tests the axes of a camera, which are unit vectors. Errors of their components are in units
+    /// of 2^−53.
     Axes(fn(&mut CaseRng) -> Camera),
 }
 

@@ -24,9 +24,11 @@ use crate::{
 pub struct CaseTally {
     /// Number of inputs tested.
     pub inputs: u64,
-    /// Numbers of answers that differ from the oracle's, i.e. of wrong ones.
+    /// Numbers of wrong answers of the textbook formulas and of Pinhole. An answer is wrong if it
+    /// differs from that of the oracle, the reference in hundreds of bits.
     pub wrong: [u64; 2],
-    /// Largest errors of the measured numbers, in the case's unit; `None` if nothing was measured.
+    /// Largest measured errors of the textbook formulas and of Pinhole, in the case's unit; `None`
+    /// if nothing was measured.
     pub error: [Option<f64>; 2],
 }
 
@@ -84,15 +86,15 @@ pub(super) struct Trial {
     oracle: Oracle,
 }
 
-/// Number of inputs per measurement. For every input, it is tested whether the right object is
-/// seen. For one in this number, the errors of the distance and of the point are also measured,
+/// Number of inputs per measurement of errors. Every input is tested for whether the right object
+/// is seen. For one of 16 inputs, the errors of the distance and of the point are also measured,
 /// which takes longer. With 16, there are many measurements, and they take little of the time.
 const INPUTS_PER_MEASUREMENT: u64 = 16;
 
-/// Boundaries between colours are searched by Pinhole's answers or, once in this number of searches
-/// on average, by the oracle's (the reference). The oracle also finds boundaries that Pinhole does
-/// not see, but its search takes about six times as long as testing the inputs beside the boundary.
-/// With 8, the oracle's searches take less than half of the time.
+/// Mean number of searches for a boundary between colours per search that uses the answers of the
+/// oracle, the reference. The other searches use Pinhole's answers. The oracle also finds
+/// boundaries that Pinhole does not see, but its search takes about six times as long as testing
+/// the inputs beside the boundary. With 8, the oracle's searches take less than half of the time.
 const BOUNDARIES_PER_ORACLE_SEARCH: u64 = 8;
 
 impl Trial {

@@ -14,7 +14,7 @@ pub struct Estimate {
     pub per_pixel: Option<f64>,
     /// Estimated CPU time, in seconds.
     pub cpu: f64,
-    /// Least and greatest CPU time, in seconds, if each run is used alone for the estimate.
+    /// Least and greatest CPU time, in seconds, among `cpu` and the estimates from single runs.
     pub cpu_runs: [f64; 2],
     /// Estimated elapsed time, in seconds.
     pub wall: f64,
@@ -99,8 +99,9 @@ impl MethodSeries {
     /// reduce the error.
     ///
     /// The error is assumed to fall as a power of the number of samples, i.e. along a straight line
-    /// in logarithms. Between two measured numbers, it is the line through both. Beyond the last,
-    /// it is the line through the last three. Times are assumed to grow linearly with the samples.
+    /// in logarithms. Between two measured numbers of samples, it is the line through both points.
+    /// Beyond the last one, the line starts at the last point, with the slope fitted to the last
+    /// three. Times are assumed to grow linearly with the samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));

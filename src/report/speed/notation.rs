@@ -3,7 +3,7 @@
 use super::{estimate::Estimate, results::EndSlope};
 use crate::numbers;
 
-/// Mark in a table for a number that is not known: an en dash.
+/// Mark in a table for a number that could not be determined: an en dash.
 pub const UNKNOWN: &str = "–";
 
 /// Formats an error that the user asked for, with all its digits. If a fraction such as 1/256 is
@@ -57,7 +57,7 @@ pub fn samples(estimate: &Estimate) -> String {
     }
 }
 
-/// Formats a slope, with its standard error if that is known.
+/// Formats a slope, with its standard error if it has one. `None` becomes [`UNKNOWN`].
 pub fn slope(slope: Option<EndSlope>) -> String {
     let signed = |number: f64| format!("{number:.2}").replace('-', "−");
     match slope {
@@ -69,8 +69,7 @@ pub fn slope(slope: Option<EndSlope>) -> String {
     }
 }
 
-/// Formats a factor with two significant digits. If it is unknown or above 10⁶, it becomes
-/// [`UNKNOWN`].
+/// Formats a factor with two significant digits. `None` and factors above 10⁶ become [`UNKNOWN`].
 pub fn factor(factor: Option<f64>) -> String {
     let known = factor.filter(|factor| *factor <= 1e6);
     known.map_or(UNKNOWN.to_owned(), |factor| significant(factor, 2))

@@ -29,7 +29,8 @@ pub struct Request {
     /// Number of runs of each method with each number of samples. If `None`, as many as there is
     /// time for.
     pub runs: Option<u64>,
-    /// Errors, in linear light, for which the needed samples and time are estimated.
+    /// Errors, in linear light. For each of them, the report estimates how many samples and how
+    /// much time a method takes to reach it.
     pub errors: Vec<f64>,
     /// Time that the measurement may take. It has no effect if both `samples` and `runs` are given.
     pub budget: Duration,
@@ -146,7 +147,7 @@ pub struct MethodPicture {
     pub cpu: f64,
     /// Root mean square error of the whole picture, in linear light.
     pub rmse: f64,
-    /// Area of the whole picture that the page shows. It is the same for all methods.
+    /// The part of the picture that the page shows. It is the same for all methods.
     pub part: Area,
     /// Pixels in the area that the page shows.
     pub film: Film,

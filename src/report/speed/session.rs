@@ -2,9 +2,10 @@
 //!
 //! The exact picture is rendered first, since all errors are differences from it. This render is
 //! not timed, because it also warms up the caches and the processor. Then come several rounds. In
-//! each, every method renders once with every number of samples. In the first round, the number of
-//! samples is quadrupled as long as there is time for a few such rounds. In later rounds, the
-//! renders are in shuffled order, so that other load on the machine affects all methods alike.
+//! each, every method renders once with every number of samples. In the first round, the numbers of
+//! samples are 1, 4, 16, …, as long as there is time for a few such rounds, unless the user chose
+//! the numbers. In later rounds, the renders are in shuffled order, so that other load on the
+//! machine affects all methods alike.
 //!
 //! A timed render starts with the scene in memory and ends with the picture in memory. It includes
 //! preparing the objects and the samples, and starting the threads. Reading the scene, comparing
@@ -153,8 +154,8 @@ impl Benchmark<'_> {
     }
 
     /// Makes the first round: renders once with the exact method, and once by every sampling method
-    /// with every number of samples. If the user chose no numbers, each is four times the last, as
-    /// long as there is time.
+    /// with every number of samples. If the user chose no numbers, they are 1, 4, 16, …, as long as
+    /// there is time.
     fn first_round(&mut self) -> Result<(), RenderError> {
         self.render(None, 0)?;
         if self.measured.series.is_empty() {
@@ -175,7 +176,8 @@ impl Benchmark<'_> {
             }
             let last = started.elapsed();
             // A render is assumed to take a constant time plus a time proportional to the number of
-            // samples. When this number is quadrupled, so is the difference of the last two times.
+            // samples. Since each number is four times the one before, the time will grow by four
+            // times as much as it grew in the last step.
             let next = last + 4 * last.saturating_sub(before);
             if is_open && !self.goes_on(next) {
                 break;
@@ -355,7 +357,7 @@ fn worst_part(world: &World, film: &Film, exact: &Film) -> Result<Area, TooLarge
 
 /// Does `work` and measures its times. The CPU time is that of the whole process, which does
 /// nothing else meanwhile except show a progress bar. The error in the returned run is NaN, since
-/// it is not yet known.
+/// the picture is compared only later.
 fn timed<T>(work: impl FnOnce() -> Result<T, RenderError>) -> Result<(T, Run), RenderError> {
     let (cpu, wall) = (ProcessTime::try_now().ok(), Instant::now());
     let done = work()?;

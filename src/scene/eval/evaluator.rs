@@ -192,9 +192,9 @@ impl<'s> Evaluator<'_, 's> {
         is_set.then_some((name, from))
     }
 
-    /// Returns the factor of a product that is a name for a plain number, such as `a` in `a * 2`
-    /// after `let a = 30`: the name, and the number as it is written. Returns `None` if there is no
-    /// such factor, or more than one.
+    /// In a product, finds the factor that is a name for a plain number, such as `a` in `a * 2`
+    /// after `let a = 30`. Returns the name, and the number as it is written. Returns `None` if
+    /// there is no such factor, or more than one.
     fn number_without_unit(&self, value: &tree::Value<'s>) -> Option<(&'s str, &'s str)> {
         let ValueKind::Chain { first, rest } = &value.kind else {
             return None;

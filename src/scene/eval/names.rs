@@ -117,8 +117,8 @@ impl<'s> Names<'s> {
         UnitOrigin::of(value, &|name| Some(self.defined.get(name)?.origin))
     }
 
-    /// Defines an index of the current block, which is the counter of a `for`. The value is `None`
-    /// if it is unknown.
+    /// Defines an index, i.e. the counter of a `for`, of the current block. The value is `None` if
+    /// it is unknown.
     pub fn set_index(&mut self, name: Name<'s>, value: Option<Value>) {
         let index = Defined {
             value,
@@ -181,9 +181,9 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, among which the one most similar to an undefined
-    /// name is searched for. Subtracts the comparisons of this search from their remaining number.
-    /// Returns `None` if fewer remain.
+    /// Returns the names that are defined so far, for a search for the one most similar to an
+    /// undefined name. The number of comparisons in all searches is limited. Subtracts those of
+    /// this search from the remaining number; returns `None` if too few remain.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
         // Approximate number of predefined colours and constants, with which every search also
         // compares. An estimate is enough, because it only limits the number of searches.

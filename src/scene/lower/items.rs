@@ -143,7 +143,8 @@ impl<'s> Lowering<'s> {
             let text = self.sources.text(*span);
             let mentioned = row.field_names().filter(|name| mentions(text, name));
             lowered.meant.extend(mentioned);
-            // Names in indices that could not be parsed are not reported again where they are used.
+            // If indices could not be parsed, the names in them are not reported again at their
+            // uses.
             if Some(span.start) < open {
                 self.names.know_words(text);
             }
@@ -309,7 +310,7 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Reports two fields that exclude each other. The first label is at the later one.
+    /// Reports two fields that exclude each other. The first label is at the later field.
     fn conflicts(&mut self, block: &LoweredBlock<'s>) {
         // Each group of fields that exclude each other is reported at most once, even for a box
         // with center, size, min and max.

@@ -142,7 +142,7 @@ impl<'s> Lowering<'s> {
         self.problems.is_empty() && self.names.problems.borrow().is_empty()
     }
 
-    /// Returns the parts of the scene that have no errors, all problems, and the defined names.
+    /// Returns: the parts of the scene that have no errors; all problems; and the defined names.
     fn finish(mut self) -> (Parts, Vec<Diagnostic>, Names<'s>) {
         let parts = self.build();
         let mut diagnostics = std::mem::take(&mut self.found);

@@ -1,8 +1,8 @@
 //! Withdraws suggested names that would lead to another error.
 //!
-//! In: a function that evaluates a value. Out: its result and reports. A name is suggested only if
-//! the value with that name has no further error, such as a wrong type, a wrong number of
-//! arguments, or a broken condition of its field.
+//! In: a function that evaluates a value. Out: the value, and reports of mistakes in it. A name is
+//! suggested only if the value with that name has no further error, such as a wrong type, a wrong
+//! number of arguments, or a broken condition of its field.
 
 use super::lowering::Lowering;
 use crate::{diagnostic::Diagnostic, scene::eval::Suggestion, source::Span};

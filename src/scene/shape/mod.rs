@@ -204,9 +204,9 @@ mod tests {
         source::{Source, Sources},
     };
 
-    /// Returns sets of fields that a block can have together. Each way of each
-    /// [`Choice`](crate::schema::Choice) of the block, i.e. each of the alternatives that exclude
-    /// each other, occurs in at least one set.
+    /// Returns sets of fields that a block can have together. A [`Choice`](crate::schema::Choice)
+    /// of the block has alternatives that exclude each other. Each alternative occurs in at least
+    /// one set.
     fn ways(row: &'static BlockRow) -> impl Iterator<Item = Vec<&'static FieldRow>> {
         let most = row.choices.iter().map(|choice| choice.ways.len()).max();
         (0..most.unwrap_or(1)).map(move |way| {

@@ -214,8 +214,8 @@ impl<'s> Recovery<'_, 's> {
                 || (word == "%" && place == CommentPosition::Operator);
             return is_place && self.is_prose();
         }
-        // In `1 -- big`, the `--` starts a comment. `1 --b`, and `1 -- b` if `b` is defined, are
-        // differences.
+        // In `1 -- big`, the `--` starts a comment. In `1 --b`, and in `1 -- b` if `b` is defined,
+        // the first `-` subtracts and the second one is a sign.
         let name = self.word(2);
         let is_remark = self.is_name(2)
             && !self.is_adjacent(2)

@@ -274,7 +274,7 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports elements of a list that are named with `=` or `:`. The fix removes the names if they
+    /// Reports a list whose elements are named with `=` or `:`. The fix removes the names if they
     /// are x, y, z or r, g, b, in this order. Other names have an uncertain meaning and get no fix.
     fn names_of_parts(&mut self, labels: &[Span], is_plain: bool) {
         let Some(&first) = labels.first() else {

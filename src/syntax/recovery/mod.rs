@@ -248,8 +248,8 @@ impl<'w, 's> Recovery<'w, 's> {
         self.kind(ahead) == TokenKind::Name && !self.is(ahead, "let")
     }
 
-    /// Returns the text before the token `ahead` tokens after the next one: from the end of the
-    /// previous token.
+    /// Returns the text directly before the token `ahead` tokens after the next one. The text
+    /// starts at the end of the previous token.
     fn space_before(&mut self, ahead: usize) -> &'s str {
         let end = match ahead {
             0 => self.last_end,
@@ -352,9 +352,9 @@ impl<'w, 's> Recovery<'w, 's> {
 
     // The methods below skip text after a mistake.
 
-    /// Returns whether every unfinished construct ends before the next token: a brace, `let`, the
-    /// name of a field, the start of a block, or the first token of a line (within a block, only a
-    /// name).
+    /// Returns whether the next token ends every unfinished construct before it. Such a token is a
+    /// brace, `let`, the name of a field, the start of a block, or the first token of a line
+    /// (within a block, only a name).
     fn is_boundary(&mut self) -> bool {
         let word = self.word(0);
         matches!(word, "" | "let" | "{" | "}")

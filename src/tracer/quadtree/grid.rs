@@ -18,7 +18,7 @@ const ROOT_MARGIN: f64 = 1.125;
 
 /// Binary logarithm of the side of the quadtree's root cell in units of the grid. Rounding
 /// positions to units hardly matters, because even in a picture 100,000 pixels wide, a pixel is
-/// about a hundred units long.
+/// about 150 units long.
 pub(super) const LEVELS: u32 = 24;
 
 /// A rectangle of the view plane in units of the grid; both ends are included.

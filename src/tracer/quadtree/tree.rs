@@ -27,7 +27,7 @@ pub(super) struct Cell {
     pub(super) quarters: u32,
     /// Start of the cell's list among the entries.
     pub(super) start: u32,
-    /// End of the cell's list.
+    /// End of the cell's list among the entries: the index after its last entry.
     pub(super) end: u32,
     /// Maximum of the rounded inverse depths of the objects listed in this cell and in all cells
     /// below it.

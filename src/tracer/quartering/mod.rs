@@ -70,8 +70,9 @@ pub enum PicturePart<'a> {
         y: u32,
         /// The objects that may be seen in the pixel, in file order.
         candidates: &'a [VisibilityCandidate],
-        /// The squares of a checkerboard that the pixel shows, if nothing else is seen there and
-        /// the squares are known.
+        /// If the pixel shows only one checkerboard: which of its squares. `None` if something else
+        /// may be seen in the pixel, if the squares could not be determined, or if they are too
+        /// uncertain for sampling.
         checks: Option<&'a CheckerPixel>,
     },
     /// An area with so many candidates that finding where each is seen costs more than it saves.

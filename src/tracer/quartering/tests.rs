@@ -106,8 +106,8 @@ fn what_a_wall_hides_is_not_found() {
 }
 
 /// In a crowd of objects, `nearby` finds the objects around every square of the picture. If only
-/// these objects are tested, some pixels are known to have one colour, and all sample points get
-/// the same colour as by the quadtree.
+/// these objects are tested, some pixels turn out to have a single colour, and all sample points
+/// get the same colour as by the quadtree.
 #[test]
 fn of_a_crowd_the_objects_nearby_are_enough() {
     let mut shapes = thousand_spheres(9.0);

@@ -24,9 +24,9 @@ use crate::math::SimdWidth;
 pub use self::pixel::PreparedPixel;
 
 /// Prepares `pixel` for the pixel in column `x` and row `y`. `candidates` are the objects that may
-/// be seen in it, in file order. `checks` are the squares of a checkerboard, if nothing else is
-/// seen in the pixel and its squares are known. Sets `is_hard` if the samples must be traced one by
-/// one.
+/// be seen in it, in file order. `checks` are the squares that the pixel shows, if it shows only
+/// one checkerboard and the squares could be determined. Sets `is_hard` if the samples must be
+/// traced one by one.
 pub fn prepare(
     world: &World,
     [x, y]: [u32; 2],

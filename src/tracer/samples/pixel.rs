@@ -37,7 +37,8 @@ pub struct PreparedPixel {
     pub(super) planes: Vec<LocalForm>,
     /// Whether all samples must be traced one by one.
     pub(super) is_hard: bool,
-    /// The colours that samples may see, except samples that are traced one by one.
+    /// The colours that may be seen in the pixel, each with the number of samples that see it.
+    /// Samples that are traced one by one are not counted.
     pub(super) colors: Vec<ColorCount>,
     /// Number of uncertain samples in the last chunk.
     pub(super) doubts: u64,
@@ -75,10 +76,10 @@ pub(super) struct PixelSurface {
 pub(super) enum ColorPattern {
     /// One colour, given by its code.
     Plain(f64),
-    /// Two colours, separated by lines in [`PreparedPixel::lines`]: those from the end of the
-    /// surface's edges up to `end`. A point shows the first colour if the product of the lines'
-    /// forms is positive, and the second colour if it is negative. If `odd` is set, the two colours
-    /// change places.
+    /// Two colours, separated by lines. In [`PreparedPixel::lines`], these lines come after the
+    /// surface's edges; `end` is the index after the last one. A point shows the first colour if
+    /// the product of the lines' forms is positive, and the second colour if it is negative. If
+    /// `odd` is set, the two colours change places.
     Lines { end: usize, odd: bool },
     /// The squares of a checkerboard. A division finds the square of each sample.
     Squares(CheckerForms),
@@ -87,7 +88,7 @@ pub(super) enum ColorPattern {
 /// Formula for the inverse depth of a surface.
 #[derive(Debug)]
 pub(super) enum Depth {
-    /// The inverse depth is not needed.
+    /// No formula, because the surfaces' depths are not compared.
     Unknown,
     /// The least of the inverse depths of several planes, given by the start and the end of their
     /// range in [`PreparedPixel::planes`].

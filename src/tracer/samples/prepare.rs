@@ -1,9 +1,9 @@
 //! The preparation of a pixel: the objects that may be seen in it (candidates), described by forms.
 //!
-//! In: the pixel and its candidates. Out: surfaces with their boundary forms, colour patterns and
-//! depths, sorted from back to front if their depths do not overlap. A form is left out if it
-//! certainly has one sign in the whole pixel. In rare cases and after overflows, preparation fails,
-//! and the samples are traced one by one.
+//! In: the pixel and its candidates. Out: surfaces, each with its boundary forms, its colour
+//! pattern and its depth. They are sorted from back to front if their depths do not overlap. A form
+//! is left out if it certainly has one sign in the whole pixel. In rare cases and after overflows,
+//! preparation fails, and the samples are traced one by one.
 
 use super::{
     super::{
@@ -176,8 +176,9 @@ impl PreparedPixel {
     }
 
     /// Returns how the colour of a checkerboard is found at the samples of a pixel. If the squares
-    /// in the pixel are known and few, it is found from the signs of the lines between them,
-    /// otherwise by a division for each sample. Fails if an error bound exceeds [`MAX_ERROR`].
+    /// in the pixel could be determined and are few, the colour is found from the signs of the
+    /// forms of the lines between them; otherwise, by a division for each sample. Fails if an error
+    /// bound exceeds [`MAX_ERROR`].
     fn pattern(
         &mut self,
         board: &Checkerboard<f64>,

@@ -1,10 +1,10 @@
 //! The camera and the objects in each precision: `f64`, double-double, and big numbers, the highest
 //! precision.
 //!
-//! In: the numbers of the scene. Out: frames and objects in the requested precision. In precisions
-//! higher than `f64`, objects are prepared when they are first requested. A decision that one
-//! precision leaves uncertain, by its error bounds, is made in the next precision. The highest
-//! precision decides everything.
+//! In: the numbers of the scene. Out: the camera, the near and the far plane, and the objects, in
+//! the requested precision. In precisions higher than `f64`, objects are prepared when they are
+//! first requested. A decision that one precision leaves uncertain, by its error bounds, is made in
+//! the next precision. The highest precision decides everything.
 
 use glam::{DVec2, DVec3};
 

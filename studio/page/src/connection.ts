@@ -52,7 +52,7 @@ class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Number of the latest attempt to connect. Events of earlier attempts are ignored. */
   private current = 0;
-  /** Times of the last message and (`asked`, else 0) of a test request without a reply yet. */
+  /** Time of the last message. `asked` is the time of a test request without a reply yet, or 0. */
   private heard = 0;
   private asked = 0;
   private hangs = false;

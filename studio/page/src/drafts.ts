@@ -43,7 +43,7 @@ files.onSaved = text => void keepDraft(text);
 /** Plans to store the changed text. */
 export function draftChanged(): void { timer ||= setTimeout(() => void keepDraft(), BEHIND); }
 
-/** Stores the text if it is unsaved. Deletes offered drafts equal to it or to the text `saved`. */
+/** Stores the text if it is unsaved. Deletes offered drafts equal to this text or to `saved`. */
 async function keepDraft(saved?: string): Promise<void> {
   clearTimeout(timer);
   timer = 0;

@@ -1,5 +1,5 @@
-// A drag of an object's handle or of the camera. Its result depends on its first and latest point,
-// not on the path, and on the text at the press, which the server gets under a separate URI.
+// A drag of an object's handle or of the camera. Its result depends only on its first and latest
+// point and on the text at the press. The server gets this text under a separate URI.
 
 import { byId, newestOf } from "./dom";
 import { editor } from "./editor";
@@ -57,7 +57,7 @@ export class Drag {
   private readonly released = new Promise<void>(resolve => (this.letGo = resolve));
   private readonly done = new Promise<void>(resolve => (this.settle = resolve));
 
-  /** `hold` returns what is dragged, or a promise if that is known only after the press. */
+  /** `hold` returns what is dragged, or a promise of it if that is known only after the press. */
   constructor(private readonly press: Point, hold: () => Promise<Held | null> | Held) {
     this.target = press;
     frames.dragging = this;

@@ -20,7 +20,7 @@ import { sceneHighlighting, sceneLanguage } from "./language";
 import { isSuperseded } from "./protocol";
 import { sanitized } from "./sanitize";
 
-/** Maximum time to compare two texts, in ms; a longer pause is felt. Then results are coarser. */
+/** Time limit to compare texts, in ms, so that no pause is felt. After it, results get coarser. */
 const DIFF_TIME = 100;
 
 /** Matches unpaired surrogates. UTF-8, in which files and messages are written, has none. */
@@ -36,7 +36,7 @@ const wholeCharacters = EditorState.transactionFilter.of(transaction => {
   return changes.length === 0 ? transaction : [transaction, { changes, sequential: true }];
 });
 
-/** Types over a selection of several lines. A browser would add styles, which the CSP forbids. */
+/** Replaces selected lines by typed text. A browser would add styles, which the CSP forbids. */
 const replacedLines = EditorView.domEventHandlers({
   beforeinput({ inputType, data, isComposing }, view) {
     const { state } = view;
@@ -65,7 +65,7 @@ const closingBrace = Prec.high(EditorView.inputHandler.of((view, from, to, typed
   return true;
 }));
 
-/** Scrolls to a change within the editor only, if the editor does not have the focus. */
+/** Scrolls the editor, but not the page, to a change if the editor does not have the focus. */
 function withinText(view: EditorView, { head }: SelectionRange): boolean {
   if (view.hasFocus) return false;
   const { scrollDOM, documentPadding } = view;

@@ -126,7 +126,7 @@ class Files {
     this.show();
   }
 
-  /** Handles a message with the host's file: the first one, and one after each change. */
+  /** Handles the host's file. The host sends it at the start and after each change of the file. */
   hosted({ name, text, reason, saved }: HostedFile): void {
     unsay(NOT_SAVED);
     Object.assign(this.hosts, { name, isNew: isServed && !saved });
@@ -342,7 +342,7 @@ export function withEndsOf(file: string, text: string): string {
 const CLASSES = { " ": "", "-": "removed", "+": "added" };
 interface DifferenceLine { sign: " " | "-" | "+"; text: string }
 
-/** Compares two texts. Returns the lines from the first to the last difference, with two around. */
+/** Compares two texts. Returns the first to the last differing line, and two lines around them. */
 export function difference(one: string, other: string): DifferenceLine[] {
   const lines = compared(one.split("\n"), other.split("\n"));
   const differs = ({ sign }: DifferenceLine) => sign !== " ";

@@ -21,11 +21,11 @@ export interface Shown {
 /** Maximum number of pixels of a coarse picture, which is fast enough for each step of a drag. */
 const COARSE_PIXELS = 320 * 180;
 
-/** Largest picture that all browsers can show: number of pixels, and pixels of a side. */
+/** Largest size that all browsers can show: pixels of a picture, and pixels of one of its sides. */
 const MOST = { pixels: 16_000_000, side: 8192 };
 /** Pause in a drag, in ms, before finer pictures are requested: a little over a screen refresh. */
 const HAND_RESTS = 20;
-/** If the last final picture took at most this time, in ms, no sharp one precedes the next. */
+/** Time of a final picture, in ms, up to which the next one skips the sharp picture before it. */
 const SOON = 200;
 
 /** A requested picture: its text, and the number of the request. */
@@ -46,7 +46,7 @@ class Frames {
   shown: Shown & Asked | null = null;
 
   private generation = 0;
-  /** Whether the newest text about which the server has answered has errors. */
+  /** Whether the server's newest answer about a text said that the text has errors. */
   private isBroken = false;
   private lastTook = Infinity;
 
@@ -95,7 +95,7 @@ class Frames {
         const before = { doc: null, generation: asked.generation - 1 };
         const isDone = this.shown?.fineness === "final"
           && this.shown.generation === before.generation;
-        // The last good text's picture is still finished. Further errors do not begin it again.
+        // The picture of the last good text is completed. Further errors do not begin it again.
         if (isFirst && !isDone) void this.present(before, "final", this.ask({ last: true }));
         return null;
       }

@@ -7,7 +7,7 @@ import { editor } from "./editor";
 import { picture } from "./picture";
 import { setText } from "./visible";
 
-/** Least share of the text, and of the picture, in the page, in %, so that neither vanishes. */
+/** Minimum share of the page for the text and for the picture, in %, so that neither vanishes. */
 const LEAST = 20;
 const MOST = 80;
 

@@ -139,7 +139,7 @@ function twice(shape: Record<string, string>, name: string): SVGElement[] {
   return ["under ", ""].map(it => createSvg("path", { ...shape, class: `line ${it}${name}` }));
 }
 
-/** Returns the grid lines between the pixels that are visible. */
+/** Returns the lines of the grid that separate the visible pixels. */
 function grid(): Polyline[] {
   const { stage, size } = picture;
   const [left, top] = picture.toPicture([0, 0]);

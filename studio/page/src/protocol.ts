@@ -68,7 +68,7 @@ export interface HostedFile {
   drafts?: Draft[];
 }
 
-/** Unsaved text with the key of its page. `base` is the file it began from; `time` is in s. */
+/** Unsaved text of the page `id`. `base` is the file's text that it began from; `time` is in s. */
 export interface Draft { id: string; name: string; text: string; base: string | null; time: number }
 
 /** Whether the file was saved. If not, `text` is the file's current content. */

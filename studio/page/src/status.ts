@@ -28,7 +28,7 @@ export function picture([width, height]: [number, number], fineness: Fineness): 
   setText(byId("frame-state"), `${width} × ${height}, ${FINENESS[fineness]}`);
 }
 
-/** Marks the picture as outdated and shows the reason `why`. If it is null, removes the mark. */
+/** Marks the picture as outdated and shows the reason `why`. If `why` is null, removes the mark. */
 export function stale(why: string | null): void {
   const note = byId("stale");
   note.hidden = why === null;

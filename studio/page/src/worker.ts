@@ -10,7 +10,7 @@ function run(engine: Engine): void {
     for (const text of texts) postMessage(text);
     if (isPlanned || !engine.isBusy()) return;
     isPlanned = true;
-    // Messages that arrive before this one are handled before the next slice of work.
+    // Texts that arrive before this null message are handled before the next slice of work.
     slices.port2.postMessage(null);
   };
   slices.port1.onmessage = () => {

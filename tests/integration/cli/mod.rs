@@ -38,8 +38,9 @@ fn ctrl_c_keeps_the_hard_cases_measured_so_far() {
     assert!((1..1_000_000_000).contains(&asked), "{asked}");
     let people = interrupted(&mut folder.command(line), 1500).errors;
     assert!(people.contains("S1a  rays that nearly touch a sphere"));
-    // On a busy machine, the interrupted table may lack some cases. Therefore, the total in the
-    // expected message comes from another run, whose table has all cases.
+    // The expected message contains the number of inputs of all cases. On a busy machine, the
+    // interrupted table may lack some cases. So the number of cases is taken from another run,
+    // whose table has all of them.
     let all = folder
         .done("report --numerics --inputs 1 --format json")
         .json();

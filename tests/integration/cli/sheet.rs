@@ -52,8 +52,8 @@ fn each_picture_of_a_sheet_equals_the_render_of_its_scene() {
         .matches("warning[pinhole::unused_index]")
         .count();
     assert_eq!((said.status, told), (0, 1), "{}", said.errors);
-    // Only `check` warns of objects outside of the picture. A sweep that moves the camera past
-    // objects would print the warning for every scene.
+    // Only `check` warns of objects outside of the picture. If other commands did, a sweep that
+    // moves the camera past objects would print the warning for every scene.
     for (command, told) in [("check", 1), ("render", 0), ("inspect", 0), ("probe", 0)] {
         let rest = if command == "probe" { " 1 1" } else { "" };
         let said = folder.run(&format!("{command} w.scn{rest}"));

@@ -97,8 +97,8 @@ fn pictures_are_compared_by_content_across_formats() {
     for name in ["a.ppm", "a.bmp", "a.tiff", "a.webp", "b.jpg", "b.gif"] {
         save(&folder, name, picture.to_rgb8());
     }
-    // Half of the light of white would be the sRGB byte 187.5. Opacity mixes linear light, so the
-    // picture is read as 188.
+    // The picture is white with half opacity. Opacity mixes linear light, and half of the light of
+    // white is 187.5 as an sRGB value, or 188 as a byte.
     let half = ImageBuffer::from_pixel(96, 64, Rgba([65535u16, 65535, 65535, 32768]));
     save(&folder, "half.png", half);
     let mixed = ImageBuffer::from_pixel(96, 64, Rgb([188u8; 3]));

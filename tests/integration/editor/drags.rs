@@ -103,7 +103,9 @@ fn direction_seen(scene: &Scene, point: DVec3, axis: usize) -> DVec2 {
     let camera = camera_of(scene);
     let turned = |v: DVec3| DVec3::new(v.dot(camera.u), -v.dot(camera.v), -v.dot(camera.w));
     let (at, by) = (turned(point - camera.eye), turned(DVec3::AXES[axis]));
-    // The result is the derivative of the projection (x/z, y/z) along the movement, times z².
+    // Let (x, y, z) be the point in the camera's coordinates. It appears at (x/z, y/z). The vector
+    // below is the derivative of (x/z, y/z) along the movement, multiplied by z² and then
+    // normalized.
     (by.truncate() * at.z - at.truncate() * by.z).normalize()
 }
 
@@ -197,8 +199,8 @@ proptest! {
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // A ray that passes three quarters of a pixel inside of the silhouette hits the
-                // sphere, and a ray as far outside does not. If the centre is behind the eye, the
+                // A ray that passes 3/4 pixel inside of the silhouette hits the sphere. A ray that
+                // passes 3/4 pixel outside of it does not. If the centre is behind the eye, the
                 // inside is the side away from the centre's projection.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
@@ -253,7 +255,8 @@ proptest! {
     }
 }
 
-/// Drags a handle five times. Returns the shape of the object before the first drag and after each.
+/// Drags a handle five times. Returns the shapes of the object: before the first drag, and after
+/// each of the five.
 fn drag_repeatedly(block: &str, handle: &str, step: Option<f64>) -> Vec<Shape> {
     let view = "camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) d 2.75 }";
     let mut text = format!("{block} {view}");

@@ -86,9 +86,9 @@ fn ask_about_all(analysis: &Analysis<'_>) {
 
 sampled_and_exhaustive!(every_prefix_and_edit_of_an_example_gets_consistent_editor_answers);
 
-/// Queries beginnings of an example at their ends, and the whole example at the same offsets: every
-/// second one, because the examples are similar. Also reads the example without one byte, and
-/// queries it without eight characters in a row, as it is while a user rewrites a line.
+/// Queries an example at every second offset. For each of these offsets, also queries the text that
+/// ends there. In addition, reads the example without one byte, and queries it without eight
+/// characters in a row, as it is while a user rewrites a line.
 fn every_prefix_and_edit_of_an_example_gets_consistent_editor_answers(effort: Effort) {
     for (index, text) in effort.first(3, examples()).enumerate() {
         let whole = sources(&text);

@@ -63,7 +63,7 @@ fn ten_thousand_objects_are_known_within_1e_9() {
     ));
 }
 
-/// Silhouettes of spheres that nearly coincide are distinguished as far as rounding allows.
+/// Nearly coincident silhouettes of spheres are distinguished as far as rounding allows.
 #[test]
 fn nearly_coincident_outlines_are_known_and_add_up() {
     for gap in ["1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "1e-15"] {

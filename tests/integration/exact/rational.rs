@@ -62,8 +62,8 @@ fn value([a, b, c]: &Linear, [x, y]: &[RBig; 2]) -> RBig {
     a * x + b * y + c
 }
 
-/// Returns the indices of the rows, or columns, of squares that a polygon in the view plane
-/// overlaps.
+/// Returns the indices of the board's rows, or columns, that overlap a polygon in the view plane. A
+/// row or column is a strip of squares.
 fn square_indices([place, below]: &[Linear; 2], polygon: &Polygon) -> Vec<IBig> {
     let places = polygon
         .iter()
@@ -114,8 +114,9 @@ fn area(polygon: &Polygon) -> RBig {
     twice / RBig::from(2)
 }
 
-/// Some cameras are level. Others look down to the right, along (48, −25, −36)/65. They are
-/// unrolled, or rolled by the angle whose cosine is 3/5. All compared pixels are below the horizon.
+/// Some cameras are level and unrolled. Others look down to the right, along (48, −25, −36)/65, and
+/// are unrolled or rolled by the angle whose cosine is 3/5. All compared pixels are below the
+/// horizon.
 #[test]
 fn board_pixels_agree_with_rational_arithmetic() {
     let (width, height) = (64u32, 48u32);

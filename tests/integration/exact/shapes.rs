@@ -22,8 +22,9 @@ fn assert_coverage(camera: &str, object: &str, expected: f64) {
 
 #[test]
 fn half_plane_coverage_matches_the_closed_form() {
-    // The view plane has the distance 1 and shows x from −1 to 1. The right edge of the box appears
-    // at x = edge/4, or at edge/5 if the right face is not visible.
+    // The view plane has the distance 1 and shows x from −1 to 1. The right face of the box reaches
+    // from depth 4 to depth 5. The box ends at x = edge/5 in the picture if this face is visible,
+    // and otherwise at x = edge/4.
     for edge in [-3.5f64, -0.25, 0.0, 1.0, 3.0] {
         let object = format!("box {{ min (-100, -100, -5) max ({edge}, 100, -4) color white }}");
         let expected = 0.5 + edge / if edge < 0.0 { 10.0 } else { 8.0 };
@@ -91,7 +92,7 @@ fn board_coverage_from_above_matches_the_closed_form() {
 
 #[test]
 fn nearly_vertical_lines_are_known_and_add_up() {
-    // The camera looks at an edge of the box, which runs along the middle of the picture. The
+    // The camera looks at an edge of the box. In the picture, this edge runs along the middle. The
     // silhouette of a sphere crosses this edge.
     for [camera, objects] in rows("
         eye (2, 0, 3) lookat (1, -1, 0) d 0.5 near 3 -> sphere { center (-1, 2, -1.5) radius 1.5 color white } box { min (1, -2, -1) max (2, -1.5, 0) color white }

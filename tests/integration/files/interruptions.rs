@@ -26,7 +26,8 @@ fn a_concurrent_save_of_another_program_is_never_overwritten() {
     let theirs = pinhole::scene::SMALLEST;
     for command in ["fmt a.scn", "check --fix a.scn"] {
         let mut left = 0;
-        // With some of the delays, the program has already read the file but not yet written it.
+        // With some of the delays, the other program saves the file after the command has read it,
+        // but before the command writes it.
         for delay in 0..40 {
             let folder = Folder::with([("a.scn", &*long), ("theirs", theirs)]);
             let child = spawned(&folder, command);

@@ -46,8 +46,8 @@ fn a_mean_equals_the_quotient_in_extended_precision() {
 #[test]
 fn a_mean_is_rounded_once() {
     // The sum is 3 · 0.1 + 7 · 0.3. As doubles, 0.1 is 0.1000000000000000055511151231257827, and
-    // 0.3 is 0.299999999999999988897769753748. So the exact mean differs from 0.24 by at most
-    // 6e-18, which is a quarter of the distance between neighbouring doubles.
+    // 0.3 is 0.299999999999999988897769753748. So the exact mean is about 0.24 − 6e-18. Its nearest
+    // double is the same as that of 0.24, because neighbouring doubles are 28e-18 apart.
     let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
     assert_eq!(found, [0.24; 3]);
     // One of 2^53 samples is black, so the mean is exactly 1 − 2^−53. If the samples were added one

@@ -91,7 +91,7 @@ impl Words {
     }
 }
 
-/// Returns the length of a field's name at the start of `word` that is joined with a value.
+/// If `word` is a field's name joined with a value, returns the length of the field's name.
 /// Examples are `radius2`, and `centerball` if the whole text `all` contains the word `ball`.
 /// Returns `None` if `word` is itself a field's name or does not start with one.
 fn joined_field(word: &str, all: &str) -> Option<usize> {

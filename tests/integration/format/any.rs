@@ -8,7 +8,7 @@ fn one_of(words: &'static str, separator: char) -> impl Strategy<Value = &'stati
     select(words.split(separator).collect::<Vec<_>>())
 }
 
-/// Generates the gaps between tokens, which consist of white space and comments.
+/// Generates gaps between tokens. A gap consists of white space and comments.
 pub fn gaps() -> impl Strategy<Value = Vec<&'static str>> {
     // Bars separate the gaps. A gap that should be frequent is listed twice.
     let gaps = "|||| | |  |\n|\n|\n\n|\n \n\t\n|\r\n| // c \n|\n// own\n|/* b */| /* b */ |\n/* own */\n|/* two\n lines */|\n\n/* d */ /* e */\n|// f\n// g\n\n";

@@ -10,14 +10,14 @@ use serde_json::{Value, json};
 
 use crate::{program::Folder, table::rows};
 
-/// A small scene, so that its mistakes are found quickly.
+/// Text of a small scene, so that the mistakes in its pictures are found quickly.
 pub const SCENE: &str = "image { width 24 height 16 background navy }
 camera { eye (3, 3.5, 8) lookat (0.2, 0.8, 0) roll 10deg d 2.75 }
 sphere Ball { center (-1, 1, 0) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// Rows of a picture's file name and the arguments of `render` that make the picture.
+/// Rows: the file name of a picture, and the arguments of `render` that make it.
 const PICTURES: &str = "
     right.png -> --set sampler.method=exact
     red.png -> --set sampler.method=exact --set image.background=red

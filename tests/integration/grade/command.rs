@@ -13,8 +13,8 @@ triangle Sail { centroid (0.8, 1, 0.6) normal (0.3, 0, 1) sides (2, 2, 1) }
 box { center (2.2, 0.75, -0.5) }
 ";
 
-/// Rows of a file name, the arguments of `render` that make the file, its verdict, and the name of
-/// its mistake. In `scatter.png`, a third of the pixels has no sample.
+/// Rows: a file name, the arguments of `render` that make the file, its verdict, and the identifier
+/// of its mistake. In `scatter.png`, a third of the pixels has no sample.
 const PICTURES: &str = "
     crop.png -> --set sampler.method=exact --crop 8,4,40,30 -> right ->
     exact.exr -> --set sampler.method=exact -> right ->

@@ -1,5 +1,5 @@
-//! Tests of output for teachers' systems: JUnit XML, Gradescope's results and Moodle's worksheet,
-//! with points.
+//! Tests of points and other results in the forms that teachers' systems read: JUnit XML,
+//! Gradescope's results and Moodle's worksheet.
 
 use serde_json::Value;
 

@@ -8,8 +8,8 @@ impl Program {
     /// Returns the colour of the surface that a ray sees, and the factor by which shading
     /// multiplies the colour's light. The ray starts at `from`; `view` is the view direction.
     pub fn trace(&self, from: DVec3, ray: DVec3, view: DVec3) -> ([u8; 3], f64) {
-        // The program may treat surfaces behind the eye wrongly: as nearer than all others, or like
-        // surfaces in front, by their distance.
+        // The program may treat surfaces behind the eye wrongly. Either they count as nearer than
+        // all others, or they are compared by distance like those in front of it.
         let order = |t: f64| {
             if self.behind == Behind::First {
                 t

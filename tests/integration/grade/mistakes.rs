@@ -4,7 +4,7 @@ use glam::{DVec3, dvec3};
 use image::{RgbImage, imageops};
 
 use super::{
-    scenes::shift,
+    scenes::{shift, turn},
     textbook::{
         Axes, Behind, Encoding, Object, Program, Roots, Shape, Squares, Visible, light, sharpened,
         with_stride,
@@ -13,8 +13,9 @@ use super::{
 
 /// A mistake that the program of a student may have.
 pub struct Mistake {
-    /// Answers of `diff` that are accepted for the mistake, separated by bars. Each is a mistake's
-    /// name, a name with a part of its message, or the target of its `--set` argument.
+    /// Answers of `diff` that are accepted for the mistake, separated by bars. Each answer is a
+    /// mistake's name; or a name and a part of its message; or the target of a `--set` argument,
+    /// such as `camera.roll`.
     pub name: &'static str,
     change: Change,
 }
@@ -217,6 +218,17 @@ const OTHERS: &[Mistake] = &[
     pixels("channels green, red, blue", |[r, g, b]| [g, r, b]),
     pixels("channels green, blue, red", |[r, g, b]| [g, b, r]),
     pixels("channels blue, red, green", |[r, g, b]| [b, r, g]),
+    pixels("channels the red channel", |[_, g, b]| [0, g, b]),
+    pixels("channels the green channel", |[r, _, b]| [r, 0, b]),
+    pixels("channels the blue channel", |[r, g, _]| [r, g, 0]),
+    row("parallel_rays the point that it looks at", |p| {
+        p.axes = Axes::ParallelFromLookat
+    }),
+    row("normal Sail has its normal reversed", |p| {
+        let normal = dvec3(0.3, 0.0, 1.0).normalize();
+        let across = DVec3::Y.cross(normal);
+        turn(p, |corner| corner - 2.0 * corner.dot(across) * across)
+    }),
     pixels("gray the mean of their encoded values", |color| {
         gray(color, [1.0; 3])
     }),
@@ -224,6 +236,12 @@ const OTHERS: &[Mistake] = &[
         gray(color, [0.2126, 0.7152, 0.0722])
     }),
     row("half_pixel up and left", |p| p.offset = -0.5),
+    row("half_pixel through the window's border", |p| {
+        p.reaches_borders = true
+    }),
+    row("half_pixel upper left quarter", |p| {
+        (p.offset, p.pixel) = (-0.25, 0.5)
+    }),
     row("half_pixel a whole pixel too far down and right", |p| {
         p.offset = 1.0
     }),
@@ -371,14 +389,6 @@ fn stretch(program: &mut Program, by: [f64; 2]) {
     if let Some(Shape::Box(least, greatest)) = program.shape("Crate") {
         let size = *greatest - *least;
         (*least, *greatest) = (*least + by[0] * size, *greatest + by[1] * size);
-    }
-}
-
-/// Turns the triangle about its centroid.
-fn turn(program: &mut Program, turned: impl Fn(DVec3) -> DVec3) {
-    if let Some(Shape::Triangle(corners)) = program.shape("Sail") {
-        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-        *corners = corners.map(|corner| middle + turned(corner - middle));
     }
 }
 

@@ -64,6 +64,7 @@ fn every_mistake_can_be_made_in_every_scene() {
         "painted",
         "sunk",
         "backwards",
+        "leaning",
         "level",
         "empty",
     ] {

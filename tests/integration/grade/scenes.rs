@@ -1,6 +1,6 @@
 //! Scenes for the test pictures, each as a program of a student and as text in Pinhole's language.
 
-use glam::{DVec3, dvec3};
+use glam::{DQuat, DVec3, dvec3};
 
 use super::textbook::{
     Axes, Behind, Encoding, Object, Program, Roots, Sampling, Shape, Squares, Visible,
@@ -10,7 +10,7 @@ use super::textbook::{
 /// picture, turned a little. `street` has the same names of objects, a closer camera, a far plane
 /// and more objects. The other scenes are variants of the figure for mistakes that need them: a
 /// near plane that clips objects, another lens, a low window, a box with different colours for its
-/// faces, a ball sunk into the floor, the floor as the first object, or no roll.
+/// faces, a ball sunk into the floor, a leaning triangle, the floor as the first object, or no roll.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),
@@ -44,6 +44,13 @@ pub fn scene(name: &str) -> (Program, String) {
         "level" => {
             program.roll = 0.0;
             text = text.replace("  roll 10deg", "");
+        }
+        "leaning" => {
+            // The triangle is turned in its plane, whose normal is (0.3, 0, 1).
+            let normal = dvec3(0.3, 0.0, 1.0).normalize();
+            let spin = DQuat::from_axis_angle(normal, 25_f64.to_radians());
+            turn(&mut program, |corner| spin * corner);
+            text = text.replace("sides (2, 2, 1)", "sides (2, 2, 1)  spin 25deg");
         }
         "backwards" => {
             program.objects.reverse();
@@ -122,6 +129,7 @@ fn figure() -> Program {
         samples: 1,
         is_wide: false,
         is_squeezed: false,
+        reaches_borders: false,
         aspect: 1.0,
         axes: Axes::Right,
         gain: 1.0,
@@ -172,6 +180,14 @@ fn street() -> Program {
         },
     ]);
     street
+}
+
+/// Turns the triangle about its middle; `turned` maps a corner, relative to it.
+pub fn turn(program: &mut Program, turned: impl Fn(DVec3) -> DVec3) {
+    if let Some(Shape::Triangle(corners)) = program.shape("Sail") {
+        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+        *corners = corners.map(|corner| middle + turned(corner - middle));
+    }
 }
 
 /// Moves an object of the scene. Does nothing if the scene lacks the object.

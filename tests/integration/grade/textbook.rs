@@ -83,10 +83,12 @@ pub enum Squares {
     Floored,
     /// The number of a square is the sum of its two coordinates, each truncated towards zero.
     Truncated,
-    /// The number is the remainder of the coordinates' sum after division by 2. It is −1 for
-    /// negative odd sums.
+    /// The number of a square is the sum of its two coordinates, each rounded down. It counts as
+    /// odd if its remainder after division by 2 is 1. The remainder of negative odd sums is −1, so
+    /// they count as even.
     Remainder,
-    /// The number is odd if the remainders of the two coordinates after division by 2 differ.
+    /// The number of a square counts as odd if the remainders of its two coordinates, each rounded
+    /// down, after division by 2 differ. The remainder of negative odd coordinates is −1.
     Remainders,
     /// The number of a square is the sum of its two coordinates, each rounded to the nearest
     /// integer.
@@ -111,7 +113,8 @@ pub enum Squares {
     Turned,
     /// The number is odd if at least one of the two coordinates, rounded down, is odd.
     BothEven,
-    /// The number is odd if the product of the sines of the two coordinates is negative.
+    /// The number of a square counts as odd if sin(x) · sin(z) is negative, where x and z are its
+    /// coordinates in units of the square's side.
     Sines,
 }
 
@@ -151,6 +154,8 @@ pub enum Axes {
     LongRays,
     /// All rays have the same direction, −w, i.e. the view direction.
     Parallel,
+    /// All rays are parallel, and the window is as large as what the camera sees at `lookat`.
+    ParallelFromLookat,
 }
 
 /// The way in which a student's program places the samples of a pixel.
@@ -199,6 +204,8 @@ pub struct Program {
     pub is_wide: bool,
     /// Whether the program's window is as wide as it is high.
     pub is_squeezed: bool,
+    /// Whether the centres of the outermost pixels lie on the window's border.
+    pub reaches_borders: bool,
     /// Ratio of the window's width in the program to its correct width.
     pub aspect: f64,
     pub axes: Axes,
@@ -285,6 +292,12 @@ impl Program {
         } else {
             self.aspect * pixel
         };
+        let [wide, pixel] = if self.reaches_borders {
+            let wider = |side: u32| f64::from(side) / f64::from(side - 1);
+            [wide * wider(width), pixel * wider(height)]
+        } else {
+            [wide, pixel]
+        };
         let light: [f64; 256] = array::from_fn(|byte| match byte as f64 / 255.0 {
             part if self.averages_encoded => part,
             part => self.decode(part),
@@ -308,6 +321,10 @@ impl Program {
                 };
                 let (from, ray) = match self.axes {
                     Axes::Parallel => (self.eye + across, -w),
+                    Axes::ParallelFromLookat => {
+                        let larger = self.eye.distance(self.lookat) / self.distance;
+                        (self.eye + larger * across, -w)
+                    }
                     _ => (self.eye, ray),
                 };
                 let (color, share) = self.trace(from, ray, -w.normalize());

@@ -1,5 +1,5 @@
-//! Tests of the help for notations of other languages and of books. It states the intended
-//! solution, not only the word with the most similar spelling.
+//! Tests of the help for notations of other languages and of books. The help says how to write what
+//! the author meant. It does not merely suggest the word with the most similar spelling.
 
 use pinhole::scene;
 

@@ -52,9 +52,10 @@ fn a_report_prints_a_table_and_one_recommendation() {
             .unwrap()
     };
     for row in Method::SAMPLED.map(|method| row(method.name())) {
-        // The cells are the method, the slope, `±`, the error of the slope, the factor by which
-        // four times the samples reduce the error, the cost of a tenth of the error with `×`, the
-        // samples, and two times. Samples and times include their units.
+        // The cells are: the method; the slope, `±` and the slope's error; the factor by which the
+        // error falls with four times the samples; the factor by which the samples must grow for a
+        // tenth of the error, and `×`; the number of samples; and two times, each followed by its
+        // unit.
         assert_eq!((row.len(), row[2], row[6]), (12, "±", "×"), "{row:?}");
         // The few measured samples do not reach an error of 1/256, so the values are extrapolated.
         let are_first = [(1, '−'), (7, '~'), (8, '~')].map(|(at, c)| row[at].starts_with(c));

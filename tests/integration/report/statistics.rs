@@ -49,9 +49,9 @@ fn slopes_and_standard_errors_match_values_computed_by_hand() {
     assert_eq!(standard_error(&[1.0, 2.0]), None);
 }
 
-/// Each row has the errors at 1, 4, 16, … samples. Then follow the slope at the end, the factor by
-/// which four times the samples reduce the error, and how many times the samples a tenth of the
-/// error costs.
+/// Each row has the errors at 1, 4, 16, … samples, and after the arrow up to three expected
+/// numbers: the slope at the end; the factor by which the error falls with four times the samples;
+/// and the factor by which the samples must grow for a tenth of the error.
 #[test]
 fn the_slope_is_that_of_the_last_three_points_and_says_what_it_means() {
     for [errors, expected] in rows(
@@ -114,8 +114,9 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().unwrap()).collect()
 }
 
-/// Each row has measured points. Then follow an error and its expected cost: the samples and the
-/// CPU time, as far as they are known, and 1 if they are extrapolated.
+/// Each row has measured points: samples, CPU time and error. After the arrow follow an error and
+/// the expected cost of reaching it: the samples, the CPU time, and 1 if these are extrapolated or
+/// 0 if not. No cost is given if it cannot be estimated.
 #[test]
 fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
     for [points, expected] in rows("

@@ -70,9 +70,9 @@ fn excess(errors: Vec<f64>, expected: impl Iterator<Item = f64>) -> (f64, f64) {
     )
 }
 
-/// Returns the area of the part of the pixel in which normal · p < distance. From each quadrant
-/// whose tip is a corner of the pixel, the edge cuts off an area. The result is the sum of these
-/// four areas with alternating signs.
+/// Returns the area of the part of the pixel whose points p satisfy normal · p < distance. From
+/// each quadrant whose tip is a corner of the pixel, the edge cuts off an area. The result is the
+/// sum of these four areas with alternating signs.
 fn area(normal: DVec2, distance: f64) -> f64 {
     let DVec2 { x, y } = normal.abs();
     let triangle = |height: f64| height.max(0.0) * height.max(0.0) / (2.0 * x * y);
@@ -97,8 +97,8 @@ fn edges() -> Vec<Edge> {
 /// logarithms are equidistant and every method has full grids.
 const COUNTS: [u64; 5] = [16, 64, 256, 1024, 4096];
 
-/// Returns the variance of the fraction of `n` independent points that lie on the inner side of an
-/// edge.
+/// Some of `n` independent points lie on the inner side of an edge. Returns the variance of their
+/// fraction.
 fn variance_of_independent_points(n: u64, (_, _, area): Edge) -> f64 {
     area * (1.0 - area) / n as f64
 }

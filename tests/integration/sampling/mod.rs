@@ -44,7 +44,7 @@ fn sampling_with_total(
     Sampling::new(&sampler, width, height)
 }
 
-/// Returns the sample points of the pixel (x, y) whose indices are in `indices`.
+/// Returns those sample points of the pixel (x, y) whose indices are in `indices`.
 pub fn points_at(sampling: &Sampling, [x, y]: [u32; 2], indices: Range<u64>) -> Vec<DVec2> {
     let mut points = Points::default();
     let count = sampling.count(x, y);

@@ -1,5 +1,5 @@
-//! Tests that each tiling (division of the pixel into equal cells) that [`tilings`] lists for a
-//! method has one sample in each cell.
+//! [`tilings`] lists, for each sampling method, divisions of a pixel into equal cells. Tests that
+//! each cell of such a division contains one sample.
 
 use pinhole::sampling::tilings;
 

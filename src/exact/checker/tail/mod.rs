@@ -45,10 +45,10 @@ use super::homography::BoundedSum;
 use super::special::Complex;
 use crate::math::{Double, Real};
 
-/// Number of terms of an edge's series ([`EdgeSeries`]) whose sums over the edge's crossings are
-/// computed by Fourier modes. The later terms fall with a higher power of the depth and count as an
-/// error. If the crossings recede, those at which this error would be too large are added one by
-/// one instead.
+/// Number of terms of an edge's series ([`EdgeSeries`]), counted from the first, whose sums over
+/// the edge's crossings are computed by Fourier modes. The later terms count as an error, which
+/// falls with a higher power of the depth. Along an edge that recedes from the eye, the first
+/// crossings are added one by one, with all terms, until this error is small enough.
 const MODE_TERMS: usize = 3;
 
 /// Maximum number of crossings of an edge that are all added one by one. With more crossings,

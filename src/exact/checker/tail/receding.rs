@@ -31,7 +31,7 @@ const BEYOND_LAST_SHARE: f64 = 0.6;
 const LERCH_SHARE: f64 = 0.02;
 /// Minimum of w, the depth divided by its step from crossing to crossing, at which the Lerch series
 /// of exponents s = 3 to 5 ([`lerch`]) is expanded in 1/w. Each term of the expansion is then at
-/// most about s/w, less than a third, of the previous term.
+/// most about s/w < 1/3 times the previous term.
 const MIN_W: f64 = 16.0;
 /// Angle |θ| of a Fourier mode, in radians, below which |1 − e^iθ|² = 2 − 2·cos θ is replaced by a
 /// lower bound in θ², because the subtraction cancels most digits there.
