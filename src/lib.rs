@@ -154,6 +154,7 @@ pub mod editor;
 #[cfg(feature = "cli")]
 pub mod figure;
 #[cfg(feature = "lsp")]
+#[doc(hidden)]
 pub mod lsp;
 // A browser watches no files.
 #[cfg(all(feature = "preview", not(target_family = "wasm")))]
