@@ -5,7 +5,11 @@
 //! and [`textbook`], on scenes made by [`scenes`]. `grading` imitates students' programs with
 //! [`formulas`]. Nothing of this is shared with the tracer, except what the scene itself provides.
 
+#[cfg(test)]
+pub(crate) mod exact_board;
 pub mod formulas;
 pub mod oracle;
 pub mod scenes;
 pub mod textbook;
+#[cfg(test)]
+pub(crate) mod tightness;
