@@ -114,3 +114,6 @@ fn area(polygon: &[DVec2]) -> f64 {
 fn center(polygon: &[DVec2]) -> DVec2 {
     polygon.iter().sum::<DVec2>() / polygon.len() as f64
 }
+
+#[cfg(test)]
+mod tests;

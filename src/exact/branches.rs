@@ -492,3 +492,6 @@ impl Section {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

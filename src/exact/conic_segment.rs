@@ -302,6 +302,8 @@ fn roots(f0: f64, f1: f64, f2: f64) -> [Option<f64>; 2] {
 
 #[cfg(test)]
 mod tests {
+    mod bounds;
+
     use super::*;
     use std::f64::consts::PI;
 

@@ -362,14 +362,19 @@ fn keep_owner(file: &File, found: &Metadata) -> io::Result<()> {
         .or_else(|_| fchown(file, None, group))
         .is_ok();
     let mode = found.mode() & 0o777;
-    // If the group could not be kept, the new group gets at most the permissions that all other
-    // users have.
     let allowed = if has_group {
         mode
     } else {
-        mode & (0o707 | mode << 3)
+        of_other_group(mode)
     };
     file.set_permissions(Permissions::from_mode(allowed))
+}
+
+/// Returns the permissions of a file whose group could not be kept: the new group gets at most the
+/// permissions that all other users have.
+#[cfg(unix)]
+fn of_other_group(mode: u32) -> u32 {
+    mode & (0o707 | mode << 3)
 }
 
 #[cfg(not(unix))]
@@ -405,5 +410,26 @@ impl<S: Write> Write for Checked<'_, S> {
 impl<S: Seek> Seek for Checked<'_, S> {
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
         self.sink.seek(position)
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn another_group_gets_what_all_others_have() {
+        for (mode, expected) in [
+            (0o600, 0o600),
+            (0o640, 0o600),
+            (0o660, 0o600),
+            (0o664, 0o644),
+            (0o666, 0o666),
+            (0o644, 0o644),
+            (0o754, 0o744),
+            (0o707, 0o707),
+        ] {
+            assert_eq!(of_other_group(mode), expected, "{mode:o}");
+        }
     }
 }

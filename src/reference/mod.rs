@@ -5,6 +5,8 @@
 //! and [`textbook`], on scenes made by [`scenes`]. `grading` imitates students' programs with
 //! [`formulas`]. Nothing of this is shared with the tracer, except what the scene itself provides.
 
+#[cfg(test)]
+pub(crate) mod exact_board;
 pub mod formulas;
 #[cfg(feature = "report")]
 pub mod oracle;
@@ -12,3 +14,5 @@ pub mod oracle;
 pub mod scenes;
 #[cfg(feature = "report")]
 pub mod textbook;
+#[cfg(test)]
+pub(crate) mod tightness;

@@ -137,6 +137,25 @@ mod tests {
         }
     }
 
+    /// The probabilities of k + 1 heads and of k heads have the ratio (n − k)/(k + 1).
+    #[test]
+    fn weights_have_the_ratios_of_binomial_coefficients() {
+        for n in [513.0, 600.0, 4097.0, 1e6, 1e9] {
+            for share in [0.25, 0.3, 0.4, 0.49, 0.5, 0.51, 0.6, 0.74] {
+                let k = (share * n as f64).ceil();
+                let step = ln_weight(k + 1.0, n) - ln_weight(k, n);
+                let expected = libm::log((n - k) / (k + 1.0));
+                // A weight is at most n·ln 2/2 and has a few roundings. The next term of Stirling's
+                // series is 1/(1260·k⁵), whose change from k to k + 1 is even smaller.
+                let limit = 4.0 * f64::EPSILON * n + 1e-13;
+                assert!(
+                    (step - expected).abs() < limit,
+                    "{n} tosses, {k}: {step}, not {expected}"
+                );
+            }
+        }
+    }
+
     #[test]
     fn draws_have_the_probabilities_of_the_distribution() {
         // A χ² test compares the counts of all outcomes that are expected at least 10 times.

@@ -374,3 +374,6 @@ impl BoundaryLine {
         Interval::about(c, 0.5 * (a.abs() + b.abs()) + self.rad)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -137,3 +137,6 @@ pub fn inverse_depth<T: Real>(camera: &Camera<T>, n: &Ball3<T>, h: &Ball<T>) -> 
 pub fn axis_vector<T: Real>(axis: usize) -> Ball3<T> {
     [0, 1, 2].map(|i| Ball::exact(if i == axis { 1.0 } else { 0.0 }))
 }
+
+#[cfg(test)]
+mod tests;

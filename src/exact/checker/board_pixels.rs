@@ -116,16 +116,18 @@ impl Batch {
 
 #[cfg(test)]
 mod tests {
+    mod bounds;
+
     use super::*;
     use crate::{
         area::Area,
         exact::{DEFAULT_TOLERANCE, budget::PixelBudget, clip::PIXEL, region::LocalBoard},
         math::Angle,
-        reference::scenes::{board, camera, scene},
+        reference::scenes::{along, board, camera, scene},
         scene::{Camera, Lens},
         tracer::{PicturePart, Quartering, SubPixel, World},
     };
-    use glam::dvec3;
+    use glam::{DVec3, dvec2, dvec3};
     use proptest::prelude::*;
     use std::{ops::ControlFlow, sync::atomic::AtomicBool};
 

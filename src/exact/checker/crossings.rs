@@ -54,6 +54,7 @@ const CHUNK: usize = 64;
 ///
 /// Here t is the coordinate along the edge, m is the depth of the point, and the A_k are the
 /// periodic Euler polynomials ([`waves`]).
+#[derive(Debug)]
 pub(super) struct EdgeSeries {
     pub terms: usize,
     pub factors: [f64; MAX_TERMS + 1],
@@ -110,6 +111,7 @@ impl EdgeSeries {
 
 /// The points where one edge of a polygon crosses the lines between the columns of a board, or the
 /// lines between its rows.
+#[derive(Debug)]
 pub(super) struct LineCrossings {
     /// Coordinate t along the edge at the first crossed line, and the step of t from line to line,
     /// in double-double. The unit is the side of a square. Multiples of 2, the period of the square

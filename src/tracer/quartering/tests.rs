@@ -138,3 +138,31 @@ fn of_a_crowd_the_objects_nearby_are_enough() {
     }
     assert!(known > 100 && several > 100, "{known}, {several}");
 }
+
+/// Three hundred spheres, each as wide as a pixel, are seen in one pixel. With fewer samples than
+/// spheres, finding the candidates of each pixel would cost more than it saves.
+#[test]
+fn a_pixel_of_more_objects_than_samples_is_crowded() {
+    let pixel = 10.0 / f64::from(SIZE);
+    let sphere = |index: i32| {
+        let [x, y] = [index % 20, index / 20].map(|at| 8.5 + 0.02 * f64::from(at));
+        sphere(pixel * dvec3(x, y, -f64::from(SIZE)), 0.5 * pixel)
+    };
+    let world = world(&(0..300).map(sphere).collect::<Vec<_>>());
+    for samples in [100, 200, 1000] {
+        let (mut crowded, mut most) = (0, 0);
+        let mut visit = |part: PicturePart| {
+            match part {
+                PicturePart::Pixel { candidates, .. } => most = most.max(candidates.len()),
+                PicturePart::Crowded { .. } => crowded += 1,
+                PicturePart::OneColor { .. } => {}
+            }
+            ControlFlow::Continue(())
+        };
+        let parts = Quartering::for_samples(&world, f64::from(samples));
+        let flow = parts.parts(Area::whole(SIZE, SIZE), &mut Scratch::default(), &mut visit);
+        assert!(flow.is_continue());
+        assert_eq!(crowded > 0, samples < 300, "{samples}");
+        assert!(most <= samples as usize, "{samples}: {most}");
+    }
+}

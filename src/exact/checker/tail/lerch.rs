@@ -51,3 +51,35 @@ fn rest_of_pole(theta: f64, rotation: Complex) -> (f64, f64) {
         0.5 * gap - inverse * inverse,
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::oracle::Number;
+
+    #[test]
+    fn the_rest_of_the_pole_is_its_closed_formula() {
+        let number = Number { bits: 256 };
+        let [half, one] = [0.5, 1.0].map(|x| number.exact(x));
+        for theta in [1e-6, 0.01, 0.05, 0.1, 0.19999, 0.20001, 0.5, 1.5, 3.1] {
+            let exact = number.exact(theta);
+            let (sin, cos) = (&exact * &half).sin_cos();
+            let inverse = &one / &exact;
+            let expected = [
+                &half * cos / &sin - &inverse,
+                &half * &half / (&sin * &sin) - &inverse * &inverse,
+            ];
+            for sign in [-1.0, 1.0] {
+                let rotation = [libm::cos(theta), sign * libm::sin(theta)];
+                let (r, slope) = rest_of_pole(sign * theta, rotation);
+                let errors = [(sign * r, &expected[0]), (slope, &expected[1])]
+                    .map(|(x, expected)| (number.exact(x) - expected).to_f64().value().abs());
+                // The first terms that the series omit, at the angle up to which the series are
+                // used. Half as much more covers later terms and roundings.
+                let omitted = 1.5 * libm::pow(NEAR_POLE, 8.0) / 47_900_160.0;
+                assert!(errors[0] <= NEAR_POLE * omitted, "{theta}: {errors:?}");
+                assert!(errors[1] <= 9.0 * omitted, "{theta}: {errors:?}");
+            }
+        }
+    }
+}

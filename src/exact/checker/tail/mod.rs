@@ -38,6 +38,8 @@
 mod lerch;
 mod level;
 mod receding;
+#[cfg(test)]
+mod tests;
 
 use super::super::budget::PixelBudget;
 use super::crossings::{EdgeSeries, LineCrossings};

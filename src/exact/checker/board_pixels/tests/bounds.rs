@@ -1,0 +1,82 @@
+//! Compares the pixels of a batch, and their bounds, with sums over squares in hundreds of bits.
+
+use std::cell::RefCell;
+
+use proptest::test_runner::TestRunner;
+
+use super::*;
+use crate::reference::{
+    exact_board::{ExactBoard, NUMBER},
+    oracle::{Oracle, USUAL_SIZES},
+    tightness::Tightness,
+};
+
+/// Returns the forms of a board at the height `y`, below `eye`, in a pixel.
+///
+/// The ray r from the eye e meets the board where x = e_x + (y − e_y)·r_x/r_y, and likewise z. Every
+/// component of r is a linear form.
+fn forms(oracle: &Oracle, pixel: &BoardPixel, eye: DVec3, [y, square]: [f64; 2]) -> ExactBoard {
+    let number = |x| oracle.number.exact(x);
+    let ray = |x, y| oracle.direction(pixel.x, pixel.y, dvec2(x, y));
+    let [middle, right, down] = [ray(0.0, 0.0), ray(1.0, 0.0), ray(0.0, 1.0)];
+    let component = |axis: usize| {
+        let middle = &middle[axis];
+        [&right[axis] - middle, &down[axis] - middle, middle.clone()]
+    };
+    let below = component(1).map(|factor| -factor);
+    let height = number(eye.y) - number(y);
+    let across = [0, 2].map(|axis| {
+        let along = component(axis);
+        let from = number(eye.to_array()[axis]);
+        [0, 1, 2].map(|k| (&from * &below[k] + &height * &along[k]) / number(square))
+    });
+    ExactBoard { across, below }
+}
+
+#[test]
+fn errors_of_batches_are_within_tight_bounds() {
+    let found = RefCell::new(Tightness::default());
+    let cases = (
+        prop::array::uniform2(-9.0..9.0_f64),
+        prop::array::uniform2(-0.5..1.5_f64),
+        0.0..360.0_f64,
+        0.0..89.0_f64,
+        0.0..360.0_f64,
+        5.0..120.0_f64,
+    );
+    TestRunner::default()
+        .run(
+            &cases,
+            |([x, z], [height, square], yaw, down, roll, fov)| {
+                let (yaw, down) = (yaw.to_radians(), down.to_radians());
+                let [height, square] = [height, square].map(libm::exp10);
+                let eye = dvec3(x, 0.25 + height, z);
+                let camera = Camera {
+                    roll: Angle::from_degrees(roll),
+                    lens: Lens::Fov(Angle::from_degrees(fov)),
+                    ..along(eye, dvec3(libm::cos(yaw), -libm::tan(down), libm::sin(yaw)))
+                };
+                let mut scene = scene(camera, &[board(0.25, square)]);
+                [scene.image.width, scene.image.height] = SIZE;
+                let oracle = Oracle::new(&scene, USUAL_SIZES);
+                // A few pixels of each picture are enough.
+                for (pixel, sum) in sums(&World::new(&scene)).into_iter().step_by(61) {
+                    let Some(sum) = sum else { continue };
+                    let board = forms(&oracle, &pixel, eye, [0.25, square]);
+                    let error = board.integral(&PIXEL) - NUMBER.exact(sum.value);
+                    // Each of the lines that cross the pixel has an error of seven roundings.
+                    let lines = board.lines(&PIXEL);
+                    let mut found = found.borrow_mut();
+                    found.add(
+                        error.to_f64().value().abs(),
+                        sum.bound,
+                        7 * lines,
+                        (camera, pixel),
+                    );
+                }
+                Ok(())
+            },
+        )
+        .unwrap();
+    found.into_inner().assert("batches");
+}

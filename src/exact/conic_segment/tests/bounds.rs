@@ -1,0 +1,194 @@
+//! Compares the integrals of boards over segments, and their bounds, with sums over squares in
+//! hundreds of bits.
+
+use std::cell::RefCell;
+
+use proptest::{prelude::*, test_runner::TestRunner};
+
+use super::{
+    super::super::{DEFAULT_TOLERANCE, budget::PixelBudget},
+    *,
+};
+use crate::{
+    cancel,
+    reference::{
+        exact_board::{ExactBoard, NUMBER, Point, area, form, point},
+        oracle::N,
+        tightness::Tightness,
+    },
+};
+
+/// An arc in hundreds of bits.
+struct ExactArc {
+    points: [Point; 3],
+    weight: N,
+}
+
+impl ExactArc {
+    fn new(arc: &Arc) -> Self {
+        Self {
+            points: [arc.start, arc.control, arc.end].map(point),
+            weight: NUMBER.exact(arc.weight),
+        }
+    }
+
+    /// Evaluates the curve's polar form, as a point in homogeneous coordinates.
+    fn blossom(&self, s: &N, t: &N) -> [N; 3] {
+        let one = NUMBER.exact(1.0);
+        let [u, v] = [s, t].map(|t| &one - t);
+        let weights = [&u * &v, &self.weight * (s * &v + t * &u), s * t];
+        let sum = |k: usize| {
+            let [a, b, c] = &self.points;
+            &a[k] * &weights[0] + &b[k] * &weights[1] + &c[k] * &weights[2]
+        };
+        [sum(0), sum(1), &weights[0] + &weights[1] + &weights[2]]
+    }
+
+    fn between(&self, from: &N, to: &N) -> Self {
+        let all = [(from, from), (from, to), (to, to)].map(|(s, t)| self.blossom(s, t));
+        let [start, middle, end] = &all;
+        Self {
+            weight: &middle[2] / (&start[2] * &end[2]).sqrt(),
+            points: all.map(|[x, y, w]| [x / &w, y / w]),
+        }
+    }
+
+    /// Returns the area between the arc and its chord. The parallel to the chord that touches the
+    /// arc divides it into two arcs of equal weight, which is nearer to 1.
+    fn area(&self) -> N {
+        let (mut share, mut scale, mut weight) =
+            (NUMBER.exact(0.0), NUMBER.exact(1.0), self.weight.clone());
+        for _ in 0..60 {
+            let more = NUMBER.exact(1.0) + &weight;
+            scale = &scale * &weight / &more;
+            share += &scale;
+            scale = scale / &more;
+            weight = (more / NUMBER.exact(2.0)).sqrt();
+        }
+        // The rest are parabolas.
+        area(&self.points) * (share + scale * NUMBER.exact(2.0) / NUMBER.exact(3.0))
+    }
+
+    /// Returns the parameters at which the arc crosses a line of the board, in ascending order.
+    fn cuts(&self, board: &ExactBoard) -> Vec<N> {
+        let mut cuts = vec![NUMBER.exact(0.0), NUMBER.exact(1.0)];
+        for across in &board.across {
+            let places = self
+                .points
+                .each_ref()
+                .map(|p| form(across, p) / form(&board.below, p));
+            let [low, high] = [places.iter().min(), places.iter().max()].map(|n| n.unwrap());
+            let mut n = low.ceil();
+            while n <= *high {
+                let values = self
+                    .points
+                    .each_ref()
+                    .map(|p| form(across, p) - &n * form(&board.below, p));
+                cuts.extend(self.zeros(values));
+                n = n + NUMBER.exact(1.0);
+            }
+        }
+        cuts.sort();
+        cuts
+    }
+
+    /// Returns the parameters between 0 and 1 at which a linear form is 0. `values` are its values
+    /// at the arc's three points.
+    fn zeros(&self, [start, control, end]: [N; 3]) -> Vec<N> {
+        // In r = t/(1 − t), the form is proportional to end·r² + 2·half·r + start.
+        let half = &self.weight * control;
+        let discriminant = &half * &half - &start * &end;
+        if discriminant < N::ZERO {
+            return Vec::new();
+        }
+        let root = discriminant.sqrt();
+        let ratios = [-&half - &root, root - half].map(|above| above / &end);
+        let ahead = ratios.into_iter().filter(|r| *r > N::ZERO);
+        ahead.map(|r| &r / (NUMBER.exact(1.0) + &r)).collect()
+    }
+}
+
+/// Integrates the sign of a board over the region between an arc and its chord.
+fn integral(board: &ExactBoard, arc: &ExactArc) -> N {
+    let cuts = arc.cuts(board);
+    let (mut sum, mut chords) = (NUMBER.exact(0.0), vec![arc.points[0].clone()]);
+    for pair in cuts.windows(2) {
+        let piece = arc.between(&pair[0], &pair[1]);
+        let half = NUMBER.exact(0.5);
+        let [x, y, w] = piece.blossom(&half, &half);
+        let middle = [x / &w, y / w];
+        let is_odd = [0, 1].map(|i| {
+            let place = form(&board.across[i], &middle) / form(&board.below, &middle);
+            place.floor().to_f64().value().rem_euclid(2.0) == 1.0
+        });
+        let area = piece.area();
+        sum += if is_odd[0] == is_odd[1] { area } else { -area };
+        let [_, _, end] = piece.points;
+        chords.push(end);
+    }
+    sum + board.integral_of(chords)
+}
+
+#[derive(Default)]
+struct Found {
+    one_square: Tightness,
+    cut: Tightness,
+    halved: Tightness,
+}
+
+#[test]
+fn errors_of_segments_are_within_tight_bounds() {
+    let budget = PixelBudget::new(DEFAULT_TOLERANCE, &cancel::NEVER);
+    let found = RefCell::new(Found::default());
+    let mut runner = TestRunner::default();
+    let number = || -1.0..1.0_f64;
+    let parts = (
+        prop::array::uniform6(number()),
+        prop::array::uniform2(number()),
+        -1.5..1.7_f64,
+        prop::array::uniform3(prop::array::uniform2(-0.5..0.5_f64)),
+        -1.0..1.0_f64,
+        prop::array::uniform3(prop::array::uniform3(number())),
+    );
+    runner
+        .run(
+            &parts,
+            |(across, tilt, squares, points, weight, roundings)| {
+                let squares = libm::exp10(squares);
+                let below = [0.9 * tilt[0], 0.9 * tilt[1], 1.0];
+                let [a, b] = [0, 3].map(|i| [0, 1, 2].map(|k| squares * across[i + k]));
+                let board = Homography::new([a, b], below);
+                let [start, control, end] = points.map(DVec2::from);
+                let weight = libm::exp2(weight);
+                let arc = Arc {
+                    start,
+                    control,
+                    end,
+                    weight,
+                };
+                let sum = board.over_segment(&arc, &budget);
+                let [a, b] = board.across;
+                let exact = ExactBoard::of_rounded([a, b, board.below], roundings);
+                let expected = integral(&exact, &ExactArc::new(&arc));
+                let error = (expected - NUMBER.exact(sum.value)).to_f64().value().abs();
+                let lines = [0, 1].map(|i| board.lines(&arc, i));
+                let is_cut =
+                    matches!(lines, [Some(a), Some(b)] if a.1 - a.0 + b.1 - b.0 <= MAX_LINES);
+                let mut found = found.borrow_mut();
+                let by = if board.square_of(&arc).is_some() {
+                    &mut found.one_square
+                } else if is_cut {
+                    &mut found.cut
+                } else {
+                    &mut found.halved
+                };
+                by.add(error, sum.bound, 1, (&board, &arc));
+                Ok(())
+            },
+        )
+        .unwrap();
+    let found = found.into_inner();
+    found.one_square.assert("one square");
+    found.cut.assert("cut");
+    found.halved.assert("halved");
+}

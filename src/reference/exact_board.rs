@@ -1,0 +1,132 @@
+//! The board's integral over a polygon in hundreds of bits, square by square.
+
+use dashu_int::IBig;
+use glam::DVec2;
+
+use super::oracle::{N, Number};
+use crate::math::Real;
+
+/// The arithmetic of the integral.
+pub const NUMBER: Number = Number { bits: 256 };
+
+/// A board's linear forms in hundreds of bits.
+pub struct ExactBoard {
+    /// The forms N_a and N_b: the point (x, y) of the picture shows the point (N_a/L, N_b/L) of the
+    /// board, in squares.
+    pub across: [[N; 3]; 2],
+    /// The form L.
+    pub below: [N; 3],
+}
+
+/// A point of the picture.
+pub type Point = [N; 2];
+
+impl ExactBoard {
+    /// Returns a board of which the forms N_a, N_b and L in `forms` may be the rounded ones: each of
+    /// their factors is multiplied by 1 plus the number of unit roundoffs in `roundings`, from −1
+    /// to 1.
+    pub fn of_rounded(forms: [[f64; 3]; 3], roundings: [[f64; 3]; 3]) -> Self {
+        let [a, b, below] = [0, 1, 2].map(|i| {
+            [0, 1, 2].map(|k| {
+                let rounding = NUMBER.exact(roundings[i][k] * f64::UNIT);
+                NUMBER.exact(forms[i][k]) * (NUMBER.exact(1.0) + rounding)
+            })
+        });
+        let across = [a, b];
+        Self { across, below }
+    }
+
+    /// Integrates the board's sign over a convex polygon on which L is positive.
+    pub fn integral(&self, polygon: &[DVec2]) -> N {
+        self.integral_of(polygon.iter().copied().map(point).collect())
+    }
+
+    /// Integrates the board's sign over a convex polygon on which L is positive.
+    pub fn integral_of(&self, polygon: Vec<Point>) -> N {
+        let mut sum = N::ZERO;
+        self.strips(0, polygon, &mut |row, strip| {
+            self.strips(1, strip, &mut |column, square| {
+                let area = area(&square);
+                let is_odd = (row + column) & IBig::ONE == IBig::ONE;
+                sum += if is_odd { -area } else { area };
+            });
+        });
+        sum
+    }
+
+    /// Returns the number of lines of both families that cross a convex polygon, or 1 if none does.
+    pub fn lines(&self, polygon: &[DVec2]) -> usize {
+        let mut count = 0;
+        for family in 0..2 {
+            let polygon = polygon.iter().copied().map(point).collect();
+            self.strips(family, polygon, &mut |_, _| count += 1);
+        }
+        // There is one strip more than lines.
+        (count - 2).max(1)
+    }
+
+    /// Calls `visit` with each strip of the polygon between two neighbouring lines of a family, and
+    /// with the number of the first of the lines.
+    fn strips(&self, family: usize, polygon: Vec<Point>, visit: &mut dyn FnMut(&IBig, Vec<Point>)) {
+        let across = &self.across[family];
+        let square = |p: &Point| {
+            (form(across, p) / form(&self.below, p))
+                .floor()
+                .to_int()
+                .value()
+        };
+        let Some(mut first) = polygon.iter().map(square).min() else {
+            return;
+        };
+        let mut rest = polygon;
+        while rest.len() > 2 {
+            let next = &first + IBig::ONE;
+            let n = N::from(next.clone()).with_precision(NUMBER.bits).value();
+            let line = [0, 1, 2].map(|k| &across[k] - &n * &self.below[k]);
+            let [before, beyond] = split(&rest, &line);
+            if before.len() > 2 {
+                visit(&first, before);
+            }
+            (rest, first) = (beyond, next);
+        }
+    }
+}
+
+/// Converts a point.
+pub fn point(at: DVec2) -> Point {
+    [at.x, at.y].map(|x| NUMBER.exact(x))
+}
+
+/// Returns the value of a linear form at a point.
+pub fn form([a, b, c]: &[N; 3], [x, y]: &Point) -> N {
+    a * x + b * y + c
+}
+
+/// Returns the parts of a convex polygon on which a linear form is negative, and positive.
+pub fn split(polygon: &[Point], line: &[N; 3]) -> [Vec<Point>; 2] {
+    let mut parts = [Vec::new(), Vec::new()];
+    let values: Vec<N> = polygon.iter().map(|p| form(line, p)).collect();
+    for (i, to) in polygon.iter().enumerate() {
+        let before = (i + polygon.len() - 1) % polygon.len();
+        let (from, [start, end]) = (&polygon[before], [before, i].map(|i| &values[i]));
+        let [starts_below, is_below] = [start, end].map(|value| *value < N::ZERO);
+        if starts_below != is_below {
+            let t = start / (start - end);
+            let at = [0, 1].map(|k| &from[k] + (&to[k] - &from[k]) * &t);
+            parts.iter_mut().for_each(|part| part.push(at.clone()));
+        }
+        parts[usize::from(!is_below)].push(to.clone());
+    }
+    parts
+}
+
+/// Returns the area of a convex polygon.
+pub fn area(polygon: &[Point]) -> N {
+    let mut twice = N::ZERO;
+    for (i, [x, y]) in polygon.iter().enumerate() {
+        let [next_x, next_y] = &polygon[(i + 1) % polygon.len()];
+        twice += x * next_y - next_x * y;
+    }
+    let twice = if twice < N::ZERO { -twice } else { twice };
+    twice / NUMBER.exact(2.0)
+}

@@ -1,0 +1,77 @@
+//! Compares the doubtful area of conics with counts of points.
+
+use std::cell::RefCell;
+
+use proptest::{prelude::*, test_runner::TestRunner};
+
+use super::*;
+use crate::reference::tightness::Tightness;
+
+/// Number of points along each side of the pixel.
+const POINTS: i32 = 300;
+
+/// The bounds of which [`Conic::doubtful_area`] is the least.
+#[derive(Default)]
+struct Found {
+    any: Tightness,
+    steep: Tightness,
+    ellipse: Tightness,
+}
+
+/// Returns the share of the pixel's points at which the form of a conic is within its error.
+fn share(conic: &Conic) -> f64 {
+    let [a, b, c, d, e, f] = conic.factors.map(|factor| factor.hi);
+    let place = |i: i32| (f64::from(i) + 0.5) / f64::from(POINTS) - 0.5;
+    let mut count = 0;
+    for (x, y) in (0..POINTS).flat_map(|i| (0..POINTS).map(move |j| (place(i), place(j)))) {
+        let value = a * x * x + 2.0 * b * x * y + c * y * y + 2.0 * (d * x + e * y) + f;
+        count += i32::from(value.abs() <= conic.rad);
+    }
+    f64::from(count) / f64::from(POINTS * POINTS)
+}
+
+#[test]
+fn doubtful_areas_of_conics_are_tight() {
+    let found = RefCell::new(Found::default());
+    let number = || -1.0..1.0_f64;
+    let cases = (
+        prop::array::uniform6(number()),
+        prop::array::uniform2(0.1..1.0_f64),
+        0..3_u8,
+        -2.5..-1.5_f64,
+    );
+    TestRunner::default()
+        .run(&cases, |([a, b, c, d, e, f], [p, q], kind, rad)| {
+            // Conics that are nearly lines, ellipses within the pixel, and pairs of lines that meet
+            // in it.
+            let factors = match kind {
+                0 => [0.1 * a, 0.1 * b, 0.1 * c, 0.5, 0.5 * e, 0.2 * f],
+                1 => [p, 0.5 * b * p.min(q), q, 0.02 * d, 0.02 * e, -0.03],
+                _ => [a * c, 0.5 * (a * e + b * c), b * e, 0.1 * a, 0.1 * b, 0.0],
+            };
+            let size = factors.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+            let conic = Conic {
+                factors: factors.map(|x| Double::from_f64(x / size)),
+                rad: libm::exp10(rad),
+            };
+            let [a, b, c, d, e, _] = conic.factors.map(|factor| factor.hi);
+            let bound = conic.doubtful_area();
+            let gradient =
+                2.0 * libm::hypot(d, e) - libm::hypot(a.abs() + b.abs(), b.abs() + c.abs());
+            let mut found = found.borrow_mut();
+            let by = if bound >= 32.0 * conic.rad.sqrt() {
+                &mut found.any
+            } else if gradient > 0.0 && bound >= 15.9 * conic.rad / gradient {
+                &mut found.steep
+            } else {
+                &mut found.ellipse
+            };
+            by.add(share(&conic), bound, 1, &conic);
+            Ok(())
+        })
+        .unwrap();
+    let found = found.into_inner();
+    found.any.assert("any conic");
+    found.steep.assert("a steep conic");
+    found.ellipse.assert("an ellipse");
+}
