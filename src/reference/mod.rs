@@ -8,7 +8,7 @@
 #[cfg(test)]
 pub(crate) mod exact_board;
 pub mod formulas;
-#[cfg(feature = "report")]
+#[cfg(any(test, feature = "report"))]
 pub mod oracle;
 #[cfg(any(test, feature = "report"))]
 pub mod scenes;

@@ -142,7 +142,7 @@ mod tests {
     fn weights_have_the_ratios_of_binomial_coefficients() {
         for n in [513.0, 600.0, 4097.0, 1e6, 1e9] {
             for share in [0.25, 0.3, 0.4, 0.49, 0.5, 0.51, 0.6, 0.74] {
-                let k = (share * n as f64).ceil();
+                let k = f64::ceil(share * n);
                 let step = ln_weight(k + 1.0, n) - ln_weight(k, n);
                 let expected = libm::log((n - k) / (k + 1.0));
                 // A weight is at most n·ln 2/2 and has a few roundings. The next term of Stirling's

@@ -262,7 +262,7 @@ pub const OBJECT_ROWS: &[MistakeRow] = &[
     family!(faces "y and z", [0, 2, 1]),
     row("triangle_anchor", InAreas, "is placed by its first vertex: its centroid is taken for that", CENTROID, |c, object| anchor(c, object, |[left, ..]| left)),
     row("triangle_anchor", InAreas, "is placed by the middle of its base: its centroid is taken for that", CENTROID, |c, object| anchor(c, object, |[left, right, _]| left.midpoint(right))),
-    row("triangle_normal", InAreas, "has its normal reversed", "its corners lie counter-clockwise as seen from the tip of its normal: seen from the other side, it is mirrored", |c, object| reverse_normal(c, object)),
+    row("triangle_normal", InAreas, "has its normal reversed", "its corners lie counter-clockwise as seen from the tip of its normal: seen from the other side, it is mirrored", reverse_normal),
     row("triangle_parallelogram", InAreas, "is a parallelogram: that its two coordinates add to no more than 1 is not asked", EDGES, |c, object| set_hit_fault(c, object, HitFault::Parallelogram)),
     row("triangle_edge", InAreas, "has no edge against its second vertex", EDGES, |c, object| set_hit_fault(c, object, HitFault::WithoutEdge(0))),
     row("triangle_edge", InAreas, "has no edge against its third vertex", EDGES, |c, object| set_hit_fault(c, object, HitFault::WithoutEdge(1))),

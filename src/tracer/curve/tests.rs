@@ -66,7 +66,7 @@ fn doubtful_areas_of_conics_are_tight() {
             } else {
                 &mut found.ellipse
             };
-            by.add(share(&conic), bound, 1, &conic);
+            by.add(share(&conic), bound, 1, conic);
             Ok(())
         })
         .unwrap();

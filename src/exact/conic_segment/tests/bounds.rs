@@ -62,7 +62,7 @@ impl ExactArc {
             let more = NUMBER.exact(1.0) + &weight;
             scale = &scale * &weight / &more;
             share += &scale;
-            scale = scale / &more;
+            scale /= &more;
             weight = (more / NUMBER.exact(2.0)).sqrt();
         }
         // The rest are parabolas.
@@ -85,7 +85,7 @@ impl ExactArc {
                     .each_ref()
                     .map(|p| form(across, p) - &n * form(&board.below, p));
                 cuts.extend(self.zeros(values));
-                n = n + NUMBER.exact(1.0);
+                n += NUMBER.exact(1.0);
             }
         }
         cuts.sort();
