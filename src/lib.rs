@@ -35,8 +35,8 @@
 //! | --- | --- |
 //! | `png` | PNG files, which carry their scene: `Picture::save`, `film::write_png` |
 //! | `exr` | OpenEXR files in linear light: `Picture::save`, `film::write_exr` |
-//! | `read` | pictures of any program: `Picture::open`, `Scene::grade`, `grading`; has `png` and `exr` |
-//! | `fancy` | [`Mistakes`] and `diagnostic::Report` with excerpts of the text, as a terminal shows them |
+//! | `read` | pictures of any program: `Picture::open`, `Scene::grade`; has `png` and `exr` |
+//! | `fancy` | [`Mistakes`] and `diagnostic::Report` with excerpts, as a terminal shows them |
 //! | `json` | problems as lines of JSON: `diagnostic::json_lines` |
 //! | `report` | reports on accuracy and on speed: `report` |
 //! | `lsp` | the answers that editors ask for, and the language server: `editor`, `lsp` |

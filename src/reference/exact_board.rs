@@ -22,9 +22,9 @@ pub struct ExactBoard {
 pub type Point = [N; 2];
 
 impl ExactBoard {
-    /// Returns a board of which the forms N_a, N_b and L in `forms` may be the rounded ones: each of
-    /// their factors is multiplied by 1 plus the number of unit roundoffs in `roundings`, from −1
-    /// to 1.
+    /// Returns a board of which the forms N_a, N_b and L in `forms` may be the rounded ones: each
+    /// of their factors is multiplied by 1 plus the number of unit roundoffs in `roundings`, from
+    /// −1 to 1.
     pub fn of_rounded(forms: [[f64; 3]; 3], roundings: [[f64; 3]; 3]) -> Self {
         let [a, b, below] = [0, 1, 2].map(|i| {
             [0, 1, 2].map(|k| {

@@ -137,8 +137,8 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
 }
 
 /// Returns the displacement of the picture, or of the object that is displaced most, and the width
-/// of the pixel filter. Each is `None` if chance or few samples may explain it. `groups` has for each
-/// pixel the object that is seen in it.
+/// of the pixel filter. Each is `None` if chance or few samples may explain it. `groups` has for
+/// each pixel the object that is seen in it.
 fn displacement_and_width(
     judge: &Judge,
     candidate: &Candidate,

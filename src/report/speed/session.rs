@@ -54,8 +54,8 @@ const SHOWN: u64 = 16;
 ///
 /// # Errors
 ///
-/// It is cancelled before the exact picture is done, there is not enough memory, or no thread can be
-/// started.
+/// It is cancelled before the exact picture is done, there is not enough memory, or no thread can
+/// be started.
 pub fn measure(
     subject: &MeasuredScene,
     scene: &Scene,

@@ -10,7 +10,8 @@ use super::textbook::{
 /// picture, turned a little. `street` has the same names of objects, a closer camera, a far plane
 /// and more objects. The other scenes are variants of the figure for mistakes that need them: a
 /// near plane that clips objects, another lens, a low window, a box with different colours for its
-/// faces, a ball sunk into the floor, a leaning triangle, the floor as the first object, or no roll.
+/// faces, a ball sunk into the floor, a leaning triangle, the floor as the first object, or no
+/// roll.
 pub fn scene(name: &str) -> (Program, String) {
     let (mut program, mut text) = match name {
         "street" => (street(), STREET.to_owned()),

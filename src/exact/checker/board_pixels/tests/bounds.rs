@@ -13,8 +13,8 @@ use crate::reference::{
 
 /// Returns the forms of a board at the height `y`, below `eye`, in a pixel.
 ///
-/// The ray r from the eye e meets the board where x = e_x + (y − e_y)·r_x/r_y, and likewise z. Every
-/// component of r is a linear form.
+/// The ray r from the eye e meets the board where x = e_x + (y − e_y)·r_x/r_y, and likewise z.
+/// Every component of r is a linear form.
 fn forms(oracle: &Oracle, pixel: &BoardPixel, eye: DVec3, [y, square]: [f64; 2]) -> ExactBoard {
     let number = |x| oracle.number.exact(x);
     let ray = |x, y| oracle.direction(pixel.x, pixel.y, dvec2(x, y));
