@@ -219,3 +219,51 @@ fn errors_of_sections_are_within_tight_bounds() {
     found.straight.assert("chords");
     assert!(found.cut > 0);
 }
+
+/// Two conics nearly coincide. The distance of their arcs is compared with that at a few places.
+#[test]
+fn distances_of_parallel_arcs_are_tight() {
+    let found = RefCell::new(Tightness::default());
+    let cases = (
+        conics(),
+        prop::array::uniform6(-1.0..1.0_f64),
+        -14.0..-3.0_f64,
+        prop::array::uniform2(-0.5..0.5_f64),
+    );
+    TestRunner::default()
+        .run(&cases, |(conic, changes, digits, [one, other])| {
+            let mut near = conic;
+            for (factor, change) in near.factors.iter_mut().zip(changes) {
+                let change = Double::from_f64(libm::exp10(digits) * change);
+                *factor = factor.plus(&change);
+            }
+            let graphs = [&conic, &near].map(ConicGraph::new);
+            let [left, right] = [one.min(other), one.max(other)];
+            for side in [-1.0, 1.0] {
+                let exact = [&conic, &near].map(|conic| ExactBranch::new(conic, side));
+                let sections = graphs.each_ref().map(|graph| {
+                    let span = graph.span(left, right)?;
+                    span.branch(side)?.1
+                });
+                let [Some(a), Some(b)] = sections else {
+                    continue;
+                };
+                let distance = a.distance(&b);
+                if a.arc.is_none() || distance > 0.1 {
+                    continue;
+                }
+                let apart = (0..=8).map(|i| {
+                    let x = left + f64::from(i) / 8.0 * (right - left);
+                    let [a, b] = exact.each_ref().map(|branch| branch.y(x));
+                    (a - b).to_f64().value().abs()
+                });
+                let apart = apart.fold(0.0, f64::max);
+                found
+                    .borrow_mut()
+                    .add(apart, distance, 1, (&conic, &near, left, right));
+            }
+            Ok(())
+        })
+        .unwrap();
+    found.into_inner().assert("arcs side by side");
+}

@@ -75,3 +75,29 @@ fn doubtful_areas_of_conics_are_tight() {
     found.steep.assert("a steep conic");
     found.ellipse.assert("an ellipse");
 }
+
+proptest! {
+    #[test]
+    fn ranges_of_conics_hold_all_values_and_no_others(
+        factors in prop::array::uniform6(-1.0..1.0_f64),
+    ) {
+        let conic = Conic {
+            factors: factors.map(Double::from_f64),
+            rad: 0.0,
+        };
+        let range = conic.over_pixel();
+        let [a, b, c, d, e, f] = factors;
+        let place = |i: i32| f64::from(i) / 40.0 - 0.5;
+        let points = (0..=40).flat_map(|i| (0..=40).map(move |j| (place(i), place(j))));
+        let values = points.map(|(x, y)| {
+            a * x * x + 2.0 * b * x * y + c * y * y + 2.0 * (d * x + e * y) + f
+        });
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        let (low, high) = values.fold(none, |(low, high), value| (low.min(value), high.max(value)));
+        // An extreme inside the pixel is at most 1/80 from a point in x and in y, and the second
+        // derivatives are at most 2. The form differs there by at most 4/80².
+        let apart = 4.0 / 6400.0;
+        prop_assert!(range.low <= low && low - apart <= range.low, "{range:?}, not from {low}");
+        prop_assert!(range.high >= high && high + apart >= range.high, "{range:?}, not to {high}");
+    }
+}

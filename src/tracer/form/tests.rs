@@ -54,15 +54,16 @@ fn errors_of_forms_are_within_tight_bounds() {
     let cases = (
         prop::array::uniform3(number()),
         prop::array::uniform3(number()),
-        -3.0..2.2_f64,
+        (-3.0..2.2_f64, 0.0..360.0_f64),
         prop::array::uniform2(-2.0..2.0_f64),
         (0..SIZE, 0..SIZE, prop::array::uniform2(-0.5..0.5_f64)),
     );
     TestRunner::default()
         .run(
             &cases,
-            |(eye, ahead, fov, [y, square], (column, row, offset))| {
+            |(eye, ahead, (fov, roll), [y, square], (column, row, offset))| {
                 let mut camera = along(9.0 * DVec3::from(eye), DVec3::from(ahead));
+                camera.roll = Angle::from_degrees(roll);
                 camera.lens = Lens::Fov(Angle::from_degrees(libm::exp10(fov)));
                 let world = World::new(&scene(camera, &[board(y, libm::exp10(square))]));
                 let sample = (column, row, offset.into());
