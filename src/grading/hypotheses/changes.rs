@@ -62,6 +62,11 @@ pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
 }
 
+/// Spreads a picture's pixels over the window as if each row and column had one less.
+pub fn spread_by_one_less(c: &mut Candidate) {
+    c.behaviour.spread = sides(c).map(|side| side / (side - 1.0).max(1.0));
+}
+
 pub fn is_square(c: &Candidate) -> bool {
     c.scene.image.width == c.scene.image.height
 }

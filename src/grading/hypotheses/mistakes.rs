@@ -15,7 +15,7 @@ use super::{
         anchor, distance, exchange_colors, exchange_faces, exchange_sides, gray_of_encoded,
         has_board, is_square, lengthen, look_back, map_channels, multiply, reverse_normal,
         set_aspect, set_averaging, set_encoding, set_hit_fault, set_order, set_seen_surface,
-        set_sphere_fault, set_square_rule, shapes, shift, sides, stretch, zoom,
+        set_sphere_fault, set_square_rule, shapes, shift, sides, spread_by_one_less, stretch, zoom,
     },
     light::{Curve, Effect, NONE},
 };
@@ -118,11 +118,10 @@ pub const ROWS: &[MistakeRow] = &[
     row("half_pixel", AtEdges, "samples lie a whole pixel too far down", MIDDLE, |c, _| shift(c, [0.0, 1.0])),
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far up and left", MIDDLE, |c, _| shift(c, [-0.25, -0.25])),
     row("half_pixel", AtEdges, "samples lie a quarter of a pixel too far down and right", MIDDLE, |c, _| shift(c, [0.25, 0.25])),
-    row("half_pixel", AtEdges, "pixels are spread over the window as if it had one less in a row and in a column: (i + r)/(width − 1)", MIDDLE, |c, _| c.behaviour.spread = sides(c).map(|side| if side > 1.0 { side / (side - 1.0) } else { 1.0 })),
+    row("half_pixel", AtEdges, "pixels are spread over the window as if it had one less in a row and in a column: (i + r)/(width − 1)", MIDDLE, |c, _| spread_by_one_less(c)),
     row("half_pixel", AtEdges, "the first and the last pixel of a row or column look through the window's border, not half a pixel within it: i/(width − 1)", MIDDLE, |c, _| {
-        c.behaviour.spread = sides(c).map(|side| if side > 1.0 { side / (side - 1.0) } else { 1.0 });
-        let spread = c.behaviour.spread;
-        shift(c, spread.map(|spread| -0.5 * spread))
+        spread_by_one_less(c);
+        shift(c, c.behaviour.spread.map(|spread| -0.5 * spread))
     }),
     row("half_pixel", AtEdges, "samples lie only in the upper left quarter of each pixel", MIDDLE, |c, _| { shift(c, [-0.25, -0.25]); c.behaviour.pixel = 0.5 }),
     row("window_one_less", AtEdges, "the window is divided by one less than it has rows, so pixels are too large: s = view_height/(height − 1)", MIDDLE, |c, _| { let height = sides(c)[1]; if height > 1.0 { lengthen(c, (height - 1.0) / height) } }),

@@ -117,15 +117,17 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
     };
     let inside = strays.pixels.iter().filter(is_inside).count();
     let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
-    let labels = labels(judge, candidate, candidate.layout, &level.grid);
-    let background = judge.scene.objects.len();
-    let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
-    let (displacement, width) = if is_at_edges {
-        displacement_and_width(judge, candidate, prediction, &groups)
+    // Wrong pixels far from edges are wrong areas, whatever else is wrong.
+    let (displacement, width, is_tinted) = if is_at_edges {
+        let labels = labels(judge, candidate, candidate.layout, &level.grid);
+        let background = judge.scene.objects.len();
+        let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
+        let (displacement, width) = displacement_and_width(judge, candidate, prediction, &groups);
+        let is_tinted = level.jpeg.is_some() && prediction.is_tinted(&groups);
+        (displacement, width, is_tinted)
     } else {
-        (None, None)
+        (None, None, false)
     };
-    let is_tinted = level.jpeg.is_some() && prediction.is_tinted(&groups);
     Residual {
         strays: strays.pixels.len(),
         are_areas_right: strays.are_no_more(missed) && !is_tinted,
