@@ -141,12 +141,10 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     let correct = Candidate::correct(scene);
     let rest = (!is_explained).then(|| square(last) / square(&correct));
     let rest = rest.filter(|rest| *rest > 0.0).map(|rest| rest.min(1.0));
-    let least = if is_explained && mistakes.iter().all(|one| one.explains < NOTHING) {
-        0.0
-    } else {
-        NOTHING
-    };
-    mistakes.retain(|mistake| mistake.explains >= least);
+    let explains = |mistake: &NamedMistake| mistake.explains >= NOTHING;
+    if !is_explained || mistakes.iter().any(explains) {
+        mistakes.retain(explains);
+    }
     let is_named = !is_cut && !mistakes.is_empty() && is_explained;
     let (kind, mistakes, guesses) = if is_named {
         (Kind::Wrong, mistakes, Vec::new())

@@ -251,7 +251,7 @@ impl Search<'_> {
         let fitted = refitted(judge, candidate, &judge.coarse, [2, 1]);
         let mut judged = judge.judged(fitted.as_ref().unwrap_or(candidate), &judge.middle)?;
         // A hypothesis far from the picture, or much farther than another, is not fitted further.
-        let left = left(judge, judged.candidate())?;
+        let left = left(judge, judged.candidate()).unwrap_or(f64::INFINITY);
         self.least_left = self.least_left.min(left);
         let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
         if candidate.mistakes.is_empty() || left <= most {
