@@ -172,3 +172,27 @@ fn a_sampling_of_another_size_is_refused() {
     let (world, part) = (World::new(&small), Area::whole(16, 9));
     let _ = render::render(&world, &sampling(&large), part, &Control::default());
 }
+
+#[test]
+fn pixels_that_do_not_fit_their_part_of_a_picture_are_refused() {
+    let put = |part: &str, count: usize| {
+        let mut film: Film<[u8; 3]> = Film::new(4, 3).unwrap();
+        film.put(part.parse().unwrap(), &vec![[7; 3]; count]);
+        film.into_pixels()
+            .iter()
+            .filter(|pixel| **pixel == [7; 3])
+            .count()
+    };
+    assert_eq!(put("1,0,3,2", 6), 6);
+    // The second part and the third continue in the next row, or below the last one.
+    for (part, count) in [
+        ("1,0,3,2", 3),
+        ("2,0,3,2", 6),
+        ("0,2,4,2", 8),
+        ("1,0,3,2", 9),
+    ] {
+        let refused = std::panic::catch_unwind(|| put(part, count)).unwrap_err();
+        let message = refused.downcast_ref::<String>().unwrap();
+        assert!(message.contains("pixels for the part"), "{part}: {message}");
+    }
+}
