@@ -31,7 +31,7 @@ pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Ve
     let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
         Some((found, is_explained)) if !found.candidate().mistakes.is_empty() => {
-            wrong(judge, &found, is_explained, is_cut)
+            wrong(judge, &found, is_explained)
         }
         Some((_, true)) if !has_other_colors(film, scene, jpeg) => {
             let judged = judge.judged(&right, &judge.fine);
@@ -45,12 +45,11 @@ pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Ve
             Verdict {
                 objects,
                 is_background_right,
-                is_cut,
                 ..Verdict::without_mistakes(Kind::Unknown, scene)
             }
         }
     };
-    verdict.is_coded = jpeg.is_some();
+    (verdict.is_coded, verdict.is_cut) = (jpeg.is_some(), is_cut);
     verdict
 }
 
@@ -76,7 +75,7 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 
 /// Returns the verdict for a hypothesis with mistakes. The mistakes are named if together they
 /// explain the picture; otherwise they are reported as guesses.
-fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Verdict {
+fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     // Programs with some of the mistakes are compared with the picture on one grid. The noise that
     // is left with all mistakes is subtracted. A shift of samples and a wrong pixel width are
@@ -127,6 +126,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
         }
         mistakes.push(NamedMistake {
             id: mistake.id(),
+            object: mistake.object(),
             message: message.replace("{gain}", &gain),
             help: mistake.help(scene),
             set,
@@ -145,7 +145,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
     if !is_explained || mistakes.iter().any(explains) {
         mistakes.retain(explains);
     }
-    let is_named = !is_cut && !mistakes.is_empty() && is_explained;
+    let is_named = !mistakes.is_empty() && is_explained;
     let (kind, mistakes, guesses) = if is_named {
         (Kind::Wrong, mistakes, Vec::new())
     } else {
@@ -161,7 +161,6 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool, is_cut: bool) -> Ver
         guesses,
         objects,
         is_background_right,
-        is_cut,
         ..Verdict::without_mistakes(kind, scene)
     }
 }

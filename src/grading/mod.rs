@@ -31,7 +31,6 @@ use std::{
 use self::{
     empty_pixels::without_empty,
     hypotheses::{Candidate, Curve, mistakes},
-    plain_facts::EmptyRows,
     scoring::{Moments, Rendering, Work, moments, work},
     search::{
         Judge,
@@ -220,16 +219,15 @@ impl Reference {
             }
             return Ok(verdict);
         }
-        let Some(empty) = EmptyRows::of(film, exact) else {
-            return self.judge_full(film, jpeg, MAX_MISTAKES, cancel);
-        };
         // If rows have one colour, either the program never wrote them, or its camera looks
         // elsewhere. They count as never written if the rest of the picture is right.
-        let rest = self.judge_full(&empty.removed_from(film), jpeg, 0, cancel)?;
-        match rest.kind {
-            Kind::Right | Kind::Noise => Ok(rest.with_fact(empty.fact())),
-            Kind::Wrong | Kind::Unknown => self.judge_full(film, jpeg, MAX_MISTAKES, cancel),
+        if let Some((rest, fact)) = plain_facts::without_empty_rows(film, exact) {
+            let rest = self.judge_full(&rest, jpeg, 0, cancel)?;
+            if matches!(rest.kind, Kind::Right | Kind::Noise) {
+                return Ok(rest.with_fact(fact));
+            }
         }
+        self.judge_full(film, jpeg, MAX_MISTAKES, cancel)
     }
 
     /// Judges a picture by a search for its mistakes: at most `most`, and in addition some that are

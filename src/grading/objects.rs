@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::{
     hypotheses::{Candidate, Layout, Owner},
     scoring::Strays,
-    search::{Judge, labels},
+    search::Judge,
 };
 use crate::{
     projection::Projection,
@@ -60,17 +60,15 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
     let mut objects = right(scene);
     for (index, one) in objects.iter_mut().enumerate() {
         let shapes = [scene, &candidate.scene].map(|scene| &scene.objects[index].shape);
-        one.off = if is_drawn[index] {
-            off(scene, &candidate.scene, index)
-        } else {
-            0.0
-        };
+        if is_drawn[index] {
+            one.off = off(scene, &candidate.scene, index);
+        }
         one.is_right = is_drawn[index] && shapes[0] == shapes[1] && one.off < HALF_PIXEL;
     }
     let right = judge.predicted(&candidate.drawn_correctly(), &judge.fine);
     let strays = right.map_or_else(Strays::default, |right| right.strays());
     let grid = &judge.fine.grid;
-    let labels = labels(judge, candidate, Layout::default(), grid);
+    let labels = judge.labels(candidate, Layout::default(), grid);
     let is_moved: Vec<bool> = objects.iter().map(|one| !one.is_right).collect();
     let is_of_another = |at: usize| {
         let mut near = grid.around(at, BESIDE).filter_map(|near| labels[near]);

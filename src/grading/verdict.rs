@@ -37,6 +37,8 @@ impl Kind {
 pub struct NamedMistake {
     /// Stable identifier, for programs.
     pub id: &'static str,
+    /// Index of the object that the mistake is about. `None` if it is about no single object.
+    pub object: Option<usize>,
     /// Message that says what is wrong.
     pub message: String,
     /// Advice on how to correct the mistake.

@@ -55,7 +55,7 @@ const BEGINNINGS: &[(Criterion, &str)] = &[
 
 /// Returns the criterion that a mistake belongs to.
 pub fn criterion(mistake: &NamedMistake, scene: &Scene) -> Criterion {
-    if let Some(index) = object(mistake, scene) {
+    if let Some(index) = mistake.object {
         return match scene.objects[index].shape.checkerboard() {
             Some(_) => Criterion::Board,
             None => Criterion::Object(index),
@@ -79,19 +79,6 @@ fn of_id(id: &str) -> Option<Criterion> {
         Some((criterion, _)) => Some(*criterion),
         None => (camera.iter().any(|field| is_of(field.name))).then_some(Criterion::Camera),
     }
-}
-
-/// Returns the index of the object that a mistake is about, or `None` if it is about no object. The
-/// mistake's message then begins with the object's title.
-pub fn object(mistake: &NamedMistake, scene: &Scene) -> Option<usize> {
-    let title = |index: usize| {
-        let object = &scene.objects[index];
-        match &object.name {
-            Some(name) => format!("the {} {name} ", object.shape.kind()),
-            None => format!("the {} with the index {index} ", object.shape.kind()),
-        }
-    };
-    (0..scene.objects.len()).find(|&index| mistake.message.starts_with(&title(index)))
 }
 
 /// Returns the ids of all mistakes in alphabetical order. They are the ids in the table of mistakes

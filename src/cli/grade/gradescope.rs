@@ -26,7 +26,7 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
     let shares = shares(&criteria, points);
     let mut scores = shares.clone();
     let mistakes = &judged.verdict.mistakes;
-    let off = points.map(|points| points.taken_off(judged, scene));
+    let off = points.map(|points| points.taken_off(judged));
     for (at, mistake) in mistakes.iter().enumerate() {
         let of = criterion(mistake, scene);
         if let Some(test) = criteria.iter().position(|(one, _)| *one == of) {
@@ -56,7 +56,7 @@ pub fn results(one: &GradedStudent, scene: &Scene, points: Option<&PointScheme>)
     });
     let tests = tests.collect();
     let score = match points {
-        Some(points) => points.score(judged, scene),
+        Some(points) => points.score(judged),
         None => is_known.then(|| scores.iter().sum()),
     };
     whole(one, score, tests)

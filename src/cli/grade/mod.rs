@@ -81,9 +81,7 @@ pub fn run(args: &GradeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
     mark_equal(&mut graded);
     for one in &mut graded {
         let judged = one.best().ok();
-        one.score = points
-            .as_ref()
-            .and_then(|points| points.score(judged?, &scene));
+        one.score = points.as_ref().and_then(|points| points.score(judged?));
     }
     for one in &graded {
         if let Some(warning) = one.best().ok().and_then(|judged| judged.warning) {

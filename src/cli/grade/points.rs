@@ -9,7 +9,6 @@ use crate::{
     cli::{Trouble, input::unreadable},
     files,
     grading::Kind,
-    scene::Scene,
 };
 
 /// Maximum length of the file in `--points`, in bytes. A longer file is an error. A scheme of
@@ -94,11 +93,11 @@ impl PointScheme {
     }
 
     /// Returns the points of a picture; `None` if the picture is wrong for unknown reasons.
-    pub fn score(&self, judged: &JudgedPicture, scene: &Scene) -> Option<f64> {
+    pub fn score(&self, judged: &JudgedPicture) -> Option<f64> {
         match judged.verdict.kind {
             Kind::Right | Kind::Noise => Some(self.total),
             Kind::Wrong => {
-                let off: f64 = self.taken_off(judged, scene).iter().sum();
+                let off: f64 = self.taken_off(judged).iter().sum();
                 Some((self.total - off).max(0.0))
             }
             Kind::Unknown => None,
@@ -106,13 +105,12 @@ impl PointScheme {
     }
 
     /// Returns the points that each mistake of a picture costs, in the order of the mistakes.
-    pub fn taken_off(&self, judged: &JudgedPicture, scene: &Scene) -> Vec<f64> {
+    pub fn taken_off(&self, judged: &JudgedPicture) -> Vec<f64> {
         let mut objects = Vec::new();
         let mistakes = &judged.verdict.mistakes;
         let points = mistakes.iter().map(|mistake| {
             let listed = self.mistakes.get(mistake.id).copied();
-            let object = criteria::object(mistake, scene);
-            match (listed, object, self.object) {
+            match (listed, mistake.object, self.object) {
                 (Some(points), ..) => points,
                 (None, Some(object), Some(_)) if objects.contains(&object) => 0.0,
                 (None, Some(object), Some(points)) => {

@@ -7,7 +7,7 @@ use super::{
     behaviour::Behaviour,
     layout::Layout,
     light::{Curve, Effect},
-    parameters::Parameter,
+    parameters::{Owner, Parameter},
 };
 use crate::scene::{FieldOwner as Part, Scene};
 
@@ -71,6 +71,19 @@ impl Mistake {
             (Self::Numbers(one, _), Self::Numbers(other, _)) => one == other,
             (Self::Patch(..), Self::Patch(..)) | (Self::Filter(_), Self::Filter(_)) => true,
             _ => self == other,
+        }
+    }
+
+    /// Returns the index of the object that the mistake is about, or of the first one of its block.
+    /// Returns `None` if it is about no object, or about two.
+    pub fn object(&self) -> Option<usize> {
+        match self {
+            Self::Row(_, object) => *object,
+            Self::Numbers(parameter, _) => match parameter.owner {
+                Owner::Object(index) => Some(index),
+                Owner::Image | Owner::Camera => None,
+            },
+            Self::Patch(..) | Self::Filter(_) | Self::ColorsExchanged(..) => None,
         }
     }
 
@@ -170,7 +183,7 @@ impl Candidate {
                 if first == second {
                     return None;
                 }
-                let objects = Arc::make_mut(&mut candidate.scene.objects);
+                let objects = candidate.scene.objects_mut();
                 for (at, shape, color) in [(*one, shapes[0], second?), (*other, shapes[1], first?)]
                 {
                     if let Part::Shape(shape) = shape.with("color", color)? {

@@ -1,7 +1,5 @@
 //! The functions by which rows of the table of mistakes change a hypothesis about a program.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use super::{
@@ -54,7 +52,7 @@ pub fn reverse_normal(c: &mut Candidate, object: usize) {
 /// Returns whether a checkerboard is drawn.
 pub fn has_board(c: &Candidate) -> bool {
     let mut drawn = c.scene.objects.iter().zip(&c.is_drawn);
-    drawn.any(|(object, is_drawn)| *is_drawn && matches!(object.shape, Shape::Checkerboard(_)))
+    drawn.any(|(object, is_drawn)| *is_drawn && object.shape.checkerboard().is_some())
 }
 
 /// Offsets the samples by some pixels to the right and down, as seen in the picture's file.
@@ -107,12 +105,9 @@ pub fn set_sphere_fault(c: &mut Candidate, spheres: Spheres) {
 /// Sets a fault in how an object is intersected, if its shape can have this fault and no object has
 /// a fault yet.
 pub fn set_hit_fault(c: &mut Candidate, object: usize, hit: HitFault) {
-    let is_about = match (hit, c.scene.objects[object].shape) {
-        (HitFault::WithoutAxis(_), Shape::Box(_)) => true,
-        (HitFault::WithoutAxis(_), _) => false,
-        (_, shape) => matches!(shape, Shape::Triangle(_)),
-    };
-    if is_about && c.behaviour.hit.is_none() {
+    let of_box = matches!(hit, HitFault::WithoutAxis(_));
+    let kind = if of_box { "box" } else { "triangle" };
+    if c.scene.objects[object].shape.kind() == kind && c.behaviour.hit.is_none() {
         c.behaviour.hit = Some((object, hit));
     }
 }
@@ -181,8 +176,22 @@ pub fn lengthen(c: &mut Candidate, by: f64) {
 
 /// Returns the angle β with tan(β/2) = `by` · tan(α/2), where α is `angle`.
 fn widened(angle: Angle, by: f64) -> Angle {
-    let half = libm::atan(by * libm::tan(angle.in_radians() / 2.0));
-    Angle::from_degrees((2.0 * half).to_degrees())
+    twice_arctan(by * libm::tan(angle.in_radians() / 2.0))
+}
+
+/// Returns the angle α with tan(α/2) = `tangent`.
+pub fn twice_arctan(tangent: f64) -> Angle {
+    Angle::from_degrees((2.0 * libm::atan(tangent)).to_degrees())
+}
+
+/// Lengthens the view plane's distance as if u were not divided by its length.
+pub fn divide_by_sine_of_up(c: &mut Candidate) {
+    let (from, to) = c.scene.camera.view.ends(c.scene.camera.eye);
+    let [up, ahead] = [c.scene.camera.up, to - from].map(DVec3::normalize_or_zero);
+    let length = up.cross(ahead).length();
+    if length > 0.0 {
+        lengthen(c, 1.0 / length);
+    }
 }
 
 /// Multiplies the distance of the view plane from the eye by `by`. If the scene gives a field of
@@ -228,8 +237,10 @@ pub fn stretch(c: &mut Candidate, object: usize, by: [DVec3; 2]) {
 }
 
 pub fn shapes(c: &mut Candidate) -> impl Iterator<Item = &mut Shape> {
-    let objects = Arc::make_mut(&mut c.scene.objects).iter_mut();
-    objects.map(|object| &mut object.shape)
+    c.scene
+        .objects_mut()
+        .iter_mut()
+        .map(|object| &mut object.shape)
 }
 
 pub fn look_back(c: &mut Candidate) {

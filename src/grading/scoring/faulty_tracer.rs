@@ -63,7 +63,6 @@ impl FaultyTracer {
     /// curve by which it decodes colours.
     pub fn new(scene: &Scene, behaviour: Behaviour, decoding: Curve) -> Self {
         let mut projection = Projection::quick(&scene.camera, &scene.image);
-        let everywhere = [DVec2::NEG_INFINITY, DVec2::INFINITY];
         let right_projection = projection;
         let is_in_place = matches!(behaviour.rays, Rays::Correct)
             && behaviour.aspect == 1.0
@@ -86,21 +85,15 @@ impl FaultyTracer {
             |color: Color| DVec3::from(color.to_linear()).map(|light| decoding.light(light));
         let objects = scene.objects.iter().enumerate().map(|(at, object)| {
             let mut shape = by_vertices(object.shape);
-            let hit = behaviour
-                .hit
-                .and_then(|(own, hit)| (own == at).then_some(hit));
+            let hit = behaviour.hit.filter(|hit| hit.0 == at).map(|hit| hit.1);
             if let (Some(HitFault::WithoutAxis(axis)), Shape::Box(cuboid)) = (hit, &mut shape) {
                 (cuboid.min[axis], cuboid.max[axis]) = (-FAR, FAR);
             }
-            let bounds = if is_in_place && hit.is_none() {
-                bounds(&shape, &right_projection)
-            } else {
-                None
-            };
+            let bounds = bounds(&shape, &right_projection).filter(|_| is_in_place && hit.is_none());
             Traced {
                 shape,
                 hit,
-                bounds: bounds.unwrap_or(everywhere),
+                bounds: bounds.unwrap_or([DVec2::NEG_INFINITY, DVec2::INFINITY]),
                 colors: shape.colors().map(decoding),
             }
         });

@@ -52,13 +52,13 @@ struct PixelError {
 
 impl PixelError {
     fn of(prediction: &Prediction, at: usize) -> Self {
-        let variance = prediction.moments.variance[at];
+        let (variance, steps) = (prediction.moments.variance[at], prediction.steps(at));
         // A pixel that is NaN gives no information.
         let is_empty = prediction.observed[at].x.is_nan();
         Self {
             difference: prediction.difference(at),
             variance: variance.map(|one| if one < FLAT || is_empty { 0.0 } else { one }),
-            rounding: rounding(prediction, at),
+            rounding: steps * steps / 12.0 + prediction.moments.mean_variance[at],
         }
     }
 
@@ -80,13 +80,6 @@ impl PixelError {
         -0.5 * libm::log(volume)
             - (FREEDOM + 3.0) / 2.0 * libm::log1p(self.chi_square(share) / FREEDOM)
     }
-}
-
-/// Returns the variance of a pixel's error that does not come from sampling: the variance of
-/// rounding plus the variance of the predicted mean.
-fn rounding(prediction: &Prediction, at: usize) -> DVec3 {
-    let steps = prediction.steps(at);
-    steps * steps / 12.0 + prediction.moments.mean_variance[at]
 }
 
 impl Prediction<'_> {

@@ -279,13 +279,11 @@ impl<'a> Prediction<'a> {
     /// Returns the observed light of a cell minus the predicted light. Returns 0 in a cell without
     /// a pixel to compare.
     pub fn difference(&self, at: usize) -> DVec3 {
+        if self.observed[at].x.is_nan() {
+            return DVec3::ZERO;
+        }
         if !self.is_cut_off {
-            let seen = self.observed[at];
-            return if seen.x.is_nan() {
-                DVec3::ZERO
-            } else {
-                seen - self.moments.mean[at]
-            };
+            return self.observed[at] - self.moments.mean[at];
         }
         let all = self.of_cut_off.get_or_init(|| {
             let cells = 0..self.observed.len();
@@ -307,9 +305,6 @@ impl<'a> Prediction<'a> {
     /// the byte; in other cells, it loses half a step on average.
     fn difference_of_cut_off(&self, at: usize) -> DVec3 {
         let (seen, mean) = (self.observed[at], self.moments.mean[at]);
-        if seen.x.is_nan() {
-            return DVec3::ZERO;
-        }
         let is_flat = self.is_flat(at);
         DVec3::from([0, 1, 2].map(|i| {
             let by = (self.encoded(seen[i]) - self.encoded(mean[i])) / STEP;

@@ -68,7 +68,7 @@ impl Rendering {
             return Arc::clone(moments);
         }
         let index = |pixel| {
-            let (x, y) = layout.source(pixel, grid.size());
+            let (x, y) = layout.source(pixel, grid.size);
             self.part.index(x, y)
         };
         let order: Vec<usize> = grid.cells.iter().map(index).collect();
@@ -88,7 +88,9 @@ impl Candidate {
         };
         if self.is_drawn.contains(&false) {
             let mut is_drawn = self.is_drawn.iter();
-            Arc::make_mut(&mut scene.objects).retain(|_| is_drawn.next() == Some(&true));
+            scene
+                .objects_mut()
+                .retain(|_| is_drawn.next() == Some(&true));
         }
         scene
     }
@@ -103,7 +105,7 @@ impl Candidate {
         known: &[Arc<Rendering>],
         work: &Work,
     ) -> Option<Rendering> {
-        let part = self.layout.sources(grid.cells, grid.size());
+        let part = self.layout.sources(grid.cells, grid.size);
         let is_reusable = |one: &&Arc<Rendering>| {
             let behaves = one.candidate.behaviour == self.behaviour;
             one.part == part && (samples.is_none() || behaves)
@@ -171,13 +173,8 @@ impl Candidate {
     /// Returns the area in which the pictures of two hypotheses may differ, before pixels are
     /// rearranged. The rest of `part` is the same in both.
     fn changed(&self, other: &Self, grid: &Grid, part: Area) -> Area {
-        let nothing = Area {
-            width: 0,
-            height: 0,
-            ..part
-        };
         if self.traces_as(other) {
-            return nothing;
+            return Area::whole(0, 0);
         }
         let (one, two) = (&self.scene, &other.scene);
         // If the program shows objects in their places, a changed object makes a difference only

@@ -41,12 +41,8 @@ impl Strays {
     /// Returns whether at most `missed` of the pixels that should show one colour are wrong, and
     /// the errors of pixels that mix several colours may be noise.
     pub fn are_no_more(&self, missed: usize) -> bool {
-        let are_few = self.pixels.len() <= missed;
-        let of_edges = Self {
-            edges: self.edges.clone(),
-            ..Self::default()
-        };
-        are_few && of_edges.are_empty(1, |_| Some(0)) == [true]
+        let sum = |(squares, expected), edge: &(_, f64, f64)| (squares + edge.1, expected + edge.2);
+        self.pixels.len() <= missed && is_noise(self.edges.iter().fold((0.0, 0.0), sum))
     }
 
     /// Returns for each group of pixels whether sampling may explain its errors. `group` returns
@@ -63,16 +59,17 @@ impl Strays {
                 (*squares, *expected) = (*squares + square, *expected + variance);
             }
         }
-        // Light is at most 1, so the squared error of a pixel, summed over three channels, is at
-        // most 3. Therefore its variance is at most three times its expected value.
-        let is_noise = |(squares, expected): (f64, f64)| {
-            squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
-        };
         let pairs = is_right.into_iter().zip(sums);
-        pairs
-            .map(|(is_right, sums)| is_right && is_noise(sums))
-            .collect()
+        pairs.map(|(is, sums)| is && is_noise(sums)).collect()
     }
+}
+
+/// Returns whether sampling may explain a sum of squared errors. The second number is the sum that
+/// is expected of sampling.
+fn is_noise((squares, expected): (f64, f64)) -> bool {
+    // Light is at most 1, so the squared error of a pixel, summed over three channels, is at most 3.
+    // Therefore its variance is at most three times its expected value.
+    squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
 }
 
 impl Prediction<'_> {

@@ -8,12 +8,11 @@
 use std::sync::Arc;
 
 use super::{
-    judge::{CELL_STEP, Judge, least},
+    judge::{Judge, least},
     plain_numbers::shortened,
 };
-use crate::grading::{
-    hypotheses::{Behaviour, Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows},
-    scoring::Level,
+use crate::grading::hypotheses::{
+    Behaviour, Candidate, Mistake, MistakeRow, OBJECT_ROWS, ROWS, Shows,
 };
 
 /// Maximum number of rounds of fitting numbers to the middle grid. Few are enough, because a fit to
@@ -77,22 +76,6 @@ const HINTED: f64 = 3.0;
 /// tested on single pixels, even if a correct program explains the picture. The value is low,
 /// because the second test decides.
 const HINTED_SHARE: f64 = 0.3;
-
-/// Fits all numbers of a hypothesis's mistakes to a picture at one resolution. Returns `None` if
-/// there are no numbers, or if the budget of work is used up.
-pub fn refitted(
-    judge: &Judge,
-    candidate: &Candidate,
-    level: &Level,
-    rounds: [usize; 2],
-) -> Option<Candidate> {
-    let all: Vec<usize> = (0..candidate.numbers().len()).collect();
-    if all.is_empty() {
-        return None;
-    }
-    let (fitted, _) = judge.fit(candidate, &all, level, CELL_STEP, rounds)?;
-    Some(fitted)
-}
 
 /// Adds to a hypothesis what makes it explain the picture: nothing, a mistake at edges, or a wrong
 /// pixel width. Returns `None` if none of these does.
@@ -208,8 +191,8 @@ fn fitted_with(judge: &Judge, with: Candidate) -> Option<Candidate> {
     if !judge.residual(&with)?.is_at_edges {
         return None;
     }
-    let fitted = refitted(judge, &with, judge.fitting(&with), [0, ROUNDS])?;
-    let short = shortened(judge, &fitted);
+    let (fitted, _) = judge.fit_all(&with, judge.fitting(&with), [0, ROUNDS])?;
+    let short = shortened(judge, &fitted).unwrap_or(fitted);
     judge.explains(&short).then_some(short)
 }
 

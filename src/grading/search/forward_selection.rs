@@ -8,10 +8,9 @@
 use std::collections::BTreeSet;
 
 use super::{
-    edge_rows::{ROUNDS, explained_with, refitted, rows_in_areas},
+    edge_rows::{ROUNDS, explained_with, rows_in_areas},
     joint,
     judge::{Judge, Judged, least},
-    labels::labels,
     numeric_mistakes::{numeric_mistakes, slightly_wrong},
     patch::patch,
     plain_numbers::plain,
@@ -248,16 +247,16 @@ impl Search<'_> {
             return None;
         }
         self.examined.push(candidate.clone());
-        let fitted = refitted(judge, candidate, &judge.coarse, [2, 1]);
-        let mut judged = judge.judged(fitted.as_ref().unwrap_or(candidate), &judge.middle)?;
+        let fitted = judge.fit_all(candidate, &judge.coarse, [2, 1]);
+        let fitted = fitted.map_or_else(|| candidate.clone(), |(fitted, _)| fitted);
+        let mut judged = judge.judged(&fitted, &judge.middle)?;
         // A hypothesis far from the picture, or much farther than another, is not fitted further.
         let left = left(judge, judged.candidate()).unwrap_or(f64::INFINITY);
         self.least_left = self.least_left.min(left);
         let most = NEAR_RATIO.min(f64::max(WORSE * self.least_left, NEGLIGIBLE));
         if candidate.mistakes.is_empty() || left <= most {
             let level = judge.fitting(judged.candidate());
-            let fitted = refitted(judge, judged.candidate(), level, [0, ROUNDS]);
-            if let Some(fitted) = fitted {
+            if let Some((fitted, _)) = judge.fit_all(judged.candidate(), level, [0, ROUNDS]) {
                 judged = judge.judged(&fitted, &judge.middle)?;
             }
             // The hypothesis cannot become better than the one that explains the picture already.
@@ -350,7 +349,7 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
         };
         // The removed mistake may have compensated for wrong numbers, or for a mistake at edges.
         let fitted = || {
-            let fitted = refitted(judge, &fewer, judge.fitting(&fewer), [0, ROUNDS])?;
+            let (fitted, _) = judge.fit_all(&fewer, judge.fitting(&fewer), [0, ROUNDS])?;
             if !is_near(judge, &fitted) {
                 return None;
             }
@@ -477,7 +476,7 @@ fn penalised(difference: f64, candidate: &Candidate) -> f64 {
 /// Returns the indices of the objects that may be wrong, the one with the largest error first.
 fn suspects(judge: &Judge, from: &Judged) -> Vec<usize> {
     let grid = &judge.middle.grid;
-    let labels = labels(judge, from.candidate(), from.candidate().layout, grid);
+    let labels = judge.labels(from.candidate(), from.candidate().layout, grid);
     let mut wrong = vec![0.0; judge.scene.objects.len()];
     for (at, off) in from.score.chi_squares.iter().enumerate() {
         // An object that is larger than in the hypothesis's scene causes errors beside the cells in

@@ -31,22 +31,18 @@ const ROW_RATIO: f64 = 0.95;
 /// a cell is the sum of its channels. Effects on light hardly change the correlation; even an
 /// inversion changes only its sign.
 fn correlation(prediction: &Prediction) -> f64 {
-    let (mut count, mut sums, mut products) = (0.0, [0.0; 2], [0.0; 3]);
+    let mut sums = [0.0; 6];
     for (seen, mean) in prediction.observed.iter().zip(&prediction.moments.mean) {
         let [a, b] = [seen, mean].map(|light| light.element_sum());
         if !a.is_nan() {
-            count += 1.0;
-            sums = [sums[0] + a, sums[1] + b];
-            products = [
-                products[0] + a * a,
-                products[1] + a * b,
-                products[2] + b * b,
-            ];
+            let terms = [1.0, a, b, a * a, a * b, b * b];
+            sums = std::array::from_fn(|i| sums[i] + terms[i]);
         }
     }
-    let [aa, ab, bb] = [(0, 0, 0), (1, 0, 1), (2, 1, 1)]
-        .map(|(at, i, j)| products[at] - sums[i] * sums[j] / f64::max(count, 1.0));
-    ab.abs() / (aa * bb).sqrt().max(1e-12)
+    let [n, a, b, aa, ab, bb] = sums;
+    let covariance = |product: f64, one: f64, other: f64| product - one * other / n.max(1.0);
+    let variances = covariance(aa, a, a) * covariance(bb, b, b);
+    covariance(ab, a, b).abs() / variances.sqrt().max(1e-12)
 }
 
 /// Returns combinations of several mistakes with small differences from the picture on the coarsest

@@ -11,10 +11,11 @@ use crate::{
     area::Area,
     film::{Film, Jpeg},
     grading::{
-        hypotheses::{Candidate, Effect, Mistake},
+        hypotheses::{Candidate, Effect, Layout, Mistake},
         scoring::{Displacement, Grid, Level, Prediction, Rendering, Score, Work, work},
     },
     scene::Scene,
+    tracer::World,
 };
 
 /// Number of cells along the longer side of the coarsest grid, on which mistakes are selected. A
@@ -118,8 +119,7 @@ impl<'a> Judge<'a> {
         let part = exact.part;
         let level = |area: Area, longest, samples| {
             let grid = Grid::new(&scene.image, area, longest);
-            let corner = [area.x - part.x, area.y - part.y];
-            Level::new(grid, film, corner, samples, jpeg)
+            Level::new(grid, film, part, samples, jpeg)
         };
         let judge = Self {
             scene,
@@ -210,6 +210,25 @@ impl<'a> Judge<'a> {
         Some((absolute(&differences), candidate))
     }
 
+    /// Returns the index of the object that is seen in the middle of each cell of a grid. A correct
+    /// program renders the hypothesis's scene, and its pixels are arranged by `layout`. `None` stands
+    /// for the background. If it is cancelled, all are `None`.
+    pub fn labels(&self, candidate: &Candidate, layout: Layout, grid: &Grid) -> Vec<Option<usize>> {
+        let scene = candidate.drawn_correctly().drawn(grid);
+        let Ok(world) = World::new_unless(&scene, self.work.cancel) else {
+            return vec![None; grid.count()];
+        };
+        let objects = 0..candidate.is_drawn.len();
+        self.work
+            .spend(work::of_exact(0, objects.len(), grid.count()));
+        let drawn: Vec<usize> = objects.filter(|&i| candidate.is_drawn[i]).collect();
+        let label = |cell| {
+            let (x, y) = layout.source(cell, grid.size);
+            world.object_at(x, y).map(|object| drawn[object])
+        };
+        grid.cells.iter().map(label).collect()
+    }
+
     /// Computes the score and the cost of a hypothesis at one resolution.
     pub fn judged(&self, candidate: &Candidate, level: &Level) -> Option<Judged> {
         let rendering = level.render(candidate, &self.work)?;
@@ -220,6 +239,32 @@ impl<'a> Judge<'a> {
             score,
             cost,
         })
+    }
+
+    /// Fits all numbers of a hypothesis's mistakes. Returns `None` if there are none, or if the budget is used up.
+    pub fn fit_all(
+        &self,
+        candidate: &Candidate,
+        level: &Level,
+        rounds: [usize; 2],
+    ) -> Option<(Candidate, Fitted)> {
+        let all = Vec::from_iter(0..candidate.numbers().len());
+        (!all.is_empty()).then_some(())?;
+        self.fit(candidate, &all, level, CELL_STEP, rounds)
+    }
+
+    /// Fits the numbers of the last mistake.
+    pub fn fit_last(
+        &self,
+        from: &Candidate,
+        start: &Candidate,
+        level: &Level,
+        cells: f64,
+        rounds: [usize; 2],
+    ) -> Option<(f64, Candidate)> {
+        let free = Vec::from_iter(from.numbers().len()..start.numbers().len());
+        let (fitted, found) = self.fit(start, &free, level, cells, rounds)?;
+        Some((found.left, fitted))
     }
 
     /// Fits those numbers of a hypothesis's mistakes that have the indices `free`. To find
@@ -256,7 +301,7 @@ impl<'a> Judge<'a> {
 /// The cells of the whole picture count even if only a part is judged, because almost anything
 /// could be fitted to a few pixels.
 pub fn price(level: &Level, fitted: usize) -> f64 {
-    let [width, height] = level.grid.size().map(f64::from);
+    let [width, height] = level.grid.size.map(f64::from);
     0.5 * fitted as f64 * libm::log(width * height)
 }
 

@@ -14,14 +14,10 @@ mod edge_rows;
 pub mod forward_selection;
 mod joint;
 mod judge;
-mod labels;
 mod levenberg_marquardt;
 mod numeric_mistakes;
 mod patch;
 mod plain_numbers;
 mod residual;
 
-pub use self::{
-    judge::{Judge, Judged},
-    labels::labels,
-};
+pub use self::judge::{Judge, Judged};

@@ -60,10 +60,7 @@ pub fn numeric_mistakes(
             if parameter.is_color() && candidate.effects.is_empty() {
                 return Some((left, start));
             }
-            let free = candidate.numbers().len()..start.numbers().len();
-            let (candidate, fitted) =
-                judge.fit(&start, &Vec::from_iter(free), tiny, 0.5, [4, 0])?;
-            Some((fitted.left, candidate))
+            judge.fit_last(candidate, &start, tiny, 0.5, [4, 0])
         };
         least(tried.into_iter().filter_map(fit), 1).pop()
     });
@@ -88,9 +85,8 @@ pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) 
         return Vec::new();
     };
     let fit = |start: &Candidate, rounds: [usize; 2]| {
-        let free = Vec::from_iter(candidate.numbers().len()..start.numbers().len());
-        let (fitted, found) = judge.fit(start, &free, level, CELL_STEP, rounds)?;
-        (found.left < difference).then_some((found.left, fitted))
+        let found = judge.fit_last(candidate, start, level, CELL_STEP, rounds);
+        found.filter(|found| found.0 < difference)
     };
     let mut all = suspected(candidate, suspects);
     all.retain(|parameter| match parameter.owner {

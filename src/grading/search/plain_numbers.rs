@@ -31,7 +31,8 @@ const ROUNDS: usize = 8;
 pub fn plain(judge: &Judge, candidate: &Candidate) -> Candidate {
     let found = judge.judged(candidate, judge.fitting(candidate));
     let own = found.map(|found| with_own(judge, candidate, found.cost));
-    shortened(judge, own.as_ref().unwrap_or(candidate))
+    let own = own.unwrap_or_else(|| candidate.clone());
+    shortened(judge, &own).unwrap_or(own)
 }
 
 /// Replaces fitted numbers by the scene's own as long as the picture is explained as well.
@@ -120,21 +121,13 @@ fn plainer(
 }
 
 /// Rounds a hypothesis's numbers to as few digits as possible.
-pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
+pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let level = judge.fitting(candidate);
-    let free: Vec<usize> = (0..candidate.numbers().len()).collect();
-    if free.is_empty() {
-        return candidate.clone();
-    }
-    let Some((_, fitted)) = judge.fit(candidate, &free, level, CELL_STEP, [0, 1]) else {
-        return candidate.clone();
-    };
-    let Some(long) = judge.judged(candidate, level) else {
-        return candidate.clone();
-    };
+    let (_, fitted) = judge.fit_all(candidate, level, [0, 1])?;
+    let long = judge.judged(candidate, level)?;
     // A short number counts as not fitted, so it has no price. In return, the rest of the cost may
     // grow by the prices that are saved.
-    let most = long.cost + price(level, free.len());
+    let most = long.cost + price(level, fitted.numbers.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {
         // The length of a vector may be arbitrarily uncertain, so the error of a number is limited
@@ -154,7 +147,5 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Candidate {
     };
     let mut shorter =
         (0..QUARTERS).filter_map(|i| rounded_to(TENTH / libm::pow(4.0, f64::from(i))));
-    shorter
-        .find(is_as_good)
-        .unwrap_or_else(|| candidate.clone())
+    shorter.find(is_as_good)
 }

@@ -1,9 +1,6 @@
 //! What a hypothesis about the program leaves unexplained in the pixels of a picture.
 
-use super::{
-    judge::{Judge, Residual},
-    labels::labels,
-};
+use super::judge::{Judge, Residual};
 use crate::grading::{
     hypotheses::{Candidate, Mistake},
     scoring::{Displacement, Prediction, work},
@@ -109,17 +106,13 @@ fn residual_of(judge: &Judge, candidate: &Candidate, prediction: &Prediction) ->
     judge.work.spend(work::RESIDUAL * level.grid.count() as f64);
     let missed = judge.missed(candidate);
     let reach = level.jpeg.map_or(EDGE_REACH, |_| CODED_EDGE_REACH);
-    let is_inside = |at: &&usize| {
-        level
-            .grid
-            .around(**at, reach)
-            .all(|at| prediction.is_flat(at))
-    };
+    let grid = &level.grid;
+    let is_inside = |at: &&usize| grid.around(**at, reach).all(|at| prediction.is_flat(at));
     let inside = strays.pixels.iter().filter(is_inside).count();
     let is_at_edges = inside <= missed + strays.pixels.len() / PIXELS_PER_INSIDE;
     // Wrong pixels far from edges are wrong areas, whatever else is wrong.
     let (displacement, width, is_tinted) = if is_at_edges {
-        let labels = labels(judge, candidate, candidate.layout, &level.grid);
+        let labels = judge.labels(candidate, candidate.layout, &level.grid);
         let background = judge.scene.objects.len();
         let groups: Vec<usize> = labels.iter().map(|one| one.unwrap_or(background)).collect();
         let (displacement, width) = displacement_and_width(judge, candidate, prediction, &groups);

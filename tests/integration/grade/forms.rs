@@ -149,6 +149,26 @@ fn gradescope_gets_a_score_only_where_it_is_known() {
     assert_eq!(found["score"], 5.0);
 }
 
+#[test]
+fn mistakes_in_all_objects_of_a_block_belong_to_its_first_object() {
+    const BALLS: &str = "\
+camera { eye (0, 2, 8)  lookat (0, 1, 0) }
+sphere Ball for i < 2 { center (4 * i - 2, 1, 0)  radius 1  color teal }
+image { width 64  height 36 }
+";
+    let folder = Folder::with([
+        ("a.scn", BALLS),
+        ("b.scn", &BALLS.replace("radius 1", "radius 1.4")),
+    ]);
+    folder.told("render b.scn -o b.png", 0);
+    let said = folder.run("grade a.scn b.png --format gradescope");
+    let found: Value = serde_json::from_slice(&said.output).unwrap();
+    let tests = found["tests"].as_array().unwrap().iter();
+    let failed = tests.filter(|test| test["status"] == "failed");
+    let failed: Vec<_> = failed.map(|test| test["name"].as_str().unwrap()).collect();
+    assert_eq!(failed, ["sphere Ball[0]"]);
+}
+
 const WORKSHEET: &str = "\u{feff}Identifier,\"Full name\",Grade,\"Maximum Grade\",\"Grade can be changed\",\"Last modified (grade)\",\"Feedback comments\"\r
 \"Participant 1\",\"A, A\",,20.00,Yes,-,\r
 \"Participant 2\",B,\"1,50\",20.00,Yes,-,\"old\r\ntext\"\r
