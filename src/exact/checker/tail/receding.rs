@@ -1,5 +1,5 @@
-//! The sum over the lines that an edge crosses, by Fourier modes, for an edge along which the depth
-//! at least doubles. Green's theorem turns a board's integral into such sums
+//! Sums over the lines that an edge crosses, if the depth at least doubles along the edge. Each sum
+//! is computed as a sum of Fourier modes. Green's theorem turns a board's integral into such sums
 //! ([`green`](super::super::green)). The sum starts at a depth from which the expansion of the
 //! Lerch series is accurate.
 
@@ -86,8 +86,8 @@ pub(super) fn sum_from(
         return BoundedSum::zero_within(trivial);
     }
     let w = depth / g;
-    // A term of the series falls with the depth as w^(−2−k). The amplitudes do not contain this
-    // factor, because the sums over crossings have it.
+    // Term k of the series falls with the depth as w^(−2−k). The amplitudes do not contain this
+    // factor, because the sums over crossings contain it.
     let amplitudes = amplitudes(series, 4.0 / (PI * PI * PI) / (g * g * g), |a| a / (PI * g));
     let [first, second, third] = amplitudes.map(f64::abs);
     let u = 1.0 / w;
