@@ -53,8 +53,8 @@ pub(super) fn split(
     chord
 }
 
-/// Returns the signed area of a polygon, and its perimeter, where the length of a side counts as
-/// |dx| + |dy|.
+/// Returns the signed area of a polygon, and its perimeter. In the perimeter, the length of a side
+/// is measured as |dx| + |dy|.
 pub(super) fn measure(polygon: &[DVec2]) -> (f64, f64) {
     let Some((&origin, others)) = polygon.split_first() else {
         return (0.0, 0.0);

@@ -8,9 +8,9 @@ use super::rng::Key;
 /// which does not choose all permutations with equal probability.
 const MAX_STORED: u64 = 1 << 12;
 
-/// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. A
-/// smaller one would allocate memory more often. A larger one would take longer to clear for every
-/// pixel.
+/// Maximum length of a permutation that is stored in a [`Buffer`] instead of allocated memory. With
+/// a smaller maximum, memory would be allocated more often. A larger buffer would take longer to
+/// clear for every pixel.
 const SHORT: usize = 64;
 
 /// Memory for the entries of a short permutation. A [`Shuffle`] borrows it instead of owning it,
