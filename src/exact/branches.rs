@@ -330,7 +330,8 @@ impl Tangents {
         let [[x, y], [far_x, far_y]] = ends.each_ref().map(|end| &end.at);
         let chord = [far_x.minus(x), far_y.minus(y)];
         let [here, there] = &gradients;
-        // The control point lies on the tangent at the start and on the tangent at the end.
+        // The control point is the intersection of two tangents: `along` is a vector along the
+        // tangent at the start, and `way` times this vector leads to the tangent at the end.
         let along = [here[1].negated(), here[0].clone()];
         let way = product(there, &chord).over(&product(there, &along));
         let control = along.map(|x| x.times(&way));

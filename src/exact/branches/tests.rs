@@ -12,7 +12,8 @@ use crate::reference::{
 
 const NUMBER: Number = Number { bits: 600 };
 
-/// Maximum rounding error of the integral of a section, divided by its width (`slabs`).
+/// Maximum rounding error of the integral of a section, divided by the section's width. The value
+/// is that of the constant with the same name in `slabs`.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
 /// A branch of a conic, computed with 600 bits of precision.

@@ -253,12 +253,12 @@ fn potential_of<const MOST: usize, const ROWS: usize>(
 struct Edge {
     /// Sign, +1 or −1, with which the edge's integral is added to the polygon's. It depends on two
     /// conditions: whether the polygon's boundary runs from the edge's near end to its far end, and
-    /// whether b is the coordinate of the floor that changes more along the edge. It is +1 if both
-    /// hold or neither does.
+    /// whether the floor's second coordinate changes at least as much along the edge as the first.
+    /// It is +1 if both hold or neither does.
     sign: f64,
     /// Factor with which the polygon's integral contains the difference of the potential
-    /// ([`potential`]) between the edge's ends. It is 1 if b is the coordinate of the floor that
-    /// changes more along the edge, and 0 if it is a.
+    /// ([`potential`]) between the edge's ends. It is 1 if the floor's second coordinate changes at
+    /// least as much along the edge as the first, and 0 otherwise.
     potential: f64,
     c: f64,
     t: f64,

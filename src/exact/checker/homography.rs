@@ -191,7 +191,7 @@ impl Homography {
             }
         };
         // The value of N_a, N_b or L has three roundings of its largest terms, and the quotient N/L
-        // has one more.
+        // has one more. Each form is therefore given an error of four roundings.
         let errors = [a, b, below].map(|form| 4.0 * UNIT * size(&form));
         let steepness = libm::hypot(below[0], below[1]);
         // Errors e of the forms displace a point by v = M⁻¹·e, where M is the matrix of the three

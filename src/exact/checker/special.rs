@@ -199,8 +199,8 @@ const SMALL: f64 = 3.0;
 const LARGE: f64 = 64.0;
 
 /// Distance in y between neighbouring expansion points of the Taylor series of the exponential
-/// integral F_3 ([`integrals`]), which are used for |y| from `SMALL` to `LARGE`. A smaller distance
-/// would need fewer terms per series but a larger table, which now has 123 series.
+/// integral F_3 ([`integrals`]). The series are used for |y| from `SMALL` to `LARGE`. A smaller
+/// distance would need fewer terms per series but a larger table, which now has 123 series.
 const STEP: f64 = 0.5;
 /// Number of terms of a Taylor series of the exponential integral F_3 ([`integrals`]). The distance
 /// of y from the expansion point is at most ¼, and y is at least 3, so that the first omitted term

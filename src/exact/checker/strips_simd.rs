@@ -119,7 +119,8 @@ impl LaneSums {
         let (value, bound) = (self.values[pixel], self.bounds[pixel]);
         BoundedSum {
             value,
-            // If squares are extremely large, products overflow, and the sum is NaN.
+            // If squares are extremely large, products overflow, and the sum is NaN. The bound is
+            // then infinite.
             bound: if value.is_nan() { f64::INFINITY } else { bound },
         }
     }

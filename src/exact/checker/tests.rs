@@ -448,8 +448,7 @@ proptest! {
 
 #[test]
 fn from_straight_above() {
-    // The side of a square is about 1/1000 pixel: each side of the pixel has 1000 squares and a
-    // remainder.
+    // The side of a square is about 1/1000 pixel: each side of the pixel is 1000.5 squares long.
     let board = Homography::new(
         [[1000.5, 0.0, 500.25], [0.0, 1000.5, 500.25]],
         [0.0, 0.0, 1.0],
