@@ -84,9 +84,9 @@ const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// bound comes first. Near a point that a few curves share, each quartering reduces the bound to a
 /// quarter; 16 of them reduce it by a factor of 2^32.
 const MAX_QUARTERINGS: usize = 16;
-/// Maximum memory of a pixel's queued parts, in bytes, without what a part needs only while it is
-/// computed. Above it, no part is quartered, and the areas of parts that are not computed are added
-/// to the error bound. A smaller maximum would cause this error more often.
+/// Maximum memory of a pixel's queued parts, in bytes, without temporary memory. Above it, no part
+/// is quartered any more, and the areas of parts that are not computed are added to the error
+/// bound. A smaller maximum would cause this error more often.
 const MAX_MEMORY: usize = 64 << 20;
 /// Minimum side, in pixels, of a square part of a pixel that is quartered because too many curves
 /// pass through it. The area of a smaller part is added to the error bound instead; it is less than

@@ -77,7 +77,7 @@ pub(in crate::exact) struct Homography {
     /// Unit vector along the horizon.
     horizon: DVec2,
     /// Maximum displacement of a point perpendicular to the horizon by rounding errors, in pixels,
-    /// as the coefficients [d, e] of d + e·L. L is the value at the point of the form `below`,
+    /// as the coefficients `[d, e]` of d + e·L. L is the value at the point of the form `below`,
     /// which is 0 on the horizon.
     across_horizon: [f64; 2],
     /// Maximum value of the form `below`, which is 0 on the horizon, at which a point is treated as

@@ -53,9 +53,9 @@ impl ExactArc {
         }
     }
 
-    /// Returns the area between the arc and its chord. The arc is halved 60 times, at the point
-    /// where the tangent is parallel to the chord. Each halving brings the weight nearer to 1, that
-    /// of a parabola.
+    /// Returns the area between the arc and its chord. The arc, and then each of its parts, is
+    /// halved 60 times, at the point where the tangent is parallel to the chord. Each halving
+    /// brings the weight nearer to 1, that of a parabola.
     fn area(&self) -> N {
         let (mut share, mut scale, mut weight) =
             (NUMBER.exact(0.0), NUMBER.exact(1.0), self.weight.clone());
