@@ -10,7 +10,7 @@ use crate::reference::tightness::Tightness;
 /// Number of points along each side of the pixel.
 const POINTS: i32 = 300;
 
-/// The bounds of which [`Conic::doubtful_area`] is the least.
+/// Tightness of the three bounds whose minimum is [`Conic::doubtful_area`].
 #[derive(Default)]
 struct Found {
     any: Tightness,

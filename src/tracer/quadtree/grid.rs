@@ -56,7 +56,7 @@ pub struct CellGrid {
 }
 
 impl Nearness {
-    /// The least value, which hides nothing, because every object's value is greater.
+    /// The nearness below those of all objects. As a depth limit, it hides no object.
     pub const NONE: Self = Self(0);
 
     /// Rounds a non-negative number up. Returns the greatest value for NaN and negative numbers.
