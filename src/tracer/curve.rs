@@ -122,8 +122,8 @@ impl<T: Real> SubPixelFrame<T> {
         //
         // If the eye is outside, the conic has two branches, one in front of the eye and one behind
         // it. The line lies between the branches, and no ray on the line hits the sphere. If the
-        // sphere differs from a plane by only a factor of about 1e-200, no precision distinguishes
-        // the two branches.
+        // sphere is a plane to a relative precision of about 1e-200, no precision distinguishes the
+        // two branches.
         let (c, square) = sphere.parts();
         let ahead = || line_of(&self.along(&c));
         if sphere.is_at_eye() {

@@ -188,7 +188,8 @@ impl CellGrid {
 mod tests {
     use super::*;
 
-    /// A grid that is coarser than the window allows would find too many objects for each ray.
+    /// Checks that the grid is as fine as the window allows. With a coarser grid, too many objects
+    /// would be found for each ray.
     #[test]
     fn a_window_has_nearly_all_units_along_its_longer_side() {
         for (x, y) in [(1.0, 1.0), (3e-6, 1e-6), (0.2, 50.0), (1e200, 1e199)] {
@@ -196,7 +197,8 @@ mod tests {
             let sides = [0, 1].map(|axis| f64::from(grid.high[axis] - grid.low[axis]));
             let all = f64::from(1 << LEVELS) / ROOT_MARGIN;
             for (side, reach) in sides.into_iter().zip([x, y]) {
-                // The window is widened by a unit on each side, and its ends are rounded.
+                // Up to 4 units of difference are allowed, because the window is widened by a unit
+                // on each side and its ends are rounded.
                 assert!(
                     (side - all * reach / x.max(y)).abs() <= 4.0,
                     "{x}, {y}: {side}"

@@ -139,8 +139,9 @@ fn of_a_crowd_the_objects_nearby_are_enough() {
     assert!(known > 100 && several > 100, "{known}, {several}");
 }
 
-/// Three hundred spheres, each as wide as a pixel, are seen in one pixel. With fewer samples than
-/// spheres, finding the candidates of each pixel would cost more than it saves.
+/// Checks that one pixel with three hundred spheres, each as wide as the pixel, is crowded if it
+/// has fewer samples than spheres. Finding the candidates of each pixel would then take longer than
+/// tracing the samples one by one.
 #[test]
 fn a_pixel_of_more_objects_than_samples_is_crowded() {
     let pixel = 10.0 / f64::from(SIZE);

@@ -26,8 +26,8 @@ pub struct PreparedPixel {
     pub(super) x: u32,
     pub(super) y: u32,
     pub(super) surfaces: Vec<PixelSurface>,
-    /// The lines that bound the surfaces, and the lines between the squares of checkerboards, for
-    /// all surfaces.
+    /// All lines of the pixel: those that bound the surfaces, and those between the squares of
+    /// checkerboards.
     pub(super) lines: Vec<ScaledLine>,
     /// Minimum difference of two inverse depths at which their order is certain. `None` if the
     /// surfaces are sorted from back to front, so that samples compare no depths.
