@@ -304,8 +304,8 @@ fn what_is_seen_in_a_part_is_a_candidate_there() {
 }
 
 /// If objects lie in one plane, the tracer tests at nearly every sample point whether two of them
-/// lie in one plane. This test must not prepare objects in a higher precision: a point would then
-/// cost as much as in a scene with too many objects for the cache of prepared objects.
+/// lie in one plane. The test must not prepare objects in a higher precision, because in a scene
+/// with more objects than the cache holds, they would be prepared again and again.
 #[test]
 fn nothing_is_prepared_to_tell_what_lies_in_one_plane() {
     let mut shapes = vec![

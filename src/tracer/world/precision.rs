@@ -23,8 +23,8 @@ use crate::{
 
 /// Evaluates `$answer` for a ray's direction `$r`, in one precision after the other, until the
 /// answer is certain. Yields the answer, and whether it was certain before the highest precision.
-/// In the highest precision, numbers that cannot be distinguished count as equal, so that there is
-/// always an answer.
+/// The highest precision always gives an answer, because it treats numbers as equal if it cannot
+/// distinguish them.
 macro_rules! first_certain {
     ($geometry:expr, $point:expr, |$r:ident| $answer:expr) => {{
         let (geometry, point): (&Geometry, &PicturePoint) = ($geometry, $point);

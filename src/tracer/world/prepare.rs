@@ -73,8 +73,8 @@ pub fn prepare(
         objects.append(&mut more);
         items.extend(seen.drain(..).flatten());
     }
-    // The quadtree is built before the rest of the geometry, which then reuses the memory of the
-    // lists that the quadtree has freed.
+    // The quadtree is built first, because it frees large lists during the build. The rest of the
+    // geometry then reuses their memory.
     let quadtree = Quadtree::new(grid, items, cancel);
     let rest = if cancel::is_set(cancel) {
         &[]
