@@ -40,13 +40,14 @@ const MIN_CLEARANCE: f64 = 4.0;
 const MAX_ERROR: f64 = 0.25;
 
 /// Maximum side of a block of pixels, in pixels. The checkerboard squares at all pixel corners of a
-/// block are computed together. The side is a power of two, because the block is then divided
-/// recursively into quarters. A smaller block would compute more corners per pixel, because a block
-/// of n² pixels has (n + 1)² corners. A larger block would need larger arrays.
+/// block are computed together. The picture is first divided into blocks of this side, which are
+/// then quartered recursively, so the side is a power of two. A smaller block would compute more
+/// corners per pixel, because a block of n² pixels has (n + 1)² corners. A larger block would need
+/// larger arrays.
 pub(super) const SIDE: usize = 32;
 
-/// Number of entries for the pixel corners in a row of a block of pixels. The row has 33 corners,
-/// which are rounded up to whole vectors of eight.
+/// Number of array entries for one row of pixel corners in a block. A block of 32 pixels has 33
+/// corners in a row, which are rounded up to whole vectors of eight.
 const LANES: usize = 40;
 
 /// The squares of a board in one pixel, derived from the squares at the pixel's corners.
@@ -86,7 +87,7 @@ struct CornerRow {
 /// What a run of pixels, or one pixel, shows of a checkerboard.
 #[derive(Clone, Copy, Debug)]
 pub enum ShownSquares<'a> {
-    /// A run of pixels that show one colour; `true` if it is the second colour.
+    /// A run of pixels that show one colour; `true` for the second colour.
     One(bool),
     /// One pixel, with the squares that it may show.
     Squares(&'a CheckerPixel),
@@ -315,8 +316,9 @@ impl BoardBlock {
                 if corner[axis].is_nan() {
                     corner[axis] =
                         floor(self.squares.across[axis].at(x, y) / self.squares.below.at(x, y));
-                    // The corner is uncertain, so its computed coordinate is within `slack` of a
-                    // line. The true coordinate is within `slack` of the computed one.
+                    // The corner is uncertain, so its computed coordinate is at most `slack` from a
+                    // line between squares. Its true coordinate is at most `slack` from the
+                    // computed one.
                     doubt[axis] = 2.0 * self.slack[axis];
                 }
             }

@@ -20,9 +20,10 @@ use crate::{
     scene,
 };
 
-/// Distance, in squares, from which on the origin of a board's coordinates is not moved to the part
-/// of the board that a rectangle shows ([`Checkerboard::local`]). The distance is a rounded
-/// quotient. From 2^52 on, it need not be the nearest whole number, and its parity could be wrong.
+/// Limit, in squares, below which the origin of a board's coordinates is moved.
+/// [`Checkerboard::local`] moves it to the part of the board that a rectangle shows. The distance
+/// is a rounded quotient. From 2^52 on, it need not be the nearest whole number, and its parity
+/// could be wrong.
 const MOST_SQUARES: f64 = (1u64 << 52) as f64;
 
 /// A checkerboard prepared for one picture.
@@ -38,10 +39,10 @@ pub struct Checkerboard<T: Real> {
     /// plane. N/ℓ, where ℓ is `below`, is the coordinate in squares, measured from the line between
     /// squares that is nearest to the eye.
     pub across: [Form<T>; 2],
-    /// Whether even squares get the second colour and odd squares the first. The board's
-    /// coordinates are measured from the two lines that are nearest to the eye, one in x and one in
-    /// z. The colours are exchanged if the sum of these lines' numbers, counted from the world's
-    /// origin, is odd.
+    /// Whether the square from (0, 0) to (1, 1) in the board's coordinates has the second colour.
+    /// The coordinates are measured from the two lines that are nearest to the eye, one in x and
+    /// one in z. The square has the second colour if the sum of these lines' numbers, counted from
+    /// the world's origin, is odd.
     pub odd: bool,
 }
 
@@ -190,7 +191,8 @@ impl EyeOffset {
     /// Splits a coordinate of the eye by the side `square` of the squares, without rounding.
     fn new(coordinate: f64, square: f64) -> Self {
         // The remainder operation of `f64` is exact, even with an infinite divisor. Differences of
-        // numbers within a factor of two of each other are exact, too (Sterbenz).
+        // numbers within a factor of two of each other are exact, too (Sterbenz). The result
+        // therefore has no rounding error.
         let mut rest = coordinate % (2.0 * square);
         let whole = match rest.abs() {
             size if size < square * 0.5 => 0,

@@ -36,7 +36,8 @@ pub struct Convex<T: Real> {
     /// Number of the forms that bound the object, plus the number of the faces where rays first hit
     /// it. The sum is the index in `forms` of the first of the other faces.
     firsts: u8,
-    /// Number of each face's plane. The faces that rays hit first come before those behind them.
+    /// Number of each face's plane. The faces where rays first hit the object come before the other
+    /// faces.
     planes: [u8; 6],
     /// Whether the eye is inside the object. If it is, a ray leaves the object at the nearest of
     /// its crossings with the faces' planes. Otherwise, the ray enters the object at the farthest
@@ -84,8 +85,7 @@ impl<T: Real> Convex<T> {
         &self.forms[usize::from(self.edges)..usize::from(self.firsts)]
     }
 
-    /// Returns the inverse depths of the faces through which rays that start outside leave the
-    /// object.
+    /// Returns the inverse depths of the faces where rays from outside leave the object.
     pub fn seconds(&self) -> &[Form<T>] {
         &self.forms[usize::from(self.firsts)..]
     }
@@ -185,8 +185,8 @@ impl<T: Real> Convex<T> {
             if !difference.is_zero() && difference.is_negative() == which.is_lt() {
                 extreme = other;
             }
-            // If an overflow has left NaN, the comparison fails, and the difference does not count
-            // as clear.
+            // If an overflow has left NaN, the comparison fails, and the difference is treated as
+            // unclear.
             let is_clear = distance > rad * (2.0 * UP);
             if !is_clear {
                 // The crossing cannot be assigned to one plane: near an edge, the ray crosses two
@@ -221,8 +221,8 @@ impl Convex<f64> {
         })
     }
 
-    /// Returns the range of the inverse depths at which rays that start outside leave the object.
-    /// Returns `None` if rays hit the object only once.
+    /// Returns the range of the inverse depths at which rays from outside leave the object. Returns
+    /// `None` if rays hit the object only once.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let faces = self.seconds().iter().map(|face| face.over(patch));
         Interval::fold(faces, f64::max)

@@ -1,13 +1,15 @@
 //! The curves that separate what is seen in a pixel, or in a part of one: lines and conics.
 //!
 //! In: the surfaces of objects in one precision, and a [`SubPixel`]. Out: the objects' silhouettes,
-//! and the curves where their depths are equal, in the coordinates of the sub-pixel. The silhouette
-//! of a sphere is Q = 0 (`sphere`). Two planes have equal inverse depths on a line. A plane and a
-//! sphere have equal inverse depths on the cone of rays through a circle. Two spheres have equal
-//! inverse depths in their radical plane. Errors: each form is computed anew in the sub-pixel's
-//! coordinates and in high precision, with an error bound for its values there. The result is
-//! therefore right to the last bits of an `f64`, however far the sub-pixel is from the picture's
-//! centre.
+//! and the curves where their depths are equal, in the coordinates of the sub-pixel.
+//!
+//! The silhouette of a sphere is a conic. Two planes have equal inverse depths on a line. A plane
+//! and a sphere have equal inverse depths on the cone of rays through a circle. Two spheres have
+//! equal inverse depths in their radical plane.
+//!
+//! Each form is computed anew in the sub-pixel's coordinates and in high precision, with an error
+//! bound for its values there. The result is therefore right to the last bits of an `f64`, however
+//! far the sub-pixel is from the picture's centre.
 
 use crate::math::{Ball, Ball3, Double, Radius, Real};
 
@@ -326,7 +328,8 @@ impl Conic {
         if gradient > 0.0 {
             area = area.min(16.0 * self.rad / gradient);
         }
-        // The rounding errors of the determinant are at most two roundings of its products.
+        // The rounding errors of the determinant are subtracted, so that the bound is certainly
+        // large enough. They are at most two roundings of its products.
         let determinant = determinant - 4.0 * f64::UNIT * (a * c).abs().max(b * b);
         if determinant > 0.0 {
             area = area.min(7.0 * self.rad / determinant.sqrt());

@@ -216,7 +216,7 @@ impl Sphere<f64> {
     pub fn cover(&self, patch: &Patch) -> Option<Cover> {
         let (q, b) = self.local(patch);
         let (q, b) = (q.range(), b.range());
-        // The condition fails only after an overflow.
+        // The ends of a range are out of order or NaN only after an overflow.
         if !(q.low <= q.high && b.low <= b.high) {
             return Some(Cover {
                 is_whole: false,
@@ -246,8 +246,8 @@ impl Sphere<f64> {
         })
     }
 
-    /// Returns the range of the inverse depths at which rays that start outside leave the sphere.
-    /// Returns `None` if the eye is not outside the sphere.
+    /// Returns the range of the inverse depths at which rays from outside leave the sphere. Returns
+    /// `None` if the eye is not outside the sphere.
     pub fn behind(&self, patch: &Patch) -> Option<Interval> {
         let exits = || {
             let (q, b) = self.local(patch);

@@ -89,8 +89,8 @@ fn by_centroid<T: Real>(
         array::from_fn(|i| c[i].scaled(far + exponent) + o[i].scaled(near + exponent))
     };
     // Only the signs of the edges' forms matter, so that lengths may be scaled. With the corners a
-    // = c + o and b = c + p, a × b is computed as c × (p − o) + o × p. Computed from the corners
-    // themselves, it would lose most digits if the triangle is small and far away.
+    // = c + o and b = c + p, a × b is computed as c × (p − o) + o × p. If a × b were computed from
+    // a and b themselves, it would lose most digits for a small triangle that is far away.
     let edge = |a: usize, b: usize| {
         let along: Ball3<T> = array::from_fn(|i| &offsets[b][i] - &offsets[a][i]);
         let turn = cross(&offsets[a], &offsets[b]);
@@ -169,8 +169,8 @@ impl<T: Real> SeenPlane<T> {
     }
 
     /// Returns the triangle that lies in this plane. `edges` are normals of the planes through the
-    /// eye and each edge. They point inwards if the eye sees the triangle from the front, and are
-    /// reversed if it sees the triangle from behind.
+    /// eye and each edge. They must point inwards for an eye that sees the triangle from the front.
+    /// If the eye sees it from behind, this function reverses them.
     fn with_edges(&self, camera: &Camera<T>, edges: [Ball3<T>; 3]) -> Convex<T> {
         let facing = |n: Ball3<T>| if self.side.is_lt() { n.map(|x| -x) } else { n };
         let edges = edges.into_iter().map(|n| Form::new(camera, &facing(n)));

@@ -33,7 +33,7 @@ pub struct Quadtree {
 }
 
 impl Quadtree {
-    /// Builds a quadtree over `items`. If `cancel` is set meanwhile, some of the objects are
+    /// Builds a quadtree over `items`. If `cancel` is set during the build, some of the objects are
     /// missing.
     pub fn new(grid: CellGrid, items: Vec<BoundedObject>, cancel: &AtomicBool) -> Self {
         let tree = Cells::new(items, cancel);

@@ -35,8 +35,8 @@ pub(super) struct Cell {
 }
 
 impl Cells {
-    /// Builds the tree of cells over `items`. If `cancel` is set meanwhile, some of the objects are
-    /// missing.
+    /// Builds the tree of cells over `items`. If `cancel` is set during the build, some of the
+    /// objects are missing.
     pub(super) fn new(items: Vec<BoundedObject>, cancel: &AtomicBool) -> Self {
         let mut tree = Self {
             cells: vec![Cell::EMPTY],

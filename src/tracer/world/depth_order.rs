@@ -4,10 +4,10 @@
 //! errors leave it uncertain.
 //!
 //! If two crossings lie in one surface, their computed depths leave the order uncertain at every
-//! sample point. A higher precision would not help, and objects take long to prepare in it. Whether
-//! two objects lie in one plane is therefore decided from the numbers of the scene, without
-//! rounding. The near and the far plane, which are not given by numbers of an object, are compared
-//! by their linear forms.
+//! sample point. Only the highest precision would treat them as equal, and objects take long to
+//! prepare in it. Whether two objects lie in one plane is therefore decided from the numbers of the
+//! scene, without rounding. The near and the far plane, which are not given by numbers of an
+//! object, are compared by their linear forms.
 
 use std::cmp::Ordering;
 

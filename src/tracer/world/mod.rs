@@ -259,7 +259,8 @@ impl World {
         self.palette().len() - 1
     }
 
-    /// Returns the number of objects. A box with coloured faces counts once for each face.
+    /// Returns the number of objects. Each face of a box with coloured faces is an object of its
+    /// own.
     pub fn object_count(&self) -> usize {
         self.geometry.objects.len()
     }
@@ -315,7 +316,8 @@ impl World {
     }
 
     /// Returns the nearest crossing between the near and the far plane with the objects `among`,
-    /// which are in file order. Of crossings at equal depths, returns that of the first object.
+    /// which are in file order. If several crossings have equal depths, returns that of the first
+    /// object.
     #[inline]
     pub(super) fn seen<T: Precision>(
         &self,
@@ -394,8 +396,8 @@ impl World {
     }
 
     /// Returns the nearest crossing with an object between the near and the far plane, and whether
-    /// it is the object's second crossing. `first` is its first crossing. Returns `None` if neither
-    /// crossing lies between the planes.
+    /// it is the object's second crossing. `first` is the object's first crossing. Returns `None`
+    /// if neither crossing lies between the planes.
     #[inline]
     fn clip<T: Precision>(
         &self,

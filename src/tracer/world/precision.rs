@@ -3,7 +3,7 @@
 //!
 //! In: the numbers of the scene. Out: the camera, the near and the far plane, and the objects, in
 //! the requested precision. In precisions higher than `f64`, objects are prepared when they are
-//! first requested. A decision that one precision leaves uncertain, by its error bounds, is made in
+//! first requested. If the error bounds of one precision leave a decision uncertain, it is made in
 //! the next precision. The highest precision decides everything.
 
 use glam::{DVec2, DVec3};
@@ -51,8 +51,8 @@ pub(super) use first_certain;
 pub enum Numbers {
     /// A sphere's centre and radius.
     Sphere(DVec3, f64),
-    /// All numbers of any other shape. If the object is a single face of a box, also the face's
-    /// number.
+    /// All numbers of any other shape, and the number of the face if the object is a single face of
+    /// a box.
     Other(Box<(Shape, Option<u8>)>),
 }
 
