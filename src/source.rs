@@ -25,7 +25,7 @@ pub enum SourceId {
 /// A half-open range of bytes in one source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
-    /// The source of the span.
+    /// Offset of the first byte.
     pub source: SourceId,
     /// First byte.
     pub start: usize,
@@ -57,8 +57,8 @@ impl Span {
 
 /// Sorts a list by the spans of its elements; elements with equal spans keep their order.
 ///
-/// A non-generic function sorts the indices. A sort for each element type would enlarge the code
-/// that a browser loads by a fiftieth.
+/// The sorting itself is done by a function that is not generic. If it were compiled for each
+/// element type, the code that a browser loads would be about 2 % larger.
 pub fn sort_by_span<T>(list: &mut Vec<T>, span: impl Fn(&T) -> Span) {
     let order = order(&list.iter().map(span).collect::<Vec<_>>());
     let mut taken: Vec<Option<T>> = list.drain(..).map(Some).collect();

@@ -1,4 +1,4 @@
-//! The mistakes of a scene as an error.
+//! The error type for a text that is not a valid scene. It contains the mistakes of the text.
 
 use std::{error::Error, fmt, slice, sync::Arc};
 

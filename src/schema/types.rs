@@ -158,6 +158,7 @@ pub trait FieldValue {
     /// Returns the contents as a value.
     fn value(&self) -> Value;
 
-    /// Changes the contents. Returns `None` if the new value is of another type.
+    /// Replaces this value by `value`. Returns `None`, and changes nothing, if `value` has another
+    /// type.
     fn set(&mut self, value: Value) -> Option<()>;
 }
