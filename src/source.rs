@@ -149,7 +149,7 @@ pub struct Source {
     lines: OnceLock<Lines>,
 }
 
-/// Texts are equal if their names and bytes are.
+/// Two sources are equal if their names and their bytes are equal.
 impl PartialEq for Source {
     fn eq(&self, other: &Self) -> bool {
         let (own, others) = ((&self.text, &self.invalid), (&other.text, &other.invalid));
@@ -251,8 +251,9 @@ impl Source {
         self.lines().line(self.floor_char_boundary(offset)) + 1
     }
 
-    /// Returns line and column of an offset. A byte order mark takes no column. An offset beyond
-    /// the end is treated as the end, and an offset within a character as the character's start.
+    /// Returns the line and column of an offset. A byte order mark is not counted as a column. An
+    /// offset beyond the end is treated as the end, and an offset within a character as the
+    /// character's start.
     pub fn place(&self, offset: usize) -> LineColumn {
         let line = self.line(offset);
         let offset = self.floor_char_boundary(offset);
@@ -264,8 +265,8 @@ impl Source {
         }
     }
 
-    /// Returns the index with which lines and columns of offsets are found: the starts of the
-    /// lines, and the characters with more than one byte. It is computed on first use.
+    /// Returns the tables from which the line and column of an offset are computed. They are made
+    /// on first use.
     #[doc(hidden)]
     pub fn lines(&self) -> &Lines {
         self.lines.get_or_init(|| Lines::new(&self.text))

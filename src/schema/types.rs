@@ -129,7 +129,8 @@ impl Value {
     }
 }
 
-/// Formats the value in the language's notation, for people to read: numbers have six digits.
+/// Formats the value in the language's notation, for people to read. Numbers are rounded, most of
+/// them to six digits.
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

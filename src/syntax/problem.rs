@@ -38,8 +38,8 @@ impl Message {
         self
     }
 
-    /// Returns whether the code of the problem says that a token is superfluous, as in
-    /// `needless_comma`.
+    /// Returns whether the problem is a superfluous token: its code is `plus_sign` or starts with
+    /// `needless`.
     pub fn is_needless(&self) -> bool {
         self.texts[0].starts_with("needless") || self.texts[0] == "plus_sign"
     }

@@ -177,7 +177,7 @@ impl<'s> Recovery<'_, 's> {
             let first = this.signed();
             this.chain(first, PRODUCT, Self::signed)
         });
-        // This operator starts a condition such as `a > b ? c : d`. A condition that starts with
+        // A comparison starts a condition such as `a > b ? c : d`. A condition that starts with
         // `if` is handled in `operand`.
         let compares = matches!(self.word(0), ">" | "<" | "!" | "&" | "|" | "?" | "=");
         if compares && !self.is_on_new_line(0) && self.condition() {
