@@ -140,7 +140,8 @@ impl<'s> Excerpt<'s> {
             }
             for (at, character) in self.source.slice(piece.clone()).char_indices() {
                 shown.push((piece.start + at, self.text.len()));
-                // A control character is escaped, so its length differs from that in the source.
+                // A control character is escaped and becomes longer, so offsets after it differ
+                // between the source and the excerpt.
                 push_visible(&mut self.text, character);
             }
             shown.push((piece.end, self.text.len()));

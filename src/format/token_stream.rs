@@ -240,7 +240,8 @@ pub fn column_after(column: usize, text: &str) -> usize {
     }
 }
 
-/// Returns whether the tokens and comments `words` contain a line end or must start a new line.
+/// Returns whether the tokens and comments `words` need several lines: one of them contains a line
+/// end or must start a new line.
 pub fn has_line_end(words: &[Word<'_>]) -> bool {
     let ends = |word: &Word<'_>| word.before == Before::Line || word.text.contains('\n');
     words.iter().any(ends)

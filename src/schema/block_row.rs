@@ -20,7 +20,8 @@ impl BlockRow {
         fields.filter(move |field| is_among(written, field.perhaps))
     }
 
-    /// Returns the help for a word that stands for a field in other programs but for no field here.
+    /// Returns the help for a word that stands for a field in other programs but for no field of
+    /// this block.
     pub fn elsewhere(&self, written: &str) -> Option<&'static str> {
         let mut rows = self.elsewhere.iter();
         let row = rows.find(|(words, _)| is_among(written, words));

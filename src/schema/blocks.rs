@@ -44,8 +44,8 @@ pub struct BlockRow {
     pub parted: &'static [(&'static str, &'static [&'static str])],
     /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,
-    /// Words that stand for a field in other programs but for no field here. The words of one
-    /// element are separated by spaces, and its help says what to write instead.
+    /// Words that stand for a field in other programs but for no field of this block. The words of
+    /// one element are separated by spaces, and its help says what to write instead.
     pub elsewhere: &'static [(&'static str, &'static str)],
     /// For values without names at the start of a block, as in `sphere { (0, 1, 0) }`, the fields
     /// to which they may belong. Each list has one field for each value.

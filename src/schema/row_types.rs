@@ -114,8 +114,8 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Returns whether a value meets the condition. A value of a type that the condition is not
-    /// meant for meets it always.
+    /// Returns whether a value meets the condition. A condition on values of another type is
+    /// ignored, i.e. the result is `true`.
     pub fn holds(&self, value: Value) -> bool {
         let two_to = |power: u32| (1_u64 << power) as f64;
         match (*self, value) {

@@ -43,7 +43,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Makes the index of a text.
+    /// Makes the tables for a text.
     pub fn new(text: &str) -> Self {
         let ends = memchr::memchr_iter(b'\n', text.as_bytes());
         let (mut wide, mut excess) = (Vec::new(), [0; 2]);

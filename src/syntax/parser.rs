@@ -56,15 +56,16 @@ static PRECEDENCE: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
 /// ([`NESTING_LIMIT`](super::NESTING_LIMIT)). All levels together fit into half of this size.
 pub const STACK_BYTES: usize = 64 << 20;
 
-/// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. A
-/// shorter value is parsed on the caller's stack. Each nesting level needs at least one byte of
-/// text, so fewer than 32 levels are possible in it. Most defaults of fields are shorter than this
-/// and need no thread. With a much larger minimum, a value could overflow a small stack.
+/// Minimum length, in bytes, of a value that is parsed on a thread with a stack of its own. Shorter
+/// values are parsed on the caller's stack: each nesting level needs at least one byte of text, so
+/// they have fewer than 32 levels. Most defaults of fields are that short and need no thread. With
+/// a much larger minimum, a value could overflow a small stack.
 const SHORT_VALUE_BYTES: usize = 32;
 
 /// Minimum number of bytes that pest, the generated parser, reads at a time. The actual number is
-/// larger, because each piece of text ends at a place where the text can be split. pest keeps all
-/// matches of grammar rules of a piece in memory, so a much larger number would need much memory.
+/// usually larger, because a piece of text ends at a place where the text can be split. pest keeps
+/// all matches of grammar rules of a piece in memory, so a much larger number would need much
+/// memory.
 pub const CHUNK_BYTES: usize = 4096;
 
 /// Parses a file.
@@ -188,9 +189,9 @@ impl<'w, 's> TreeBuilder<'w, 's> {
     }
 
     /// Parses the items in `range` with pest, and adds their nodes to `recovery`. An item that was
-    /// probably meant otherwise is read again by error recovery. If both readings of an item end at
-    /// different offsets, stops after this item. Returns the end of the last item, and whether pest
-    /// read to the end of its text or to a mistake.
+    /// probably meant otherwise is read again by error recovery. If the two readings of an item end
+    /// at different offsets, reading stops after this item and `false` is returned, and otherwise
+    /// `true`. Also returns the end of the last item.
     pub fn items(&mut self, range: Range<usize>, recovery: &mut Recovery<'_, 's>) -> (usize, bool) {
         self.base = range.start;
         let slice = self.text.get(range.clone()).unwrap_or_default();

@@ -17,8 +17,8 @@ pub enum TokenKind {
     /// A colour code such as `#ff8000`: a `#` and the word directly after it, even if this word is
     /// no valid code.
     Color,
-    /// A text in quotation marks, including the marks. Without a closing mark in its line, it is
-    /// the opening mark and the word after it.
+    /// A text in quotation marks, including the marks. If no closing mark follows in its line, it
+    /// is only the opening mark and the word directly after it.
     Quoted,
     /// A word with letters that are not ASCII.
     Word,
@@ -238,7 +238,7 @@ pub fn numeric_part(written: &str) -> &str {
 
 /// Returns whether a name occurs in a text outside its comments.
 pub fn has_name(text: &str, name: &str) -> bool {
-    // Most texts do not contain the name at all. For these, the lexer does not run.
+    // Most texts do not contain the name at all. The lexer runs only on the other texts.
     let mut lexer = Lexer::new(text, 0);
     text.contains(name)
         && loop {

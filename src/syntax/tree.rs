@@ -78,10 +78,10 @@ impl Definition<'_> {
 pub struct Block<'s> {
     /// The kind; `None` if it is missing.
     pub kind: Option<Name<'s>>,
+    /// The name of the object, if it has one.
+    pub name: Option<Name<'s>>,
     /// The indices of a repeated object. Few blocks have indices, so they are boxed to keep the
     /// other blocks small.
-    pub name: Option<Name<'s>>,
-    /// The indices of a repeated object. Few blocks have any, so they are boxed.
     pub repetition: Option<Box<Repetition<'s>>>,
     /// The place of `{`; `None` if it is missing.
     pub open: Option<Span>,
