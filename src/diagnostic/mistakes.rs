@@ -29,7 +29,7 @@ pub struct Mistakes {
 }
 
 impl Mistakes {
-    /// Makes an error of the problems of a scene.
+    /// Makes the error that contains the problems of a scene.
     pub(crate) fn new(sources: Arc<Sources>, diagnostics: Vec<Diagnostic>) -> Self {
         Self {
             sources,

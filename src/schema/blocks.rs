@@ -39,8 +39,9 @@ pub struct BlockRow {
     /// Sets of words that people use together by mistake, such as `x y z` for the coordinates of a
     /// centre.
     ///
-    /// The words of a set are separated by spaces, and sets by `|`. The second element names either
-    /// the one field whose coordinates or colours the words stand for, or one field for each word.
+    /// The words of a set are separated by spaces, and the sets of one entry by `|`. The second
+    /// element of an entry names either one field, if the words stand for its coordinates or
+    /// colours, or one field for each word.
     pub parted: &'static [(&'static str, &'static [&'static str])],
     /// Words that people use by mistake for the keyword, separated by spaces.
     pub also_tried: &'static str,

@@ -156,7 +156,7 @@ pub trait FieldValue {
     where
         Self: Sized;
 
-    /// Returns the contents as a value.
+    /// Returns this as a value of the language.
     fn value(&self) -> Value;
 
     /// Replaces this value by `value`. Returns `None`, and changes nothing, if `value` has another

@@ -10,8 +10,8 @@ use crate::{
 /// Texts of a problem, and whether its fix is safe.
 #[derive(Clone, Copy, Debug)]
 pub struct Message {
-    /// In order: the code without `pinhole::`, the message, the label, and the help, which is shown
-    /// if there is no fix.
+    /// The four texts: the code without `pinhole::`, the message, the label and the help. The help
+    /// is shown only if there is no fix.
     texts: [&'static str; 4],
     applicability: Applicability,
 }

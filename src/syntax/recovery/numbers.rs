@@ -84,9 +84,9 @@ impl<'s> Recovery<'_, 's> {
         }
     }
 
-    /// Reports a number whose unit is wrong or separated by a space. A product with `factor`
-    /// converts the number to the unit `right` of the language. `whole` is the span of number and
-    /// unit, `behind` that of the unit.
+    /// Reports a number whose unit is wrong or separated by a space. Multiplying the number by
+    /// `factor` converts it to `right`, a unit of the language. `whole` is the span of the number
+    /// and its unit, and `behind` the span of the unit.
     fn with_unit(
         &mut self,
         number: &'s str,
