@@ -32,7 +32,7 @@ pub fn reduced(film: &Film, [columns, rows]: [u32; 2]) -> Result<Film, TooLarge>
 ///
 /// # Errors
 ///
-/// The picture cannot be encoded, such as one without pixels.
+/// PNG cannot encode the picture, for example because it has no pixels.
 pub fn data_uri(film: &Film) -> io::Result<String> {
     let mut bytes = Vec::new();
     write_png(film, None, &mut bytes)?;
