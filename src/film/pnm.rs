@@ -334,7 +334,7 @@ struct PnmReader<'b> {
 }
 
 impl<'b> PnmReader<'b> {
-    /// Makes a reader that starts after the two letters at the start of the file, such as `P6`.
+    /// Makes a reader that starts after the two characters at the start of the file, such as `P6`.
     fn new(bytes: &'b [u8]) -> Self {
         Self { bytes, at: 2 }
     }

@@ -1,8 +1,8 @@
 //! Renders a part of the picture with samples.
 //!
-//! In: the prepared scene, the positions of the samples, and the part. Out: the means of the part's
-//! pixels, as light or as bytes. The part is divided into tiles for the threads, and `renderer`
-//! renders each tile.
+//! In: the prepared scene, the positions of the samples, and the part. Out: the colours of the
+//! part's pixels, in linear light or as bytes of sRGB. The part is divided into tiles (squares),
+//! which several threads render. `renderer` renders each tile.
 
 use std::sync::Mutex;
 
@@ -18,12 +18,12 @@ use crate::{
     tracer::{GRID, Quartering, Scratch, World},
 };
 
-/// Approximate number of samples in a tile, which is what a thread renders at a time. They take a
-/// few milliseconds, so at the end no thread waits long for the others. With much smaller tiles,
-/// handing them out would take more time.
+/// Approximate number of samples in a tile, i.e. in a square that one thread renders at a time.
+/// Tracing a tile takes a few milliseconds, so all threads end at about the same time. Much smaller
+/// tiles would cause more overhead.
 const TILE_SAMPLES: u64 = 1 << 18;
 
-/// Renders a part of the picture with samples. The sampler must not be the exact one.
+/// Renders a part of the picture with samples. `sampling` must not specify the exact sampler.
 pub(super) fn render_as<P: film::Pixel>(
     world: &World,
     sampling: &Sampling,
