@@ -74,8 +74,8 @@ impl Counts {
 /// found by a hash of the two colours' palette slots (indices) and counts.
 pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 
-/// Number of means of two colours that are cached. They take 28 KiB, so they fit into the
-/// first-level cache of a processor.
+/// Number of entries of the cache of mean colours. The cache has at most 28 KiB, so it fits into
+/// the first-level cache of a processor. With fewer entries, more means would be computed again.
 const CACHED_MEANS: usize = 512;
 
 impl<P: film::Pixel> Means<P> {

@@ -38,8 +38,8 @@ pub struct Names<'s> {
     /// Names of the indices of all blocks. An index is the counter of a `for`, such as `i` in
     /// `for i < 8`.
     pub(super) indices: HashSet<&'s str>,
-    /// Remaining number of name comparisons, shared by all searches for the defined name most
-    /// similar to an undefined one.
+    /// Number of name comparisons that may still be made. Every search for the known name that is
+    /// most similar to an undefined name is counted.
     budget: ComparisonBudget,
     /// Problems of undefined names. They are kept apart because some of the other problems are
     /// discarded when a value is evaluated again.
@@ -181,12 +181,12 @@ impl<'s> Names<'s> {
         self.definitions.get(name).copied()
     }
 
-    /// Returns the names that are defined so far, for a search for the one most similar to an
-    /// undefined name. The number of comparisons in all searches is limited. Subtracts those of
-    /// this search from the remaining number; returns `None` if too few remain.
+    /// Returns the names that are defined so far, so that they can be compared with an undefined
+    /// name. Subtracts their number from the number of comparisons that may still be made. Returns
+    /// `None` if fewer are left.
     pub(super) fn to_compare(&self) -> Option<&[&'s str]> {
-        // Approximate number of predefined colours and constants, with which every search also
-        // compares. An estimate is enough, because it only limits the number of searches.
+        // Approximate number of predefined colours and constants. An undefined name is compared
+        // with them too. An estimate is enough, because it only limits the number of searches.
         const PREDEFINED: usize = 200;
         let enough = self.budget.spend(self.order.len() + PREDEFINED);
         enough.then_some(&self.order)
@@ -199,8 +199,8 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Returns the remaining number of name comparisons, shared by all searches for the defined
-    /// name most similar to an undefined one.
+    /// Returns the number of name comparisons that may still be made. Every search for the known
+    /// name that is most similar to an undefined name is counted.
     pub fn budget(&self) -> &ComparisonBudget {
         &self.budget
     }
