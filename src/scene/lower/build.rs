@@ -119,9 +119,9 @@ impl<'s> Lowering<'s> {
         (example, fix)
     }
 
-    /// Builds the object of a block. If `for` repeats the block, builds the object for the values
-    /// `indices` of the block's indices. Returns `false`, and builds nothing, if a value is missing
-    /// or wrong.
+    /// Builds the object of a block. If `for` repeats the block, `indices` contains the values of
+    /// its counters for this object. Returns `false`, and builds nothing, if a value is missing or
+    /// wrong.
     pub(super) fn object(&mut self, block: &LoweredBlock<'s>, indices: &[u32]) -> bool {
         let Some(shape) = Shape::lower(block, &mut self.problems) else {
             return false;

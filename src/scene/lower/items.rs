@@ -157,7 +157,8 @@ impl<'s> Lowering<'s> {
             self.field(field, &mut lowered);
         }
         let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
-        // If two unknown words stand for one field, it is uncertain which of them is meant.
+        // If two unknown words probably mean the same field, it is uncertain which of them is
+        // right. The field is therefore recorded in `lowered.meant`.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
             .iter()
@@ -272,8 +273,8 @@ impl<'s> Lowering<'s> {
     }
 
     /// Improves the report of a field with a wrong number of colours, such as `color (red, green,
-    /// blue)`: suggests `color` or `colors`, whichever of them takes that number. `is_free` says
-    /// that the block does not have the suggested field yet.
+    /// blue)`. If the number is right for the other one of the fields `color` and `colors`,
+    /// suggests this field. `is_free` says that the block does not have the suggested field yet.
     fn other_colors(&mut self, before: usize, field: &tree::Field<'s>, takes: Type, is_free: bool) {
         let is_color = |value: &tree::Value<'s>| match &value.kind {
             ValueKind::Call(call) => call.function.text == "rgb",
