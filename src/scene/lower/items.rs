@@ -158,7 +158,7 @@ impl<'s> Lowering<'s> {
         }
         let unknown: Vec<_> = left().filter(|field| !is_known(field)).collect();
         // If two unknown words probably mean the same field, it is uncertain which of them is
-        // right. The field is therefore recorded in `lowered.meant`.
+        // right. The field is recorded, so that it is not reported as missing either.
         let mut tried: Vec<&str> = Vec::new();
         for field in unknown
             .iter()
@@ -404,8 +404,8 @@ impl<'s> Lowering<'s> {
         });
     }
 
-    /// Records the name of an object. Reports a name that cannot be used, and the name of a block
-    /// that takes none.
+    /// Records the name of an object. Reports a name that cannot be used, and a name of a block
+    /// that is not an object.
     fn name_of_block(&mut self, row: &BlockRow, block: &tree::Block<'s>) {
         let Some(name) = block.name else { return };
         let text = name.text;

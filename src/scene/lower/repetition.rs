@@ -64,9 +64,8 @@ impl<'s> Lowering<'s> {
     /// Returns the combinations of the indices' values, concatenated in order: 0 0, 0 1, 1 0, 1 1
     /// for `for i < 2, j < 2`. Reports a wrong count and then returns `None`.
     ///
-    /// Counts that depend on no index are evaluated before any combination is stored. So a product
-    /// of counts that is too large is reported without much memory, whatever the order of the
-    /// indices.
+    /// Counts that depend on no index are evaluated first. If their product is too large, this is
+    /// reported before many combinations are stored, whatever the order of the indices.
     fn combinations(&mut self, block: &Block<'s>, repetition: &Repetition<'s>) -> Option<Vec<u32>> {
         let most = MOST_OBJECTS.saturating_sub(self.objects.len());
         if !self.are_counted_before(repetition) {
