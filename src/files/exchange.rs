@@ -85,8 +85,8 @@ mod tests {
     use super::*;
 
     /// Number of the test's last round, where the first is 0. The other program saves a little
-    /// later in each round. In 400 rounds, it saves before, during and after the replacement. More
-    /// rounds would only take longer.
+    /// later in each round. With 400, it saves before, during and after the replacement. With far
+    /// fewer rounds, the latest moments would not be tested.
     const LAST: u32 = 400;
 
     /// Another program saves the file, in each round at a later moment, from before the replacement

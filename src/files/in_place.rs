@@ -97,16 +97,16 @@ fn copy_prefix(path: &Path) -> String {
 }
 
 /// Returns the prefix of the name of a copy in the user's state folder. The folder contains copies
-/// of files from all folders, so the prefix contains a hash of the path of the copied file. This
-/// path, `path`, must be canonical.
+/// for files from all folders, so the prefix contains a hash of the file's path. This path, `path`,
+/// must be canonical.
 fn prefix_in_state(path: &Path) -> String {
     let digest = digest(path.as_os_str().as_encoded_bytes());
     format!("{digest}-{}", copy_prefix(path))
 }
 
-/// Creates an empty temporary file, into which the file at `path` can be copied. The new file lies
-/// beside `path` or, if that fails, in the user's state folder. `path` must be canonical. Returns
-/// `None` if no file can be created in either folder.
+/// Creates an empty temporary file, into which the new content of the file at `path` can be
+/// written. The temporary file lies beside `path` or, if that fails, in the user's state folder.
+/// `path` must be canonical. Returns `None` if no file can be created in either folder.
 fn copy_beside(path: &Path) -> Option<NamedTempFile> {
     let copy_in = |folder: &Path, prefix: &str| {
         let mut builder = Builder::new();

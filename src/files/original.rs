@@ -41,7 +41,7 @@ impl Original {
         Ok(Self(Some((id(&found), read(path)?))))
     }
 
-    /// Records that no file exists.
+    /// Returns a value that stands for a file that does not exist.
     pub fn missing() -> Self {
         Self(None)
     }
@@ -51,8 +51,8 @@ impl Original {
         self.0.as_ref().map(|(_, bytes)| bytes.as_slice())
     }
 
-    /// Fails if the file at `path` has changed since it was read into this copy. Does nothing if
-    /// the copy records that no file existed.
+    /// Fails if the file at `path` has changed since it was read. Does nothing if no file existed
+    /// then.
     pub(super) fn check(&self, path: &Path) -> io::Result<()> {
         let Some((original, bytes)) = &self.0 else {
             // No file existed, so there is nothing to compare. If another program has created one

@@ -79,8 +79,9 @@ impl<'a> Purpose<'a> {
 /// new file gets the old owner, if the system allows that, and the old permissions except setuid,
 /// setgid and the sticky bit. Other hard links keep the old content.
 ///
-/// A file that was read, with [`Purpose::Change`], is overwritten in place if the folder does not
-/// allow replacing it. A copy of the new content then exists until the file is complete.
+/// With [`Purpose::Change`], a file that cannot be replaced, for example because its folder is
+/// read-only, is overwritten in place. A copy of the new content then exists until the file is
+/// complete.
 ///
 /// If `cancel` is set or an error occurs, the temporary file is removed. If this process is killed,
 /// the temporary file stays until a process writes to the same `path` again.

@@ -13,8 +13,8 @@ use crate::color::half_byte;
 /// Number of equal intervals of linear light from 0 to 1. For each interval, the table
 /// [`Encoder::start`] contains the byte with which the conversion starts. With 4096 intervals, each
 /// contains at most one threshold between two bytes, even near black, where thresholds are closest.
-/// The byte is then found by one comparison. The number is a power of two, so that multiplying by
-/// it is exact.
+/// The conversion then increases the byte at most once. The number is a power of two, so that
+/// multiplying by it is exact.
 const PARTS: usize = 4096;
 
 /// Converter of linear light to bytes of sRGB.

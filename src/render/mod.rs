@@ -45,12 +45,11 @@ pub use self::{
     slices::{SLICE, Slices, pixel_work},
 };
 
-/// Number of threads. `None` stands for the process's limit or, if there is no limit, for one
-/// thread per processor.
+/// Control of a render: its threads, its progress, and its cancellation.
 #[derive(Clone, Copy)]
 pub struct Control<'a> {
-    /// Number of threads; `None` for the default number, which is one per processor or the
-    /// process's limit.
+    /// Number of threads. `None` stands for the process's limit or, if there is no limit, for one
+    /// thread per processor.
     pub threads: Option<NonZero<usize>>,
     /// Function that is called with the number of samples (or of exact pixels) that were finished
     /// since its last call. Any thread may call it.

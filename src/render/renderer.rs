@@ -31,10 +31,10 @@ use crate::{
 /// narrower vectors that every processor has.
 const WIDE_SAMPLES: u64 = 8;
 
-/// Factor that decides whether a pixel's samples are traced one by one: they are if there are at
-/// most this many samples for each object that may be seen in the pixel. For more samples, the
-/// pixel is prepared, so that many samples can be traced at a time. The value is not critical: by
-/// measurement, a picture takes up to 2 % longer with 1 or 4.
+/// Limit on the ratio of a pixel's samples to the objects that may be seen in the pixel. Up to this
+/// ratio, samples are traced one by one. Above it, the pixel is first prepared, so that many
+/// samples can be traced at a time. The value is not critical: by measurement, a picture takes up
+/// to 2 % longer with 1 or 4.
 const SAMPLES_A_CANDIDATE: u64 = 2;
 
 /// Maximum number of a pixel's samples that are traced between two checks for cancellation. 4096

@@ -84,8 +84,8 @@ pub fn fix_all(sources: &Sources, most: Applicability) -> Fixed {
         let idle = round.lengthened.values().filter(is_idle).flatten();
         let idle: Vec<Problem> = idle.cloned().collect();
         if !idle.is_empty() {
-            // These problems remain although their fixes were applied. Repeat the round without
-            // these fixes.
+            // The problems in `idle` remain although their fixes were applied. The round is
+            // repeated without these fixes.
             staying.extend(idle);
             continue;
         }

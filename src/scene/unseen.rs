@@ -163,8 +163,8 @@ impl Sight {
         })
     }
 
-    /// Returns where an object is if its bounding sphere shows that no part of it is in the
-    /// picture. Returns `None` if it may be visible.
+    /// Returns the position of an object whose bounding sphere is wholly outside of the picture.
+    /// Returns `None` if the object may be visible.
     pub fn outside(&self, shape: &Shape) -> Option<Outside> {
         let Some(sphere) = shape.bounding_sphere() else {
             let sees = self.may_see(shape, self.near, self.far);

@@ -116,11 +116,11 @@ impl<'s> Lowering<'s> {
         if !(is_parallel || sine < LEAST_SINE) {
             return;
         }
-        // If the camera looks along up, the direction `level_direction(up)` decides what is at the
-        // top of the picture. `across` is the component of this direction that is perpendicular to
-        // up. If the camera looks against up, `across` points to the top of the picture; otherwise,
-        // `-across` does. Only the direction of `up` matters, so it is scaled to keep its square
-        // from overflowing.
+        // If the view direction is parallel to up, the direction `level_direction(up)` decides what
+        // is at the top of the picture. `across` is the component of this direction that is
+        // perpendicular to up. If the camera looks against up, `across` points to the top of the
+        // picture; otherwise, `-across` does. Only the direction of `up` matters, so it is scaled
+        // to keep its square from overflowing.
         let up = up / up.abs().max_element();
         let level = level_direction(up);
         let across = level * up.dot(up) - up * level.dot(up);

@@ -33,7 +33,8 @@ impl<'s> Lowering<'s> {
         repetition: &Repetition<'s>,
     ) {
         if repetition.indices.is_empty() {
-            // The names of the indices are unknown, so uses of the usual names are not reported.
+            // The indices could not be parsed, so their names are unknown. Uses of the usual names
+            // `i`, `j` and `k` are therefore not reported as undefined.
             self.names.know_words("i j k");
             return self.unbuilt(row, block);
         }
@@ -168,7 +169,7 @@ impl<'s> Lowering<'s> {
             };
             let is_built = self.is_wanted() && self.object(lowered, values);
             if is_built && self.problems.len() > before {
-                // A warning that several objects of the block cause is reported once.
+                // If several objects of the block cause the same warning, it is reported once.
                 for problem in self.problems.split_off(before) {
                     let place = problem.labels.first().map(|label| label.span);
                     if warnings.insert((problem.code.clone(), place)) {

@@ -302,8 +302,8 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the text of a value, converted to the type of the field `row` if necessary, and
-    /// whether writing it is safe. Returns `None` if the block already has this field or one that
-    /// excludes it, or if the value does not fit and cannot be converted.
+    /// whether writing it is safe. Returns `None` if the field cannot be added to the block, or if
+    /// the value does not fit and cannot be converted.
     fn fitting(
         &mut self,
         block: &LoweredBlock<'s>,
