@@ -89,8 +89,8 @@ mod tests {
     /// fewer rounds, the latest moments would not be tested.
     const LAST: u32 = 400;
 
-    /// Another program saves the file, in each round at a later moment, from before the replacement
-    /// to after it. The file that it saves must never be lost.
+    /// In each round, another program saves the file at a later moment, from before the replacement
+    /// to after it. The saved file must never be lost.
     #[test]
     fn what_is_saved_meanwhile_stays() {
         let folder = tempdir().unwrap();

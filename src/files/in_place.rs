@@ -17,8 +17,7 @@ use super::{
     temporary::{self, locked},
 };
 
-/// Returns whether `error`, with which replacing a file failed, is a reason to overwrite the file
-/// in place.
+/// Returns whether a file should be overwritten in place because replacing it failed with `error`.
 pub fn is_reason(error: &io::Error) -> bool {
     use io::ErrorKind;
     matches!(
@@ -67,8 +66,8 @@ pub fn write_in_place(
     }
 }
 
-/// Returns the copies of a file, possibly incomplete, that were left by processes that were killed
-/// while they overwrote it. Searches beside the file and in the user's state folder.
+/// Returns the copies that processes left when they were killed while they overwrote a file. A copy
+/// may be incomplete. Searches beside the file and in the user's state folder.
 pub fn copies_left(path: &Path) -> Vec<PathBuf> {
     // Copies are named after the file itself, not after a link to it.
     let beside = match fs::read_link(path) {

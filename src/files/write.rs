@@ -330,8 +330,8 @@ fn temporary(target: &FileTarget, purpose: Purpose<'_>) -> io::Result<NamedTempF
     builder.prefix(&prefix).suffix(SUFFIX);
     #[cfg(unix)]
     if found.is_none() && !is_private {
-        // These are the usual permissions of a new file. The system removes those that the user's
-        // umask forbids.
+        // A new file gets the usual permissions. The system removes those that the user's umask
+        // forbids.
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     }
     let temporary = locked(|| builder.tempfile_in(folder(path)))?;

@@ -53,8 +53,8 @@ pub struct Comparison {
     pub width: u32,
     /// Number of rows of both pictures.
     pub height: u32,
-    /// Root mean square of the differences over all channels of all pixels. It is in linear light
-    /// and from 0 to 1.
+    /// Root mean square of the differences over all channels of all pixels, in linear light, from 0
+    /// to 1.
     pub rmse: f64,
     /// The largest difference. If several are equally large, the first one is reported, row by row
     /// from the top.

@@ -80,8 +80,8 @@ pub(super) fn name(format: ImageFormat) -> String {
     format!("{format:?}").to_uppercase()
 }
 
-/// Rejects a picture that has no pixels or is decoded to more than `limit` bytes. Pixels are
-/// assumed to have four channels of `channel` bytes each.
+/// Rejects a picture that has no pixels or would need more than `limit` bytes when it is decoded.
+/// Pixels are assumed to have four channels of `channel` bytes each.
 pub(super) fn check_size(
     [width, height]: [u64; 2],
     channel: u64,

@@ -107,7 +107,7 @@ pub fn render_numbers<P: film::Pixel, const N: usize>(
                     bound => (bound as f32).next_up().min(1.0),
                 })
                 .collect();
-            // Most pixels have the same mean as the pixel before, so the last conversion is used
+            // Most pixels have the same colour as the pixel before, so the last conversion is used
             // again.
             let (mut before, mut last) = ([0.0; 3], P::of([0.0; 3], &encoder));
             let means: Vec<P> = pixels

@@ -192,9 +192,9 @@ pub(crate) fn check_part(part: Area, whole: Area) -> Result<(), RenderError> {
 }
 
 /// Iterates over the squares (tiles) into which a part of the picture is divided, clipped to the
-/// part. They have the side `side`, in pixels, and form a grid from the picture's top left corner.
-/// The iterator ends early if the render is cancelled, because merely iterating over millions of
-/// tiles would take a second.
+/// part. The squares have sides of `side` pixels, and form a grid from the picture's top left
+/// corner. The iterator ends early if the render is cancelled, because merely iterating over
+/// millions of tiles would take a second.
 fn tiles(part: Area, side: u32, control: &Control) -> impl Iterator<Item = Area> + Send {
     let tiles = part.grid(side).map(move |tile| tile.common(part));
     tiles.take_while(|_| !control.cancel.load(Ordering::Relaxed))

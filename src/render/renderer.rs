@@ -1,9 +1,9 @@
 //! Renders tiles (rectangles of pixels) of a picture with samples.
 //!
-//! A pixel's samples are counted by colour, so their order does not matter. Where all samples are
-//! certain to see one colour, they are neither placed nor traced. In other pixels, many samples are
-//! traced at a time, against only those objects that may be seen there. If finding these objects
-//! would take longer than it saves, samples are traced one by one.
+//! A pixel's samples are counted by colour, so their order does not matter. If all samples of a
+//! pixel are certain to see the same colour, they are neither placed nor traced. In other pixels,
+//! many samples are traced at a time, against only those objects that may be seen there. If finding
+//! these objects would take longer than it saves, samples are traced one by one.
 
 use std::{
     ops::{ControlFlow, Range},
@@ -50,7 +50,7 @@ const CROWD_SIDE: u32 = 4;
 
 /// Minimum number of a pixel's samples for which the list of objects near a square of pixels is
 /// reduced to the objects near the pixel. With fewer samples, reducing the list would take longer
-/// than testing each sample against all of it.
+/// than testing each sample against the whole list.
 const SAMPLES_WORTH_A_LOOK: u64 = 3;
 
 /// Renders the tiles (rectangles of pixels) of a picture. All threads share this data.

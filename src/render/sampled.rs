@@ -65,9 +65,9 @@ pub(super) fn render_as<P: film::Pixel>(
 /// power of two, and it is smaller the more samples a pixel has.
 fn tile_side(sampling: &Sampling) -> u32 {
     let pixels = TILE_SAMPLES / sampling.samples_per_pixel().max(1);
-    // The quotient is at most 2^18, so its root fits into 32 bits. The side is a power of two up to
-    // `GRID`, the side of the squares that the tracer divides first. So no tile crosses a border of
-    // these squares.
+    // The quotient is at most 2^18, so its root fits into 32 bits. The tracer first divides the
+    // picture into squares of the side `GRID`, a power of two. The side of a tile is a power of two
+    // up to `GRID`, so no tile crosses a border of these squares.
     let side = (pixels.isqrt() as u32).clamp(1, GRID);
     1 << side.ilog2()
 }

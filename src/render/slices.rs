@@ -40,8 +40,9 @@ impl<P: Pixel> Slices<P> {
     ///
     /// Fails if there is not enough memory for the picture.
     pub fn new(sampling: Sampling, [width, height]: [u32; 2]) -> Result<Self, TooLarge> {
-        // The side of a slice is a power of two, like the side of the squares that the tracer
-        // divides first. So a slice consists of whole squares, or lies within one of them.
+        // The tracer first divides the picture into squares whose side is a power of two. The side
+        // of a slice is also a power of two, so a slice consists of whole squares, or lies within
+        // one of them.
         let pixels = (SLICE / pixel_work(&sampling)).max(1);
         Ok(Self {
             film: Film::new(width, height)?,

@@ -79,8 +79,8 @@ pub(super) struct Means<P>(Vec<([(usize, u64); 2], P)>);
 const CACHED_MEANS: usize = 512;
 
 impl<P: film::Pixel> Means<P> {
-    /// Returns the mean of a pixel's samples, from the counts of their colours, as a pixel of the
-    /// film. Resets the counts to 0.
+    /// Returns the mean colour of a pixel's samples, from the counts of their colours, as a pixel
+    /// of the film. Resets the counts to 0.
     pub(super) fn take(
         &mut self,
         counts: &mut Counts,

@@ -1,4 +1,5 @@
-//! Finds an example value for a field that does not contradict the other fields of its block.
+//! Finds an example value for a field of a block. The example does not contradict the other fields
+//! of the block.
 //!
 //! The example in the schema may contradict them: a corner of a box may be on the wrong side of the
 //! other corner, or a camera may look at its own eye. In: the field, and the values of the other

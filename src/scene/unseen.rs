@@ -138,7 +138,7 @@ impl Sight {
         let forward = (to - from).normalize();
         let right = forward.cross(camera.up.normalize());
         // If two points are close to each other but far from the origin, their difference has few
-        // correct digits.
+        // correct digits. The view direction is then not precise enough.
         let is_precise = from.distance(to) > LEAST_SINE * (from.length() + to.length());
         // The condition is negated so that the function also returns `None` if a length is NaN.
         if !(is_precise && right.length() > LEAST_SINE) {

@@ -101,7 +101,7 @@ impl<'s> Evaluator<'_, 's> {
     }
 
     /// Reports an unknown function. Suggests the function with the nearest name among those that
-    /// accept arguments of the types `arguments`. `None` is an unknown type.
+    /// accept arguments of the types `arguments`. An element `None` stands for an unknown type.
     fn unknown_function(&mut self, function: &Name<'s>, arguments: &[Option<Type>]) {
         if self.names.suggestions.is_trying() {
             return;

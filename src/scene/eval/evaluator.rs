@@ -69,7 +69,8 @@ pub fn suits<'s>(
 
 impl<'s> Evaluator<'_, 's> {
     /// Returns the value of an expression. `wanted` is the type that the context requires, if it is
-    /// known; the result may have another type. Returns `None` after errors are reported.
+    /// known; the result may have another type. If the expression has errors, reports them and
+    /// returns `None`.
     pub fn value(&mut self, value: &tree::Value<'s>, wanted: Option<Type>) -> Option<Value> {
         match &value.kind {
             ValueKind::Number(written) => Some(Value::Number(self.number(written, value.span)?)),

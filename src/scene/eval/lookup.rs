@@ -27,8 +27,8 @@ impl<'s> Evaluator<'_, 's> {
             return value;
         }
         let defined = self.names.defined.get(name);
-        // With `--set` arguments, all definitions are evaluated before the blocks. Still, text of
-        // the file may use only names that are defined above it.
+        // If there are `--set` arguments, all definitions of the file are evaluated before its
+        // blocks. Even then, a text of the file may use only names that are defined above it.
         let is_above =
             |defined: &&Defined| span.source != SourceId::File || defined.place.start < span.start;
         if let Some(defined) = defined.filter(is_above) {

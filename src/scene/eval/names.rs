@@ -68,8 +68,8 @@ pub(in crate::scene) struct Defined {
     pub place: Span,
     /// Span of the value, in the file or in a `--set` argument of the command line.
     pub from: Span,
-    /// Unit that the formula of the value suggests, such as radians if it uses `pi`. It matters if
-    /// a number without a unit stands where an angle is required.
+    /// Unit that the formula of the value suggests, such as radians if it uses `pi`. The unit
+    /// matters if a number without a unit stands where an angle is required.
     pub origin: UnitOrigin,
 }
 
@@ -131,9 +131,9 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// Removes and returns the `let` that has the same name as `index` and stands further down in
-    /// the file, so that the index can be defined. With `--set` arguments, all definitions are
-    /// evaluated before the blocks, so a later `let` may already be defined.
+    /// Removes and returns a `let` with the same name as `index` that stands further down in the
+    /// file, so that the index can be defined. Such a `let` may already be defined if there are
+    /// `--set` arguments, since all definitions are then evaluated before the blocks.
     pub fn hide_below(&mut self, index: Name<'s>) -> Option<(&'s str, Defined)> {
         let place = self.place(index.text)?;
         let is_below = place.source == index.span.source && place.start > index.span.start;

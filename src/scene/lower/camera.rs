@@ -1,5 +1,5 @@
-//! Builds the camera. Warns if objects are outside of its picture, or if its up vector is parallel
-//! to the view direction.
+//! Builds the camera. Warns of probable mistakes, for example if an object is outside of the
+//! picture.
 
 use glam::DVec3;
 
@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                     .at(eye_place, "the eye")
                     .help("move one of them, or give a `direction` instead of `lookat`")
                     .report(&mut self.problems);
-                // An editor shows those parts of a scene that have no errors. The camera has no
-                // view direction, so it is left out.
+                // The view direction is undefined, so the camera is left out of the scene that an
+                // editor shows.
                 view = None;
             }
             (Some(eye), Some(view), Some(given)) => {
@@ -308,8 +308,8 @@ impl Lowering<'_> {
                 continue;
             }
             reported = Some(place);
-            // Suggest 1 m or the eye's height above the board as the side, if samples can tell such
-            // squares apart.
+            // The suggested side is 1 m or the eye's height above the board, if samples can tell
+            // squares of this side apart.
             let height = (board.y - camera.eye.y).abs();
             let larger = [1.0, height].into_iter().find(|&square| !is_lost(square));
             let larger = larger.map(numbers::short);
@@ -331,7 +331,7 @@ impl Lowering<'_> {
     }
 }
 
-/// Returns the value of `lookat` or `direction` with which the camera looks at `point`, as text.
+/// Returns, as text, the value of `lookat` or `direction` with which the camera looks at `point`.
 /// Returns `None` if there is no such direction.
 fn towards(camera: &Camera, point: DVec3) -> Option<String> {
     let (from, to) = match camera.view {

@@ -61,8 +61,8 @@ impl<'s> Lowering<'s> {
         let Some(&condition) = broken else {
             return Some(value);
         };
-        // A number that is not 0 but rounds to 0 has a warning already. The report that it breaks
-        // the condition replaces the warning.
+        // A number that is not 0 but is rounded to 0 has a warning already. If it breaks the
+        // field's condition, the error replaces the warning.
         let is_rounded = self.problems.len() > before && value == Value::Number(0.0);
         if is_rounded {
             self.problems.truncate(before);

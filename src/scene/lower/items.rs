@@ -55,8 +55,8 @@ impl<'s> Lowering<'s> {
                     let problem = problem.at(name.span, "this name is taken").help(help);
                     self.problems.push(problem);
                 }
-                // Uses of the name get no reports, because it is uncertain which of its two
-                // meanings they have.
+                // The name is defined without a value. It is uncertain which of its two meanings a
+                // use of the name has, so uses are not reported.
                 self.names.define(name, None, &definition.value);
             }
             (None, None) => {
@@ -134,8 +134,8 @@ impl<'s> Lowering<'s> {
         let mut lowered = LoweredBlock {
             keyword: block.keyword(),
             name: block.name.filter(|_| row.is_object),
-            // If the end of the block is missing, or text before its `{` could not be parsed, a
-            // field may be lost.
+            // If the end of the block is missing, or text before its `{` could not be parsed,
+            // fields may be lost. Missing fields are then not reported.
             unfinished: block.close.is_none() || block.bad.iter().any(|bad| Some(bad.start) < open),
             ..LoweredBlock::empty(row, block.span)
         };

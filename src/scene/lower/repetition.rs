@@ -362,8 +362,8 @@ impl<'s> Lowering<'s> {
         let with_index: Vec<Span> = with_index
             .filter(|it| self.depends(*it, repetition))
             .collect();
-        // A problem with the first combination often occurs with all combinations. Such a problem
-        // gets a label with the indices only if its value depends on one.
+        // A problem with the first combination of indices often occurs with all others too. Such a
+        // problem gets a label with the indices only if its value depends on one of them.
         let is_first = values.iter().all(|&value| value == 0);
         // A fix must not replace a formula that depends on an index by the value for one
         // combination.
@@ -385,8 +385,8 @@ impl<'s> Lowering<'s> {
                 let help = "its value differs by index, and an index begins at 0: write a formula that does for all of them";
                 problem.help = Some(help.to_owned());
             }
-            // The vertices of a triangle are often on one line at the end of a row of triangles
-            // that meet in a point. The help says how to leave such a triangle out.
+            // In a row of triangles that ends in a point, the vertices of the last triangle are
+            // often on one line. The help says how to leave this triangle out.
             if problem.is("on_one_line")
                 && let Some(help) = &mut problem.help
             {

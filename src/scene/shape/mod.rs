@@ -1,6 +1,6 @@
 //! Shapes of objects, with their colours.
 //!
-//! Each kind of shape has a file. It defines how the shape is built from its block, its position
+//! Each kind of shape has a file, which defines how the shape is built from its block, its position
 //! and extent, its fields, and its description. This file only dispatches to the kinds.
 //!
 //! A new kind begins with [`BlockKind`] and its row in the schema. From there, compiler errors and
