@@ -69,7 +69,7 @@ impl OutputFolder {
     /// # Errors
     ///
     /// The folder cannot be created or written to, or the user has a file with one of these names.
-    /// No file has then been written.
+    /// No file is written in this case.
     pub fn open<'n>(
         path: &Path,
         names: impl IntoIterator<Item = &'n str>,

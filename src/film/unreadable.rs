@@ -102,7 +102,8 @@ pub(super) fn check_size(
     }
 }
 
-/// Shortens a decoder's message to 200 characters. It may repeat a long part of the file.
+/// Shortens a decoder's message to 200 characters, since a message may repeat a long part of the
+/// file.
 fn shortened(cause: &str) -> String {
     const LONGEST: usize = 200;
     let mut characters = cause.trim_end().chars();

@@ -1,5 +1,4 @@
-//! Keeps the names that are defined at the current place of the text, and what was reported about
-//! names.
+//! Keeps the names that are defined at the current place of the text, and the reports about names.
 
 use std::{
     cell::RefCell,
@@ -21,7 +20,7 @@ use crate::{
     },
 };
 
-/// Names that are defined at the current place of the text, and what was reported about names.
+/// Names that are defined at the current place of the text, and the reports about names.
 #[derive(Debug, Default)]
 pub struct Names<'s> {
     /// Values of the `let`s and of the indices (counters of a `for`) that are defined so far.

@@ -232,7 +232,8 @@ impl<'s> Lowering<'s> {
             let written = self.spread(block, fields, value);
             return Some(Meant::new(fields, quoted(fields), whole, written));
         }
-        // The word may be a value whose field's name is missing.
+        // The word may be a value whose field's name is missing, such as `red`. The type of the
+        // value then determines the field.
         let takes = match value.kind {
             ValueKind::Missing if schema::method(word).is_some() => Some(Type::Method),
             ValueKind::Missing if css::color(word).is_some() => Some(Type::Color),
