@@ -1,5 +1,6 @@
-// The fragment of the page's address: `key=value` pairs joined by `&`. Browsers never send it. This
-// module is loaded before all others, so that no other module sees the token in the address.
+// The fragment of the page's address: `key=value` pairs joined by `&`. It may contain the token,
+// which browsers then do not send to any server. This module must be loaded first: it removes the
+// token from the address before other modules read it.
 
 import { remember, remembered } from "./dom";
 
