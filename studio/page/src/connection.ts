@@ -55,9 +55,9 @@ class Connection implements Transport {
   private timer: ReturnType<typeof setTimeout> | undefined;
   /** Number of the latest attempt to connect. Events of earlier attempts are ignored. */
   private current = 0;
-  /** Time of the last message from the server, in ms. The field `asked` below is the time of a test
-   * request without a reply, or 0 if there is none. */
+  /** Time of the last message from the server, in ms. */
   private heard = 0;
+  /** Time of the test request that has no reply yet, in ms; 0 if there is none. */
   private asked = 0;
   private hangs = false;
 

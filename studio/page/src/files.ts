@@ -64,8 +64,9 @@ class Files {
   /** Text of a draft or a link that was restored before the host sent its scene. `base` is the
    * content that the draft's file had when editing began; undefined for a link. */
   private early: { base: string | null | undefined; text: string } | null = null;
-  /** The scene of the host's file. The page may show another scene, which is in the field `at`. */
+  /** The scene of the host's file. */
   private hosts = new Scene();
+  /** The scene that the page shows. */
   at = this.hosts;
   private readonly conflict = byId<HTMLDialogElement>("conflict-dialog");
 

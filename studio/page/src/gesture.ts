@@ -65,7 +65,9 @@ export function rewrite(view: EditorView, change: TransactionSpec, past: Extensi
 export class Gesture {
   /** Text of the scene when the gesture began. */
   readonly base: Text;
+  /** Text after the last change that the gesture has made. */
   private current: Text;
+  /** Changes from `base` to `current`. */
   private written: ChangeSet;
   private over = false;
   private readonly past: Extension;

@@ -22,6 +22,7 @@ const ARROWS: Record<string, Point> =
  * text. */
 const TEXT = "input:not([type=radio],[type=checkbox],[type=range]), [contenteditable=true], dialog";
 const SAVE = ["Control+s", "Control+Shift+s"]; // work in `TEXT`, too
+/** Elements in which arrow keys, Space and Escape do not control the picture. */
 const CONTROL = "input, select, button:not(.handle), summary, #divider, [open], [role=group]";
 
 /** Returns the name of a pressed key as the attribute `data-key` spells it. */

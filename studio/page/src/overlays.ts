@@ -13,6 +13,7 @@ const boxes = [...document.querySelectorAll<HTMLInputElement>("#layers input")];
 /** Minimum zoom at which the pixel grid is drawn, in screen pixels per pixel. Chosen by eye: at a
  * lower zoom, the lines would hide the picture. */
 const GRID_ZOOM = 6;
+/** Minimum zoom at which samples are drawn, in screen pixels per pixel. Chosen by eye. */
 const SAMPLES_ZOOM = 4;
 /** Distance of arrows from the border of the picture's area, in screen pixels; chosen by eye. */
 const EDGE = 14;
