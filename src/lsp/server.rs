@@ -219,8 +219,8 @@ impl Server {
     }
 
     /// Moves the scene of a text that has changed to the field `last`, and drops the text's frames.
-    /// Returns error responses to the requests for these frames. Does nothing if the text had
-    /// errors.
+    /// Returns error responses to the requests for these frames. Does nothing if there is no scene,
+    /// for example because the text had errors.
     fn outdate(&mut self, uri: &Uri) -> Vec<Message> {
         let Some(version @ Some(_)) = self.scenes.remove(uri) else {
             // The text had errors already, or its scene was not requested since its last change. So

@@ -2,8 +2,8 @@
 //!
 //! A new request of a page may replace an earlier one, so all messages that have arrived are read
 //! before a request is answered. If no request waits, the thread waits for a message. At regular
-//! intervals, it checks whether the scene's file has changed, and how far a picture is that another
-//! thread renders.
+//! intervals, it checks whether the scene's file has changed, and sends the progress of a picture
+//! that another thread renders.
 
 use std::{
     convert::Infallible,

@@ -15,8 +15,8 @@ interface Wire { send(text: string): void }
 type Closed = "lost" | "ended" | "failed" | "keyless" | "unknown" | "restarted" | "late" | "twice";
 const TRIED_AGAIN: Closed[] = ["lost", "ended", "failed"];
 
-/** State of the connection. It is `silent` if the connection is lost and as many attempts to
- * reconnect as `PAUSES` has entries have failed. */
+/** State of the connection. `silent` means that the connection is lost and that as many attempts to
+ * reconnect have failed as `PAUSES` has entries. */
 export type ConnectionState = "connecting" | "open" | "silent" | Closed;
 
 /** Opens a channel. Calls `opened` with it, `receive` for each text, and `closed` at its end. */

@@ -16,8 +16,8 @@ export async function publishDiagnostics(published: PublishDiagnosticsParams): P
   const { doc } = editor.view.state;
   if (file === null || file.doc !== doc || (published.version !== undefined
     && published.version !== file.version)) return;
-  // Without diagnostics, and without marks to remove, nothing changes, so the request for fixes is
-  // saved. This is the usual case during a drag.
+  // Without diagnostics, and without marks to remove, nothing changes, so the fixes are not
+  // requested. This is the usual case during a drag.
   const isRight = published.diagnostics.length === 0;
   if (isRight && !hasMarks) return;
   const actions = isRight ? [] : await editor.ask<CodeAction[]>("textDocument/codeAction",

@@ -113,8 +113,8 @@ function answer(draft: Draft, isRestored: boolean): void {
   if (isRestored) {
     due.delete(draft.id);
     restored = draft;
-    // If the host has not answered yet, it may have a copy of this draft. The page takes over the
-    // draft's key, so that later changes replace this copy.
+    // If the host has not answered yet, it may have a copy of this draft. The page continues the
+    // draft under the same key, so that later changes replace the copy.
     if (!files.isTold) id = draft.id;
     files.restore(draft.text, draft.base, draft.name);
   }

@@ -29,8 +29,8 @@ const MOST = { pixels: 16_000_000, side: 8192 };
 /** Pause in a drag, in ms, before finer pictures are requested. It is a little longer than the time
  * between two refreshes of a usual screen (17 ms). */
 const HAND_RESTS = 20;
-/** Limit on the time that the last final picture took, in ms. Below it, a user does not wait long
- * for the next final picture, so no sharp picture is shown before that. */
+/** Rendering time, in ms. If the last final picture was rendered faster, the next one is expected
+ * as soon, so no sharp picture is requested before it. */
 const SOON = 200;
 
 /** A requested picture: its text, and the number of the request. */

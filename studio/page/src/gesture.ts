@@ -67,7 +67,7 @@ export class Gesture {
   readonly base: Text;
   /** Text after the last change that the gesture has made. */
   private current: Text;
-  /** Changes from `base` to `current`. */
+  /** Changes that the gesture has made to the text so far. */
   private written: ChangeSet;
   private over = false;
   private readonly past: Extension;

@@ -98,7 +98,8 @@ export class Dial {
     frames.released(this);
   }
 
-  /** Shows the number unless it is being changed. Returns its literal; null if it is deleted. */
+  /** Sets the slider to the number in the text, unless the slider is being moved. Returns the
+   * number's literal; null if it is deleted. */
   show(): Literal | null {
     const found = this.literal();
     if (found === null || this.turn !== null || this.limits === null) return found;

@@ -10,8 +10,8 @@ import type { Overlays, Pick, Point } from "./protocol";
 import { selection } from "./selection";
 import { tools, type Tool } from "./tools";
 
-/** Maximum movement of the pointer in a click, in screen pixels. A hand is never quite still, so a
- * press with less movement is not a drag. */
+/** Maximum movement of the pointer in a click, in screen pixels. A hand is never quite still, so
+ * only a larger movement begins a drag. */
 const CLICK = 4;
 
 /** Tools that the middle (1) and the right (2) mouse button use, whichever tool is chosen. */
