@@ -20,6 +20,12 @@ use crate::{
 /// one would report mistakes that explain almost nothing.
 const NOTHING: f64 = 1e-5;
 
+/// Identifier of the mistake that the rays are parallel. Such a program has no distance of the view
+/// plane and no angle, so a wrong number for one of them only means another size of the window.
+const PARALLEL: &str = "parallel_rays";
+const PARALLEL_OF_OWN_SIZE: &str =
+    "the rays are parallel: they leave along −w, from a window whose size is not the scene's";
+
 /// Returns the verdict, given what the search found: the best hypothesis about the program that
 /// made the picture, and whether it explains the picture.
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
@@ -99,10 +105,15 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let mut mistakes = Vec::new();
     // The mistake that leaves the least difference comes first. Other mistakes may explain more
     // once this one is accounted for, because it no longer hides them.
-    let mut others: Vec<&Mistake> = last.mistakes.iter().collect();
+    let is_size = |mistake: &&Mistake| mistake.is_size() && last.has_parallel_rays();
+    let (sizes, mut others): (Vec<&Mistake>, Vec<_>) = last.mistakes.iter().partition(is_size);
     while !others.is_empty() {
         let with = |(at, mistake): (usize, &&Mistake)| {
-            let after = before.with((*mistake).clone())?;
+            let mut after = before.with((*mistake).clone())?;
+            if after.has_parallel_rays() && !before.has_parallel_rays() {
+                let mut sizes = sizes.iter();
+                after = sizes.try_fold(after, |after, &size| after.with(size.clone()))?;
+            }
             Some((beyond(&after), at, after))
         };
         let with = others.iter().enumerate().filter_map(with);
@@ -110,8 +121,13 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
             break;
         };
         let mistake = others.remove(at);
-        let set = parameters::arguments(&before.scene, &after.scene);
+        let has_own_size = mistake.id() == PARALLEL && !sizes.is_empty();
+        let mut set = parameters::arguments(&before.scene, &after.scene);
         let mut message = mistake.message(scene);
+        if has_own_size {
+            set.clear();
+            message = PARALLEL_OF_OWN_SIZE.to_owned();
+        }
         if let (Mistake::Row(..), [_]) = (mistake, &set[..])
             && let [changed] = &parameters::changed(&before.scene, &after.scene)[..]
             && let Some(should) = changed.value(&before.scene)
@@ -119,7 +135,8 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
         {
             message = format!("{message}: {is} instead of {should}");
         }
-        let equivalent = is_explained.then(|| equivalent_rows(judge, last, mistake));
+        let equivalent =
+            (is_explained && !has_own_size).then(|| equivalent_rows(judge, last, mistake));
         for other in equivalent.iter().flatten() {
             let other = other.message(scene);
             message = format!("{message}; or, in a picture like this, {other}");

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::{
-    behaviour::Behaviour,
+    behaviour::{Behaviour, Rays},
     layout::Layout,
     light::{Curve, Effect},
     parameters::{Owner, Parameter},
@@ -85,6 +85,13 @@ impl Mistake {
             },
             Self::Patch(..) | Self::Filter(_) | Self::ColorsExchanged(..) => None,
         }
+    }
+
+    /// Returns whether the mistake is a wrong number that says how much the camera sees.
+    pub fn is_size(&self) -> bool {
+        const SIZES: [&str; 4] = ["d", "fov", "hfov", "view_height"];
+        matches!(self, Self::Numbers(parameter, _)
+            if parameter.owner == Owner::Camera && SIZES.contains(&parameter.fields[0]))
     }
 
     /// Returns the number of parameters that describe the mistake. Each parameter adds to the cost
@@ -255,6 +262,10 @@ impl Candidate {
     pub fn is_filtered(&self) -> bool {
         let mut mistakes = self.mistakes.iter();
         mistakes.any(|one| matches!(one, Mistake::Filter(_)))
+    }
+
+    pub fn has_parallel_rays(&self) -> bool {
+        matches!(self.behaviour.rays, Rays::Parallel(_))
     }
 
     /// Returns whether the program's picture can be computed exactly, without samples.

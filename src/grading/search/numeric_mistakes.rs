@@ -22,6 +22,10 @@ const STARTS: usize = 2;
 /// value come first. A larger number takes longer.
 const STARTED: usize = 12;
 
+/// Factors by which slips of the hand multiply a number: a wrong sign, a double, a half, and a
+/// decimal point that is forgotten or moved.
+pub const SLIPS: [f64; 5] = [-1.0, 2.0, 0.5, 10.0, 0.1];
+
 /// Fits the fields of the scene that may be wrong to the coarsest grid. Returns hypotheses, i.e.
 /// sets of mistakes, with their differences from the picture on this grid.
 pub fn numeric_mistakes(
@@ -172,7 +176,7 @@ fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
 }
 
 /// Returns starting values for a field's numbers: its own numbers; other numbers near them; and the
-/// results of slips, such as a wrong sign, two exchanged numbers, a double or a half.
+/// results of slips of the hand, such as a wrong sign or two exchanged numbers.
 fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut starts = vec![numbers.to_vec()];
     // A single number takes few trials, so a wider range is tried.
@@ -200,10 +204,10 @@ fn starts(parameter: &Parameter, numbers: &[f64], steps: &[f64]) -> Vec<Vec<f64>
     for i in 0..numbers.len() {
         // A slip changes a single field, not `eye` and `lookat` together.
         if parameter.fields.len() == 1 {
-            with(&|other| other[i] = -other[i]);
+            for by in SLIPS {
+                with(&|other| other[i] *= by);
+            }
             with(&|other| other[i] = 0.0);
-            with(&|other| other[i] *= 2.0);
-            with(&|other| other[i] *= 0.5);
             with(&|other| other.swap(i, (i + 1) % numbers.len()));
         }
         for by in 1..=far {

@@ -1,11 +1,14 @@
-//! Simplifies fitted numbers. They become the scene's own numbers if these explain the picture as
-//! well, and otherwise get fewer digits.
+//! Simplifies fitted numbers. They become the scene's own numbers, or results of a slip of the hand,
+//! if these explain the picture as well, and otherwise get fewer digits.
 //!
 //! Somebody who mistypes a scene usually changes one number of a vector, and writes a short number.
 //! So the fit with the most numbers of the scene is chosen among equally good ones, and then the
 //! one with the fewest digits.
 
-use super::judge::{CELL_STEP, Judge, price};
+use super::{
+    judge::{CELL_STEP, Judge, price},
+    numeric_mistakes::SLIPS,
+};
 use crate::{
     grading::hypotheses::{Candidate, Mistake, Parameter},
     numbers::rounded,
@@ -55,6 +58,9 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
                 let mut mistakes = candidate.mistakes.clone();
                 mistakes[at] = Mistake::Numbers(parameter, numbers);
                 let start = Candidate::of(scene, mistakes)?;
+                if free.is_empty() {
+                    return judge.judged(&start, level);
+                }
                 let (fitted, _) = judge.fit(&start, &free, level, CELL_STEP, [0, ROUNDS])?;
                 judge.judged(&fitted, level)
             };
@@ -74,7 +80,8 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
 }
 
 /// Returns variants of wrong numbers in which more numbers are the scene's own. The others are
-/// free, i.e. may be fitted again; variants with few free numbers come first. Of a vector, one or
+/// free, i.e. may be fitted again; variants with few free numbers come first. Before all others
+/// come variants in which a slip of the hand changes one number, and none is free. Of a vector, one or
 /// two coordinates are free. Of `eye` and `lookat` together, one point is free. Each variant comes
 /// with the indices of its free numbers.
 fn plainer(
@@ -83,7 +90,7 @@ fn plainer(
     numbers: &[f64],
 ) -> Vec<(Parameter, Vec<f64>, Vec<usize>)> {
     let own = parameter.numbers(scene);
-    match (&parameter.fields[..], own.len()) {
+    let fewer = match (&parameter.fields[..], own.len()) {
         // A picture does not determine the length of a direction, so the direction is scaled until
         // one coordinate is the scene's own.
         (["normal" | "direction"], _) => {
@@ -117,7 +124,42 @@ fn plainer(
             fewer.map(with).collect()
         }
         _ => Vec::new(),
-    }
+    };
+    [slips(scene, parameter, numbers), fewer].concat()
+}
+
+/// Returns the scene's numbers with a slip of the hand in one of them, if that moves the picture
+/// by less than a pixel from where `numbers` show it.
+fn slips(
+    scene: &Scene,
+    parameter: &Parameter,
+    numbers: &[f64],
+) -> Vec<(Parameter, Vec<f64>, Vec<usize>)> {
+    let own = parameter.numbers(scene);
+    let steps = parameter
+        .put(scene, numbers)
+        .map(|wrong| parameter.steps(&wrong, 1.0));
+    let Some(steps) = steps.filter(|_| parameter.fields.len() == 1 && !parameter.is_color()) else {
+        return Vec::new();
+    };
+    let changed = (0..own.len()).flat_map(|i| {
+        SLIPS.map(|by| {
+            let mut changed = own.clone();
+            changed[i] *= by;
+            changed
+        })
+    });
+    let is_near = |changed: &Vec<f64>| {
+        let off = changed.iter().zip(numbers).zip(&steps);
+        changed != numbers
+            && off
+                .into_iter()
+                .all(|((one, other), step)| (one - other).abs() < step.abs())
+    };
+    changed
+        .filter(is_near)
+        .map(|changed| (parameter.clone(), changed, Vec::new()))
+        .collect()
 }
 
 /// Rounds a hypothesis's numbers to as few digits as possible.
