@@ -15,14 +15,14 @@ use super::{linear_system::solve, prediction::Prediction};
 /// deviations. A χ² variable with six degrees of freedom exceeds 50 with a probability below 10⁻⁸.
 const CHANCE: f64 = 50.0;
 
-/// Displacement of edges that a single sample per pixel may seem to cause, in pixels. For n samples
-/// per pixel, it is divided by n. If the samples have the same places in all pixels, their mean may
-/// lie off the pixel's middle; for a Hammersley set it does by 1/(2n). The value is greater than
-/// 1/2 because n is estimated from noise, and the estimate is too large for such samples.
+/// Displacement of edges that is attributed to samples at the same places in all pixels, in pixels,
+/// if each pixel has one sample. For n samples, it is divided by n. The mean of such samples may
+/// lie off the pixel's middle; in a Hammersley set, the distance is 1/(2n). The value is greater
+/// than 1/2 because n is estimated from noise, and is overestimated for such samples.
 const OFF_MIDDLE: f64 = 0.75;
-/// Maximum displacement that is attributed to few samples per pixel, in pixels. A larger
-/// displacement counts as a mistake, however few the samples are. With a larger limit, mistakes in
-/// pictures with few samples would be overlooked.
+/// Maximum displacement that is attributed to a small number of samples per pixel, in pixels. A
+/// larger displacement counts as a mistake. With a larger limit, mistakes in pictures with few
+/// samples would be overlooked.
 const MOST_OFF_MIDDLE: f64 = 0.15;
 
 /// Number of coefficients of an affine displacement: a constant and the slopes in x and y, for each
