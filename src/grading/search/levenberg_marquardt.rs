@@ -3,8 +3,9 @@
 //! The method is that of Levenberg and Marquardt (Marquardt, An algorithm for least-squares
 //! estimation of nonlinear parameters, 1963). Weights turn squares into absolute values
 //! (Schlossmacher, 1973), so that errors that the model cannot explain do not distort the fit.
-//! Derivatives are found by varying each number once. Each move of the numbers then updates them
-//! (Broyden, A class of methods for solving nonlinear simultaneous equations, 1965).
+//! Derivatives are first found by varying each number. After each change of the numbers, the
+//! derivatives are updated (Broyden, A class of methods for solving nonlinear simultaneous
+//! equations, 1965).
 
 use crate::grading::scoring::solve;
 
@@ -19,8 +20,9 @@ pub struct Fitted {
     pub numbers: Vec<f64>,
     /// Sum of the absolute differences that remain.
     pub left: f64,
-    /// Standard deviation of each number, if the picture's differences have the standard deviations
-    /// that [`fit`] was given. It is meaningful only after a round with Huber's loss.
+    /// Standard deviation of each number, computed from the standard deviations of the picture's
+    /// differences that [`fit`] was given. It is meaningful only after a round that minimises
+    /// Huber's loss.
     pub errors: Vec<f64>,
 }
 
