@@ -80,7 +80,8 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
     // The medium resolution is enough to measure how much each mistake explains. Shifted samples
-    // and a wrong pixel width are an exception: they are visible only at full resolution.
+    // and a wrong pixel width are visible only at full resolution, so the central crop is used for
+    // them.
     let level = if last.behaviour.is_shifted() || last.is_filtered() {
         judge.central_crop()
     } else {

@@ -251,7 +251,7 @@ impl Reference {
         let work = Work::new(self.part.pixels(), self.work, self.effort, cancel);
         let judge = Judge::new(&self.scene, &self.correct, &film, jpeg, work);
         let found = forward_selection::run(&judge, most)?;
-        // The verdict must be computed completely, so the budget of work does not limit this.
+        // The verdict must be computed completely, so it is not limited by the budget of work.
         let conclude = || conclusion::conclude(&judge, &film, found);
         let verdict = judge.work.without_limit(conclude);
         Ok(cancel::unless_set(cancel, verdict)?)

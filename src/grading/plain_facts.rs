@@ -36,8 +36,7 @@ fn fact(id: &'static str, message: impl Into<String>, help: impl Into<String>) -
     }
 }
 
-/// Returns the fact that some values of a picture are not finite numbers. Returns `None` if all are
-/// finite.
+/// Reports how many pixels of a picture are not finite numbers. Returns `None` if all are finite.
 pub fn not_finite(film: &Film) -> Option<NamedMistake> {
     let is_finite = |pixel: &&[f64; 3]| pixel.iter().all(|light| light.is_finite());
     let count = film.pixels().len() - film.pixels().iter().filter(is_finite).count();
@@ -122,8 +121,8 @@ fn causes(scene: &Scene) -> String {
     }
 }
 
-/// Finds rows at the top or bottom of a picture that have one colour, although they should not by
-/// the exact picture. Ignores a single such row, and rows that fill the picture. Returns the
+/// Finds rows at the top or bottom of a picture that have one colour, although they look different
+/// in the exact picture. Ignores a single such row, and rows that fill the picture. Returns the
 /// picture with these rows replaced by NaN, and a message. Returns `None` if no rows are found.
 pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMistake)> {
     let (width, height) = (film.width() as usize, film.height());
@@ -154,8 +153,8 @@ pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMista
     Some((left, fact("rows_missing", message, help)))
 }
 
-/// Returns the fact that a picture is not opaque, given its least and its greatest alpha, from 0 to
-/// 1.
+/// Reports that a picture is not opaque. `least` and `most` are its least and its greatest alpha,
+/// from 0 to 1.
 pub fn transparent([least, most]: [f64; 2]) -> NamedMistake {
     let help = "alpha is 255 in every pixel of an opaque picture, or the file has no alpha";
     let byte = |part: f64| (255.0 * part).round();

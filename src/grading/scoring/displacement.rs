@@ -101,10 +101,10 @@ impl NormalEquations {
         }
     }
 
-    /// Solves for the displacement. Each coordinate is moved towards 0 by up to `off_middle`
-    /// pixels, because few samples per pixel may seem to displace edges by this distance. `noise`
-    /// is the real variance of the errors divided by the assumed one. Returns `None` if the
-    /// displacement may be chance.
+    /// Solves for the displacement. Its constant part is reduced by up to `off_middle` pixels in
+    /// each direction, because a small number of samples per pixel may seem to displace edges by
+    /// this distance. `noise` is the real variance of the errors divided by the assumed one.
+    /// Returns `None` if the displacement may be chance.
     fn displacement(&self, off_middle: f64, noise: f64) -> Option<Displacement> {
         let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
         let full = |matrix: &Symmetric| -> Vec<Vec<f64>> {

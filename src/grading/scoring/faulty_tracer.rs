@@ -288,10 +288,10 @@ impl FaultyTracer {
         }
     }
 
-    /// Returns the parameter t of the hit with an object that is seen. `crossings` has the
-    /// parameters of both hits of the ray, the lesser first. Returns `None` if neither can be seen.
-    /// `length` is the depth per unit of t; or, if the near and far planes are compared with
-    /// distances, the distance per unit of t.
+    /// Returns the ray's parameter t at the visible hit of one object, or `None` if no hit is
+    /// visible. `crossings` contains t at both hits, the lesser first. `length` is the depth per
+    /// unit of t; or the distance per unit of t, if distances are compared with the near and far
+    /// planes.
     fn first(&self, crossings: [f64; 2], length: f64) -> Option<f64> {
         let counting = crossings.map(|t| Some(t).filter(|t| self.counts(*t, length)));
         match counting {

@@ -131,7 +131,8 @@ impl Prediction<'_> {
             let has_several = one.variance.cmpgt(DVec3::ZERO);
             beyond += DVec3::select(has_several, square - one.rounding, DVec3::ZERO).element_sum();
         }
-        // Noise that is less than that of 100 000 samples per pixel cannot be told from rounding.
+        // Noise that is less than that of 100 000 samples per pixel cannot be distinguished from
+        // rounding.
         let is_known = beyond > 1e-5 * of_samples;
         Score {
             likelihood,

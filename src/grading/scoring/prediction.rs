@@ -91,7 +91,7 @@ fn map_channels(
 ) {
     let slope_of = |mean: f64, variance: f64| {
         let mean = mean.clamp(0.0, 1.0);
-        // Mean slope of the curve between the lights that noise reaches. Noise is the standard
+        // Mean slope of the curve over the range of light that noise spans. Noise is the standard
         // deviation of one sample, or an 8-bit step if this is greater. A clipped curve is flat on
         // one side, which reduces the mean slope. So the slope is also computed for a quarter of
         // the noise, and the steeper one is used.
@@ -323,8 +323,8 @@ impl<'a> Prediction<'a> {
         }))
     }
 
-    /// Returns the differences of all cells, channel by channel, in the light that viewers of the
-    /// file see.
+    /// Returns the differences between observed and predicted light of all cells, channel by
+    /// channel, in the light that viewers of the file see.
     pub fn differences(&self) -> Vec<f64> {
         let own = |at: usize| match self.curve {
             Curve::Correct => self.difference(at),

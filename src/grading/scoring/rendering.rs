@@ -40,9 +40,9 @@ pub struct Rendering {
     /// Means and variances if the scene is traced with the faults of the hypothesis; `None` if
     /// there are no faults, or on the coarsest grid.
     behaved: Option<Arc<Moments>>,
-    /// Means and variances of the hypothesis's scene, traced correctly, but estimated from samples
-    /// at the places used for `behaved`. In a cell in which they equal `behaved`, the faults make
-    /// no difference. `None` if they were not computed.
+    /// Means and variances of the hypothesis's scene, traced correctly, but estimated from the same
+    /// number of samples as `behaved`. In a cell in which they equal `behaved`, the faults make no
+    /// difference. `None` if they were not computed.
     sampled: Option<Arc<Moments>>,
 }
 
@@ -212,9 +212,9 @@ impl Candidate {
     }
 }
 
-/// Returns the means and variances of the cells of `part`. `known` is a rendering to copy from, and
-/// the area in which it does not apply. `make` computes the cells of an area: of this one, or of
-/// the whole part if `known` is `None`.
+/// Returns the means and variances of the cells of `part`. If `known` is given, they are copied
+/// from its first item, except in the area that is its second item. All cells that are not copied
+/// are computed by `make`.
 fn completed(
     known: Option<(&Arc<Moments>, Area)>,
     part: Area,

@@ -68,8 +68,8 @@ impl Strays {
 /// Returns whether sampling may explain a sum of squared errors. The second number is the sum that
 /// is expected of sampling.
 fn is_noise((squares, expected): (f64, f64)) -> bool {
-    // Light is at most 1, so the squared error of a pixel, summed over three channels, is at most
-    // 3. Therefore its variance is at most three times its expected value.
+    // Light is at most 1, so the squared error of a pixel, summed over three channels, never
+    // exceeds 3. Therefore its variance is at most three times its expected value.
     squares - expected <= DEVIATIONS * libm::sqrt(3.0 * expected)
 }
 

@@ -81,7 +81,7 @@ const HINTED_SHARE: f64 = 0.3;
 /// mistake at edges or a wrong pixel width added. Returns `None` if none of these explains it.
 pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let edges = judge.central_crop();
-    // This hypothesis is tested even if the budget of work is used up, because it may explain the
+    // The hypothesis is tested even if the budget of work is used up, because it may explain the
     // picture.
     let (residual, null) = judge.work.without_limit(|| {
         let residual = judge.residual(candidate);

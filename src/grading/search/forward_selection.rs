@@ -350,7 +350,7 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
             continue;
         };
         // The removed mistake may have compensated for wrong numbers, so the numbers are fitted
-        // again. It may also have hidden a mistake at edges, so these are tried again.
+        // again. It may also have hidden a mistake at edges, so mistakes at edges are tried again.
         let fitted = || {
             let (fitted, _) = judge.fit_all(&fewer, judge.fitting(&fewer), [0, ROUNDS])?;
             if !is_near(judge, &fitted) {

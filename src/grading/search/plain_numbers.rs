@@ -144,7 +144,8 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let is_as_good = |short: &Candidate| {
         let judged = judge.judged(short, level);
         // Noise with a structure, such as that of a regular grid of samples, may be fitted only by
-        // long numbers. So short numbers are also good if they explain the picture.
+        // long numbers. So short numbers are accepted even at a higher cost, if they explain the
+        // picture.
         judged.is_some_and(|judged| judged.cost <= most) || judge.explains(short)
     };
     let mut shorter =
