@@ -1,5 +1,6 @@
-//! Turns the result of a search into a verdict on the picture. Mistakes that explain the picture
-//! are named; others become guesses.
+//! Computes the verdict on a picture from the best hypothesis about the program that made it. The
+//! hypothesis's mistakes are named if they explain the picture. Otherwise they are reported as
+//! guesses.
 
 use super::{
     hypotheses::{Candidate, Mistake, Shows, mistakes, parameters},
@@ -15,9 +16,9 @@ use crate::{
     scene::Scene,
 };
 
-/// Least fraction of the squared difference between the picture and the exact one that a mistake
-/// must explain to be reported beside others. A larger value would hide small mistakes. A smaller
-/// one would report mistakes that explain almost nothing.
+/// Threshold below which a mistake is not reported: the fraction of the picture's squared error
+/// that the mistake explains. A larger value would hide small mistakes. A smaller one would report
+/// mistakes that explain almost nothing.
 const NOTHING: f64 = 1e-5;
 
 /// Identifier of the mistake that the rays are parallel. Such a program has no distance of the view
@@ -31,8 +32,9 @@ const PARALLEL_OF_OWN_SIZE: &str =
 pub fn conclude(judge: &Judge, film: &Film, found: Option<(Judged, bool)>) -> Verdict {
     let (scene, jpeg) = (judge.scene, judge.fine.jpeg);
     let right = Candidate::correct(scene);
-    // Must be read before the verdict is computed, because that spends work, too. A search that
-    // explained the picture ended for this reason, so it was not cut short.
+    // `is_cut` is read before the verdict is computed, because this computation spends work, too,
+    // and may use up the budget. A search that explained the picture is complete, so it was not cut
+    // short.
     let is_explained = matches!(found, Some((_, true)));
     let is_cut = judge.work.is_cut() && !is_explained;
     let mut verdict = match found {
@@ -83,9 +85,9 @@ fn has_other_colors(film: &Film, scene: &Scene, jpeg: Option<Jpeg>) -> bool {
 /// explain the picture; otherwise they are reported as guesses.
 fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let (scene, last) = (judge.scene, found.candidate());
-    // Programs with some of the mistakes are compared with the picture on one grid. The noise that
-    // is left with all mistakes is subtracted. A shift of samples and a wrong pixel width are
-    // visible only at full resolution.
+    // The medium resolution is enough to measure how much each mistake explains. Shifted samples
+    // and a wrong pixel width are visible only at full resolution, so the central crop is used for
+    // them.
     let level = if last.behaviour.is_shifted() || last.is_filtered() {
         judge.central_crop()
     } else {
@@ -103,10 +105,11 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     let all = beyond(&before).max(1e-12);
     let mut left = all;
     let mut mistakes = Vec::new();
-    // The mistake that leaves the least difference comes first. Other mistakes may explain more
-    // once this one is accounted for, because it no longer hides them.
     let is_size = |mistake: &&Mistake| mistake.is_size() && last.has_parallel_rays();
     let (sizes, mut others): (Vec<&Mistake>, Vec<_>) = last.mistakes.iter().partition(is_size);
+    // Adds the mistakes to a correct program one by one, each time the one that leaves the least
+    // difference from the picture. A mistake may explain more once others are added, because they
+    // no longer hide it.
     while !others.is_empty() {
         let with = |(at, mistake): (usize, &&Mistake)| {
             let mut after = before.with((*mistake).clone())?;
@@ -168,7 +171,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
-    // Guesses do not explain the picture, so objects are compared with those of the correct scene.
+    // Guesses do not explain the picture, so the objects are then judged by the correct scene.
     let known = if is_named { last } else { &correct };
     let (objects, is_background_right) = objects::judged(judge, known);
     Verdict {
@@ -182,16 +185,17 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     }
 }
 
-/// Returns other rows of the table of mistakes that explain the picture as well as `mistake` does,
-/// if they replace it. They describe a similar mistake. The picture alone cannot decide between
-/// them.
+/// Returns the variants of a mistake that explain the picture, too. The picture alone cannot tell
+/// which of them the program makes. Only variants that are visible inside areas of one colour are
+/// tried.
 fn equivalent_rows(judge: &Judge, candidate: &Candidate, mistake: &Mistake) -> Vec<Mistake> {
     let Mistake::Row(row, object) = mistake else {
         return Vec::new();
     };
     let rows = mistakes::ROWS.iter().chain(mistakes::OBJECT_ROWS);
-    // In a JPEG, a program that multiplies light cannot be told from one that multiplies bytes. So
-    // both rows are tried, although their identifiers differ.
+    // A program that multiplies light by a factor and a program that multiplies bytes by a factor
+    // can make almost the same JPEG. So each of these two mistakes is tried as a variant of the
+    // other, although their identifiers differ.
     let [gain, of_bytes] = ["not_divided", "bytes_scaled"];
     let is_alike = |id: &str| {
         id == row.id || [gain, of_bytes].contains(&id) && [gain, of_bytes].contains(&row.id)

@@ -74,7 +74,7 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
         let mut near = grid.around(at, BESIDE).filter_map(|near| labels[near]);
         near.any(|object| is_moved[object])
     };
-    // The background counts as an object behind all others.
+    // The background is treated as one more object, whose index follows those of all others.
     let group =
         |at: usize| (!is_of_another(at)).then_some(labels[at].unwrap_or(scene.objects.len()));
     let are_right = strays.are_empty(scene.objects.len() + 1, group);
@@ -107,8 +107,8 @@ fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     moved.fold(0.0, f64::max)
 }
 
-/// Returns some points of a shape, which move with it. For a checkerboard, these are `squares`,
-/// which are given in units of a square's side.
+/// Returns some points of a shape. They move if the shape moves. For a checkerboard, they are the
+/// points `squares`, whose coordinates are in units of a square's side.
 fn points(shape: &Shape, squares: &[DVec3]) -> Vec<DVec3> {
     match shape {
         Shape::Sphere(sphere) => {

@@ -16,9 +16,9 @@ use crate::{area::Area, film::Film, scene::Scene};
 /// chance.
 const NOISE_RATIO: f64 = 0.8;
 
-/// Number of cells along the picture's longer side, when causes of an empty picture are tried. One
-/// ray per cell looks for objects. With fewer cells, more small objects are missed; with more, the
-/// search takes longer.
+/// Number of cells along the picture's longer side, in a search for causes of an empty picture. It
+/// tests with one ray per cell whether a faulty program sees an object. With fewer cells, more
+/// small objects are missed; with more, the search takes longer.
 const CELLS: u32 = 32;
 
 /// Maximum number of possible causes that are listed for an empty picture. Chosen to keep the
@@ -36,8 +36,7 @@ fn fact(id: &'static str, message: impl Into<String>, help: impl Into<String>) -
     }
 }
 
-/// Returns the fact that some values of a picture are not finite numbers. Returns `None` if all are
-/// finite.
+/// Reports how many pixels of a picture are not finite numbers. Returns `None` if all are finite.
 pub fn not_finite(film: &Film) -> Option<NamedMistake> {
     let is_finite = |pixel: &&[f64; 3]| pixel.iter().all(|light| light.is_finite());
     let count = film.pixels().len() - film.pixels().iter().filter(is_finite).count();
@@ -50,8 +49,8 @@ pub fn not_finite(film: &Film) -> Option<NamedMistake> {
     Some(fact("not_finite", message, help))
 }
 
-/// Returns the fact that a picture has one colour or is noise. Returns `None` if neither is the
-/// case. `exact` is the correct picture.
+/// Finds out whether a picture has one colour or is noise although the exact picture is not.
+/// Returns this fact as a mistake, or `None` if neither is the case.
 pub fn empty_or_noise(film: &Film, exact: &Film, scene: &Scene) -> Option<NamedMistake> {
     let first = film.pixels()[0];
     if film.pixels().iter().all(|pixel| *pixel == first) {
@@ -122,9 +121,9 @@ fn causes(scene: &Scene) -> String {
     }
 }
 
-/// Finds rows at the top or bottom of a picture that have one colour but should not, by comparing
-/// it with the exact picture. There are at least two of them, and they never fill the picture.
-/// Returns the picture with NaN in their place, and the fact; `None` if there are none.
+/// Finds rows at the top or bottom of a picture that have one colour, although they look different
+/// in the exact picture. Ignores a single such row, and rows that fill the picture. Returns the
+/// picture with these rows replaced by NaN, and a message. Returns `None` if no rows are found.
 pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMistake)> {
     let (width, height) = (film.width() as usize, film.height());
     let rows = |is_below: bool| {
@@ -154,8 +153,8 @@ pub fn without_empty_rows(film: &Film, exact: &Film) -> Option<(Film, NamedMista
     Some((left, fact("rows_missing", message, help)))
 }
 
-/// Returns the fact that a picture is not opaque, given its least and its greatest alpha, from 0 to
-/// 1.
+/// Reports that a picture is not opaque. `least` and `most` are its least and its greatest alpha,
+/// from 0 to 1.
 pub fn transparent([least, most]: [f64; 2]) -> NamedMistake {
     let help = "alpha is 255 in every pixel of an opaque picture, or the file has no alpha";
     let byte = |part: f64| (255.0 * part).round();

@@ -55,12 +55,14 @@ pub fn has_board(c: &Candidate) -> bool {
     drawn.any(|(object, is_drawn)| *is_drawn && object.shape.checkerboard().is_some())
 }
 
-/// Offsets the samples by some pixels to the right and down, as seen in the picture's file.
+/// Offsets the samples by some pixels to the right and down. The directions are those of the
+/// program's picture, which may be mirrored or turned.
 pub fn shift(c: &mut Candidate, by: [f64; 2]) {
     c.behaviour.offset = c.layout.source_direction(by);
 }
 
-/// Spreads a picture's pixels over the window as if each row and column had one less.
+/// Increases the distance between the samples of neighbouring pixels. It becomes that of a program
+/// that divides the window into one column and one row less than the picture has.
 pub fn spread_by_one_less(c: &mut Candidate) {
     c.behaviour.spread = sides(c).map(|side| side / (side - 1.0).max(1.0));
 }
@@ -85,8 +87,8 @@ pub fn sides(c: &Candidate) -> [f64; 2] {
     [c.scene.image.width, c.scene.image.height].map(f64::from)
 }
 
-/// Sets the ratio of the window's width to its height, unless it is wrong already, or `aspect` is
-/// the correct ratio.
+/// Sets the ratio of the width to the height of the window, i.e. of the rectangle that the camera
+/// sees. Does nothing if the ratio is wrong already, or if `aspect` is the correct ratio.
 pub fn set_aspect(c: &mut Candidate, aspect: f64) {
     let [width, height] = sides(c);
     let by = aspect * height / width;
@@ -184,7 +186,8 @@ pub fn twice_arctan(tangent: f64) -> Angle {
     Angle::from_degrees((2.0 * libm::atan(tangent)).to_degrees())
 }
 
-/// Lengthens the view plane's distance as if u were not divided by its length.
+/// Increases the distance of the view plane from the eye, as if the camera's vector to the right
+/// were not divided by its length.
 pub fn divide_by_sine_of_up(c: &mut Candidate) {
     let (from, to) = c.scene.camera.view.ends(c.scene.camera.eye);
     let [up, ahead] = [c.scene.camera.up, to - from].map(DVec3::normalize_or_zero);
@@ -216,8 +219,9 @@ pub fn exchange_faces(c: &mut Candidate, object: usize, order: [usize; 3]) {
     }
 }
 
-/// Moves a triangle as a program does that takes another point for its centroid. `point` computes
-/// this other point from the vertices. The other point then lies where the centroid should.
+/// Moves a triangle so that one of its other points lies where its centroid should be. `point`
+/// computes this point from the vertices. Does nothing unless the scene describes the triangle by
+/// its centroid.
 pub fn anchor(c: &mut Candidate, object: usize, point: fn([DVec3; 3]) -> DVec3) {
     if let Some(Shape::Triangle(triangle)) = shapes(c).nth(object) {
         let point = point(vertices(&triangle.outline));

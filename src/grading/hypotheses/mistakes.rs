@@ -66,9 +66,9 @@ const fn row(
     }
 }
 
-/// Writes a row of the table of mistakes for one of several similar mistakes. The first word says
-/// which kind it is. Mistakes of a kind differ only in a part of the message, and in a number or a
-/// function.
+/// Writes a row of the table of mistakes. It saves repeating the text that several similar rows
+/// have in common. The first word selects this text. The other arguments are the part of the
+/// message that differs, and a number or a function.
 #[rustfmt::skip]
 macro_rules! family {
     (window $window:literal, $aspect:expr) => { row("aspect", InAreas, concat!("the picture is stretched: its window is ", $window, ", though the picture is not"), WINDOW, |c, _| set_aspect(c, $aspect)) };
@@ -193,8 +193,8 @@ pub const ROWS: &[MistakeRow] = &[
     row("board_swapped", InAreas, "the checkerboard's colours are exchanged, or it is turned by a quarter or moved by a square", SQUARES, |c, _| exchange_colors(c)),
     row("roll_sign", InAreas, "the roll has the wrong sign", "u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v: a positive roll dips the right side", |c, _| c.scene.camera.roll = -c.scene.camera.roll),
     row("roll_ignored", InAreas, "the roll is ignored", "turn u and v by the roll about the view direction", |c, _| c.scene.camera.roll = Angle::default()),
-    // A roll of 2 degrees becomes 2 radians. They are converted to degrees, the unit of angles in a
-    // scene.
+    // A roll of 2 degrees is taken for 2 radians. A scene has angles in degrees, so 2 radians are
+    // converted to degrees.
     row("roll_unit", InAreas, "the roll's degrees are taken for radians", "sin and cos take radians: 180 degrees are π", |c, _| c.scene.camera.roll = Angle::from_degrees(c.scene.camera.roll.degrees.to_degrees() % 360.0)),
     row("roll_new_u", InAreas, "the roll is done with the new u in the place of the old one, so the picture is skewed", "keep u before it is changed: v' = sin ψ u + cos ψ v has the old u, and your v is built from the new one", |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::NewRight }),
     row("roll_u_alone", InAreas, "u alone is turned by the roll, v is not, so the picture is skewed", "a roll turns both: u' = cos ψ u − sin ψ v and v' = sin ψ u + cos ψ v", |c, _| if c.scene.camera.roll != Angle::default() { c.behaviour.rays = Rays::RightAlone }),
@@ -212,7 +212,7 @@ pub const ROWS: &[MistakeRow] = &[
     row("eye_lookat_exchanged", InAreas, "eye and lookat are exchanged", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = &mut c.scene.camera.view { swap(point, &mut c.scene.camera.eye) }),
     row("eye_not_subtracted", InAreas, "lookat is taken for the view direction: the eye is not subtracted", "w = (eye − lookat)/|eye − lookat|", |c, _| if let View::Lookat(point) = c.scene.camera.view && point != DVec3::ZERO { c.scene.camera.view = View::Direction(point) }),
     row("near_far_distance", InAreas, "near and far are compared with distances from the eye, not with depths", CLIPPED, |c, _| c.behaviour.clips_distances = c.scene.camera.near > 0.0 || c.scene.camera.far.is_some()),
-    // Adding zero turns −0 into 0.
+    // Adding zero turns a coordinate −0 into 0, so that `-0` is not printed.
     row("up_negated", InAreas, "up has the wrong sign", UP, |c, _| c.scene.camera.up = -c.scene.camera.up + DVec3::ZERO),
     row("up_ignored", InAreas, "up is ignored: (0, 1, 0) is taken for it", UP, |c, _| c.scene.camera.up = DVec3::Y),
     row("up_ignored", InAreas, "z is taken for up", UP, |c, _| c.scene.camera.up = DVec3::Z),

@@ -22,8 +22,8 @@ pub enum Owner {
     Image,
     /// The block `camera` of the scene.
     Camera,
-    /// An object, given by its index. It stands for all objects that the same block of the file
-    /// describes.
+    /// An object, given by its index. If a block of the scene's file describes several objects, the
+    /// first of them stands for all.
     Object(usize),
 }
 
@@ -41,8 +41,9 @@ pub struct Parameter {
 /// that a fit has a number to change. Any value far beyond all objects works.
 pub const NO_FAR: f64 = 1e9;
 
-/// Returns the fields that can be fitted to a picture. `up` is not among them, because it turns the
-/// picture as `roll` does, nor is `view_height`, because it scales the picture as `d` does.
+/// Returns the fields that can be fitted to a picture. The field `up` is left out, because it turns
+/// the picture as `roll` does. The field `view_height` is left out, because it scales the picture
+/// as the distance of the view plane does.
 pub fn fittable(scene: &Scene) -> Vec<Parameter> {
     let mut fitted = all(scene);
     fitted.retain(|parameter| !matches!(parameter.fields[0], "up" | "view_height"));
@@ -153,8 +154,8 @@ impl Parameter {
         Self { owner, fields }
     }
 
-    /// Returns a description of what the fields belong to, for messages. It mentions the other
-    /// objects of the same block.
+    /// Returns a description of what the fields belong to, for messages. If it is an object whose
+    /// block in the file describes several objects, the description mentions the others.
     pub fn owner_name(&self, scene: &Scene) -> String {
         let name = self.owner.name(scene);
         if self.owner.others(scene).is_empty() {
@@ -241,7 +242,7 @@ impl Parameter {
                 Value::Angle(_) => Value::Angle(Angle::from_degrees(own[0])),
                 _ => Value::Number(own[0]),
             };
-            // A missing far plane has to be there before it can be changed.
+            // A missing far plane is added here, because only an existing field can be changed.
             if let (Part::Camera(camera), "far") = (&mut part, *field) {
                 camera.far = Some(own[0]);
             }
@@ -286,8 +287,9 @@ impl Parameter {
             .collect()
     }
 
-    /// Returns for each number the change that moves the picture by about `pixels` pixels. Colours
-    /// move nothing; for their channels, the change is 8 of 255.
+    /// Returns for each number the change that moves the picture by about `pixels` pixels. A change
+    /// of colour moves nothing, so the result for each colour channel is 8 or −8, on a scale from 0
+    /// to 255.
     pub fn steps(&self, scene: &Scene, pixels: f64) -> Vec<f64> {
         if self.is_color() {
             return self.numbers(scene).into_iter().map(inward).collect();
@@ -328,7 +330,8 @@ impl Parameter {
         steps.map(|step| pixels * step).collect()
     }
 
-    /// Returns whether the parameter is a colour, which moves nothing in the picture.
+    /// Returns whether the parameter is a colour. A change of colour does not move anything in the
+    /// picture.
     pub fn is_color(&self) -> bool {
         matches!(self.fields[0], "color" | "colors" | "background")
     }

@@ -1,8 +1,8 @@
 //! Divides the compared part of a picture into cells. For the search, which must be fast, a cell
-//! spans several pixels; for the final judgement, a cell is a single pixel.
+//! spans several pixels. For the final judgement, a cell is a single pixel.
 //!
-//! The cells are the pixels of a smaller picture of the same scene with the same middle, so they
-//! are rendered like any picture.
+//! The cells are rendered as the pixels of a smaller picture. Its camera looks at the same scene
+//! from the same place in the same direction.
 
 use glam::{DVec2, DVec3};
 
@@ -29,6 +29,7 @@ pub struct Grid {
 
 impl Grid {
     /// Covers a part of a picture with a grid. The part's longer side has at most `longest` cells.
+    /// If the part contains no complete cell of this size, each pixel becomes a cell.
     pub fn new(image: &Image, part: Area, longest: u32) -> Self {
         let point = |x: u32, y: u32| DVec2::new(f64::from(x), f64::from(y));
         let of = |factor: u32| {
@@ -95,8 +96,8 @@ impl Grid {
             let pitch = Projection::quick(&camera, &image).pitch;
             [image.width, image.height] = self.size;
             camera.lens = Lens::Distance(1.0);
-            // Extreme lenses would give 0 or infinity, so the result is clamped to positive finite
-            // numbers.
+            // Extreme lenses would make the height 0 or infinite, so it is clamped to positive
+            // finite numbers.
             let view_height = f64::from(image.height * self.factor) * pitch;
             camera.view_height = view_height.clamp(f64::MIN_POSITIVE, f64::MAX);
         }

@@ -44,8 +44,9 @@ pub struct Level<'a> {
 }
 
 impl<'a> Level<'a> {
-    /// Creates a picture at the resolution of a grid. `corner` is the upper left corner of the
-    /// compared part, in pixels of the film.
+    /// Creates a picture at the resolution of a grid. The film shows the part `part` of the whole
+    /// picture. `samples` is the number of samples per cell, or `None` to render hypotheses
+    /// exactly.
     pub fn new(
         grid: Grid,
         film: &'a Film,
@@ -65,9 +66,9 @@ impl<'a> Level<'a> {
         }
     }
 
-    /// Returns a copy of the level in which the error of sampling is added to the observed light.
-    /// The error is the difference between two predictions for one hypothesis, a sampled and an
-    /// exact one. It cancels in comparisons with other sampled predictions.
+    /// Returns a copy of the level with other observed light, for comparisons with sampled
+    /// predictions. The error that sampling causes in the prediction of one hypothesis is added.
+    /// Similar hypotheses have the same sampling error, so it cancels in their comparisons.
     pub fn with_error(&self, sampled: &Prediction, exact: &Prediction) -> Self {
         let mut level = Self::new(self.grid, self.film, self.part, self.samples, self.jpeg);
         level.base = self.base.clone();

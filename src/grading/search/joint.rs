@@ -23,13 +23,13 @@ const BEST: usize = 8;
 /// took most of the time of judging a wrong picture.
 const CORRELATED: usize = 32;
 
-/// Ratio to which each further mistake has to reduce the difference from the picture, at least. The
-/// value 0.95 rejects mistakes that explain less than 5 % of it.
+/// Maximum ratio of the differences from the picture with and without a further mistake. The value
+/// 0.95 rejects mistakes that explain less than 5 % of the difference.
 const ROW_RATIO: f64 = 0.95;
 
-/// Returns the absolute value of the correlation between observed and predicted light. The light of
-/// a cell is the sum of its channels. Effects on light hardly change the correlation; even an
-/// inversion changes only its sign.
+/// Returns how strongly observed and predicted light are correlated, from 0 to 1. The light of a
+/// cell is the sum of its channels. Effects on light hardly change the correlation. An inversion
+/// changes only its sign, so the absolute value is taken.
 fn correlation(prediction: &Prediction) -> f64 {
     let mut sums = [0.0; 6];
     for (seen, mean) in prediction.observed.iter().zip(&prediction.moments.mean) {
@@ -49,7 +49,7 @@ fn correlation(prediction: &Prediction) -> f64 {
 /// grid. Each comes with its difference.
 pub fn joint_rows(judge: &Judge, right: &Candidate, tiny: &Level) -> Vec<(f64, Candidate)> {
     let rows = ROWS.iter();
-    // JPEG coding hides weak mistakes.
+    // JPEG coding hides weak mistakes, so they are not tried in a JPEG.
     let is_coded = judge.fine.jpeg.is_some();
     let rows = rows.filter(|row| match row.shows {
         Shows::InAreas => true,

@@ -71,18 +71,19 @@ pub fn numeric_mistakes(
     fitted.collect()
 }
 
-/// Number of fields of the scene that are fitted completely on the coarse grid, starting from the
-/// scene's own numbers. All fields are fitted for one round, and those with the least difference
-/// from the picture come first. A larger number takes longer.
+/// Number of fields of the scene that are fitted completely, starting from their present numbers,
+/// on a grid of low resolution. All fields are fitted for one round. The fields with the least
+/// remaining difference from the picture are selected. A larger number takes longer.
 const NEAR_OWN: usize = 3;
 
-/// Fits each field of the camera and of checkerboards that may be wrong to the coarse grid,
-/// starting from its present numbers. Returns the few best hypotheses that are closer to the
-/// picture than `candidate`.
+/// Fits each field of the camera and of checkerboards that may be wrong, except colours, starting
+/// from its present numbers. Returns the few best hypotheses that are closer to the picture than
+/// `candidate`.
 ///
-/// This finds numbers that are slightly wrong if most of the picture is a checkerboard with small
-/// squares. The samples of the coarsest grid cannot find them, because any move of such a board
-/// changes what the samples see.
+/// This finds slightly wrong numbers if a checkerboard with small squares fills most of the
+/// picture. The few samples of the coarsest grid cannot find them, because even a small movement of
+/// such a board changes the colours of most samples. So the grid `coarse` is used, which is
+/// rendered exactly.
 pub fn slightly_wrong(judge: &Judge, candidate: &Candidate, suspects: &[usize]) -> Vec<Candidate> {
     let level = &judge.coarse;
     let Some((difference, _)) = judge.with_difference(candidate.clone(), level) else {
@@ -135,9 +136,9 @@ fn suspected(candidate: &Candidate, suspects: &[usize]) -> Vec<Parameter> {
     all
 }
 
-/// Returns a colour of the picture for each of the given colours: the median over the pixels in
-/// which only the given colour is predicted. `numbers` has the bytes of the given colours, three
-/// for each.
+/// Returns for each given colour the one that the picture shows instead: the median over the pixels
+/// in which only the given colour is predicted. Keeps the given colour if there are no such pixels.
+/// `numbers` has three channels for each given colour, from 0 to 255.
 fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     let color = |own: &[f64; 3]| {
         let light = DVec3::from(Color { srgb: *own }.to_linear());
@@ -161,8 +162,9 @@ fn colors(numbers: &[f64], prediction: &Prediction) -> Vec<f64> {
     colors.iter().flat_map(color).collect()
 }
 
-/// Returns starting values for the depth of a clipping plane: the plane's own depth, and depths
-/// around that of the point that the camera looks at. Each of these is 1.2 times the one before.
+/// Returns starting values for the depth of the near or far plane: its present depth, and depths
+/// around the distance of the point that the camera looks at. If the camera has no such point, it
+/// is the distance of the origin from the eye. Each depth is 1.2 times the one before.
 fn planes(judge: &Judge, numbers: Vec<f64>) -> Vec<Vec<f64>> {
     const FROM: i32 = -12;
     const TO: i32 = 24;

@@ -15,8 +15,9 @@ use crate::{
     scene::Scene,
 };
 
-/// Greatest displacement of an edge, in pixels, that rounding a number may cause in the first
-/// round. With a larger value, shorter numbers are tried first, which are more often rejected.
+/// Displacement of an edge, in pixels, that rounding a number may cause in the first round of
+/// rounding. Each further round allows less, so numbers become longer. With a larger value, shorter
+/// numbers are tried first, but more of them are rejected.
 const TENTH: f64 = 0.1;
 /// Maximum number of rounds of rounding. Each round allows a quarter of the displacement of the
 /// round before. The fifth allows 0.0004 pixels, so more rounds would hardly change a picture.
@@ -51,7 +52,8 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
             if !judge.work.may_go_on() {
                 return candidate.clone();
             }
-            // A number that is not fitted has no cost.
+            // A number that is not fitted has no price, so the cost is reduced by the prices of the
+            // numbers that become the scene's own.
             let gain = price(level, numbers.len() - free.len());
             let free: Vec<usize> = free.into_iter().map(|i| first + i).collect();
             let judged = || {
@@ -79,11 +81,11 @@ fn with_own(judge: &Judge, candidate: &Candidate, cost: f64) -> Candidate {
     candidate.clone()
 }
 
-/// Returns variants of wrong numbers in which more numbers are the scene's own. The others are
-/// free, i.e. may be fitted again; variants with few free numbers come first. Before all others
-/// come variants in which a slip of the hand changes one number, and none is free. Of a vector, one or
-/// two coordinates are free. Of `eye` and `lookat` together, one point is free. Each variant comes
-/// with the indices of its free numbers.
+/// Returns variants of a field's wrong numbers in which more numbers are the scene's own. The other
+/// numbers are free, i.e. may be fitted again. Of a vector, one or two coordinates are free. Of
+/// `eye` and `lookat` together, one point is free. Variants with few free numbers come first. Each
+/// variant comes with the indices of its free numbers. Before all others come variants in which a
+/// slip of the hand changes one number of the scene, and none is free.
 fn plainer(
     scene: &Scene,
     parameter: &Parameter,
@@ -167,8 +169,8 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let level = judge.fitting(candidate);
     let (_, fitted) = judge.fit_all(candidate, level, [0, 1])?;
     let long = judge.judged(candidate, level)?;
-    // A short number counts as not fitted, so it has no price. In return, the rest of the cost may
-    // grow by the prices that are saved.
+    // A short number counts as not fitted, so its price is saved. In return, short numbers may fit
+    // worse, by as much as the saved prices.
     let most = long.cost + price(level, fitted.numbers.len());
     let steps = candidate.steps(1.0);
     let rounded_to = |part: f64| {
@@ -184,7 +186,8 @@ pub fn shortened(judge: &Judge, candidate: &Candidate) -> Option<Candidate> {
     let is_as_good = |short: &Candidate| {
         let judged = judge.judged(short, level);
         // Noise with a structure, such as that of a regular grid of samples, may be fitted only by
-        // long numbers. So short numbers are also good if they explain the picture.
+        // long numbers. So short numbers are accepted even at a higher cost, if they explain the
+        // picture.
         judged.is_some_and(|judged| judged.cost <= most) || judge.explains(short)
     };
     let mut shorter =
