@@ -231,8 +231,8 @@ impl PictureOutput {
         Ok(Self::File(path.to_owned(), format, PathChoice::Explicit))
     }
 
-    /// Checks, before rendering, whether the picture can be written, as far as that can be known.
-    /// Rejects an output that would replace the scene.
+    /// Checks, before rendering, that the picture can probably be written. Rejects an output that
+    /// would replace the scene.
     pub fn check(&self, scene: &Path) -> Result<(), Trouble> {
         match self {
             Self::Standard if io::stdout().is_terminal() => Err(trouble(
