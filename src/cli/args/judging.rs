@@ -13,7 +13,7 @@ pub struct DiffArgs {
     /// A picture (PNG, EXR, PPM, PGM, PAM, BMP, TIFF, WebP, GIF or JPEG) or `-` for standard input;
     /// integers are read as sRGB, floats as linear light, and transparent pixels are shown on black
     pub a: PathBuf,
-    /// Another picture, or a scene whose exact picture A is compared with
+    /// Another picture, or a scene; the exact picture of a scene is compared with A
     pub b: PathBuf,
     /// Write a heat map of the differences to this PNG file: black within the tolerance, then red,
     /// yellow and white, linear in sRGB
@@ -122,8 +122,8 @@ fn effort(text: &str) -> Result<f64, String> {
 /// Arguments that set how large pictures may be.
 #[derive(Debug, clap::Args)]
 pub struct LargeArgs {
-    /// Read pictures of more than 256 MiB, or of more than 2^28 bytes once they are decoded, as
-    /// long as there is memory for them
+    /// Read pictures whose file, or whose decoded pixels, take more than 256 MiB, as long as there
+    /// is memory for them
     #[arg(long)]
     pub large: bool,
 }

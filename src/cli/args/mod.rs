@@ -306,8 +306,8 @@ pub struct ReportArgs {
     /// The methods [default: all]
     #[arg(long, value_delimiter = ',', value_parser = method())]
     pub methods: Vec<Method>,
-    /// Samples per pixel [default: 1,4,16 and so on, until all methods have reached the errors in
-    /// question or the time is up]
+    /// Samples per pixel [default: 1, 4, 16 and so on, until all methods have reached the errors of
+    /// --error or the time is up]
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = value_parser!(u64).range(1..=1 << 53))]
     pub samples: Vec<u64>,
     /// Number of runs of each method with each number of samples [default: up to 9, as long as time
