@@ -56,7 +56,7 @@ pub enum Command {
     /// Judge a class's pictures of a scene
     #[command(after_help = help::GRADE_EXAMPLES)]
     Grade(GradeArgs),
-    /// Report speed against error for each method, or test how accurate the arithmetic is
+    /// Report speed against error for each method, or how accurate the arithmetic is
     #[command(after_help = help::REPORT_EXAMPLES)]
     Report(ReportArgs),
     /// Make a contact sheet: the pictures of scenes side by side, each with its name
