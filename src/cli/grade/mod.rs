@@ -252,7 +252,7 @@ fn mark_equal(graded: &mut [GradedStudent]) {
     }
 }
 
-/// The results of all students, and the scene's exact picture as a PNG file. Its bytes are empty if
+/// The results of all students, and the scene's exact picture as a PNG file. The file is empty if
 /// no HTML page is written.
 type Answers = (Vec<GradedStudent>, Vec<u8>);
 
@@ -272,7 +272,7 @@ fn graded(
         reference.map(|reference| reference.with_effort(args.effort.effort))
     })?;
     let exact = match args.output {
-        // Writing into memory does not fail.
+        // Writing into memory does not fail, so an error need not be handled.
         Some(_) => thumbnails::png(&reference.exact.film).unwrap_or_default(),
         None => Vec::new(),
     };
