@@ -73,8 +73,9 @@ impl Area {
         (y - self.y) as usize * self.width as usize + (x - self.x) as usize
     }
 
-    /// Returns the tiles of the area, row by row: squares of side `side`, in pixels, from the
-    /// area's top left corner on, cut off at its right and bottom edges.
+    /// Divides the area into tiles, squares of side `side` in pixels, and returns them row by row.
+    /// The first tile lies in the area's top left corner; tiles at the right and bottom edges are
+    /// cut off.
     pub fn tiles(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |length: u32| (0..length).step_by(side as usize);
         starts(self.height).flat_map(move |top| {
@@ -87,8 +88,9 @@ impl Area {
         })
     }
 
-    /// Returns the squares of a grid from the picture's top left corner that overlap the area, row
-    /// by row. `side` is a square's side in pixels; squares are not cut off.
+    /// Divides the picture into a grid of squares of side `side`, in pixels, from its top left
+    /// corner on. Returns the squares that overlap the area, row by row. The squares are not
+    /// clipped.
     pub fn grid(self, side: u32) -> impl Iterator<Item = Self> {
         let starts = move |start: u32, length: u32| {
             (start - start % side..start + length).step_by(side as usize)

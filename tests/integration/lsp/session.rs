@@ -62,7 +62,8 @@ fn malformed_lsp_input_is_logged_and_skipped() {
     assert!(log.contains("is not open"), "{log}");
 }
 
-/// A range of `null` does not say whether the change replaces a part of the text or the whole text.
+/// A range of `null` does not say whether the change replaces a part of the text or the whole text,
+/// so the change is ignored.
 #[test]
 fn a_change_with_an_invalid_range_leaves_the_text_unchanged() {
     let mut client = Client::start();
