@@ -332,8 +332,9 @@ fn a_browser_opens_with_a_single_use_token_unless_no_open_is_given() {
             assert_eq!(studio.admitted(token).err(), Some(twice));
         }
         assert_eq!([first.closed(), again.closed()], [twice; 2]);
-        // The session also ends for a page that does not read its messages, and long before the
-        // 10 seconds after which a write is given up. The time is generous, for a busy machine.
+        // The session also ends for a page that does not read its messages. The host gives up a
+        // write to such a page only after 10 seconds, but the session must end long before. Four
+        // seconds suffice even on a busy machine.
         thread::sleep(Duration::from_secs(4));
         let mut rest = Vec::new();
         let _ = silent.get_mut().read_to_end(&mut rest);
@@ -367,7 +368,7 @@ fn a_signal_ends_studio_within_a_second_and_closes_its_pages() {
             // another program to write to it.
             fs::remove_file(folder.path("a.scn")).unwrap();
             folder.make_pipe("a.scn");
-            // In this time, the host checks the file at least once.
+            // The host checks the file regularly. It does so at least once in 2.5 seconds.
             thread::sleep(Duration::from_millis(2500));
         }
         let begun = Instant::now();
