@@ -175,8 +175,8 @@ fn example(name: &str) -> Scene {
     read(&fs::read_to_string(path).expect("the example is there"))
 }
 
-/// Returns the scene with a picture of `width` pixels in a row, an aspect ratio of 16:9, and
-/// `per_pixel` samples per pixel.
+/// Returns the scene with a picture that is `width` pixels wide, has an aspect ratio of 16:9, and
+/// has `per_pixel` samples per pixel.
 fn sized(scene: &Scene, width: u32, method: Method, per_pixel: u64) -> Scene {
     let mut scene = scene.clone();
     (scene.image.width, scene.image.height) = (width, width * 9 / 16);

@@ -161,7 +161,7 @@ fn tokens_in_one_line() {
     in_one_line(&line, FEW);
 }
 
-/// Measures the answers for which an editor waits, in a text of one line.
+/// Measures the times of the requests whose answers an editor waits for, in a text of one line.
 fn in_one_line(line: &str, rounds: u32) {
     let mut server = Server::start(line);
     let mut letters = Letters::at(0, 0);

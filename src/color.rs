@@ -122,8 +122,8 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
         // is the sRGB value. Multiplied by 65892 = 5100·12.92, it becomes 65892·L < 10·halves.
         significand * 65_892u32 < UBig::from(10 * halves) << shift
     } else {
-        // On the curved piece, the test is L < x^2.4 for the light L. Here x = (c + 0.055)/1.055 =
-        // (1000·halves + 28050)/538050, and c = halves/510 is the sRGB value.
+        // On the curved piece, the test is L < x^2.4, i.e. L^5 < x^12. Here L is the light, x = (c
+        // + 0.055)/1.055 = (1000·halves + 28050)/538050, and c = halves/510 is the sRGB value.
         let x = UBig::from(1000 * halves + 28_050);
         significand.pow(5) * UBig::from(538_050u32).pow(12) < x.pow(12) << (5 * shift)
     }

@@ -33,7 +33,7 @@ pub struct Inspection {
     pub total: u64,
     /// Seed of the random numbers for the samples.
     pub seed: u64,
-    /// Vanishing point of the lines parallel to the world's x, y and z axes, in pixels from the
+    /// Vanishing points of the lines parallel to the world's x, y and z axes, in pixels from the
     /// picture's top left corner. `None` for an axis that is parallel to the view plane.
     pub vanishing_points: [Option<[f64; 2]>; 3],
     /// Properties of the objects, in file order.

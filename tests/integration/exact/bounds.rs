@@ -158,10 +158,11 @@ fn a_pixel_takes_bounded_memory() {
     }
 }
 
-/// Two hundred objects pass through the same few points of a pixel that covers half of all
-/// directions. Many of their curves can be distinguished only in the highest precision. In an
-/// optimised build, a pixel takes at most a second. The test allows more time, because tests are
-/// less optimised and run in parallel.
+/// One pixel covers half of all directions, and the surfaces of two hundred objects meet at a few
+/// points in it. Many of the objects' outlines can be distinguished only in the highest precision.
+///
+/// In an optimised build, a pixel takes at most a second. The test allows more time, because tests
+/// are less optimised and run in parallel.
 #[test]
 fn a_pixel_takes_bounded_time() {
     for seed in 0..4 {

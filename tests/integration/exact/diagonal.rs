@@ -1,6 +1,6 @@
-//! Tests of exact pictures of a checkerboard if the rays of a pixel run along a diagonal of its
-//! squares. All squares on a diagonal have the same colour. Therefore, the pixel may differ from
-//! the mean of both colours even if the squares are too small to be visible.
+//! Tests of exact pictures of a checkerboard in which the rays of a pixel run along a diagonal of
+//! the squares. All squares on a diagonal have the same colour. Therefore, the pixel may differ
+//! from the mean of both colours even if the squares are too small to be visible.
 
 use super::*;
 

@@ -1,6 +1,6 @@
 //! Checks that safe fixes keep every number and every name. A fix may replace a name by a similar
 //! known name, and may add only keywords, units and punctuation. A separate scanner reads the words
-//! of a text, also those in comments, so that it notices lost comments.
+//! of a text, also those in comments, so that lost comments are noticed.
 
 use pinhole::{
     diagnostic::Applicability,
@@ -40,7 +40,7 @@ impl Words {
     /// is also a word of the whole text `all`.
     fn of(text: &str, all: &str, is_two: bool) -> Self {
         let mut words = Self::default();
-        // A zero-width character is not part of a number.
+        // A zero-width space is invisible and not part of a number, so it is removed.
         let text = &text.replace('\u{200b}', "");
         let mut rest = text.as_str();
         let mut is_number_before = false;
@@ -78,7 +78,8 @@ impl Words {
                 match UNITS.iter().find(is_it).filter(|_| is_number_before) {
                     Some((_, factor)) => {
                         *words.numbers.last_mut().unwrap() *= factor;
-                        // A unit may be written twice, as in `30deg degrees`.
+                        // A unit may be written twice, as in `30deg degrees`, so the next word may
+                        // be a unit, too.
                         continue;
                     }
                     None => words.names.push(word.to_owned()),

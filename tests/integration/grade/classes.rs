@@ -1,5 +1,5 @@
-//! Tests with classes as students hand them in: exports of Gradescope, GitHub Classroom and Moodle,
-//! with unrelated files in them.
+//! Tests of grading whole classes, in the form in which Gradescope, GitHub Classroom and Moodle
+//! export them. The exports contain unrelated files, too.
 
 use std::{
     fs::File,

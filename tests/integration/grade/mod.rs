@@ -31,10 +31,10 @@ use crate::{
     images,
 };
 
-/// Titles of pictures, one per line: right pictures by every sampling, and pictures with the
-/// mistakes that students make. Each picture has as many samples per pixel as its mistake needs to
-/// be visible. For example, with 16 samples, noise at edges hides the use of the power 2.2 instead
-/// of the sRGB curve.
+/// Titles of pictures, one per line: correct pictures by every way of sampling, and pictures with
+/// the mistakes that students make. Each picture has as many samples per pixel as its mistake needs
+/// to be visible. For example, with 16 samples, noise at edges hides the use of the power 2.2
+/// instead of the sRGB curve.
 const PICTURES: &str = include_str!("pictures.txt");
 
 sampled_and_exhaustive!(the_mistakes_of_a_class_are_named);

@@ -69,7 +69,7 @@ pub enum Behind {
     Unseen,
     /// Surfaces behind the eye are compared by their distance, as if they were in front of it.
     ByDistance,
-    /// Surfaces behind the eye count as nearer than all surfaces in front of it.
+    /// Surfaces behind the eye are regarded as nearer than all surfaces in front of it.
     First,
 }
 
@@ -94,8 +94,8 @@ pub enum Squares {
     /// The number of a square is the sum of its two coordinates, each rounded to the nearest
     /// integer.
     Rounded,
-    /// The number is the first coordinate, rounded to the nearest integer, plus the second, rounded
-    /// down.
+    /// The number of a square is the first coordinate, rounded to the nearest integer, plus the
+    /// second coordinate, rounded down.
     Moved,
     /// The two coordinates are added first. The number of a square is their sum, rounded down.
     Sum,
@@ -104,18 +104,19 @@ pub enum Squares {
     /// The number of a square is the second coordinate, rounded down, so that the board has
     /// stripes.
     StripesZ,
-    /// The number is the first coordinate, truncated towards zero, plus the second, rounded down.
+    /// The number of a square is the first coordinate, truncated towards zero, plus the second
+    /// coordinate, rounded down.
     TruncatedX,
-    /// The number is the first coordinate, rounded down, plus the second, rounded to the nearest
-    /// integer.
+    /// The number of a square is the first coordinate, rounded down, plus the second coordinate,
+    /// rounded to the nearest integer.
     MovedZ,
     /// The board is turned by 45 degrees. The number of a square is the sum of its coordinates on
     /// the turned board, each rounded down.
     Turned,
-    /// The number is odd if at least one of the two coordinates, rounded down, is odd.
+    /// The number of a square is odd if at least one of the two coordinates, rounded down, is odd.
     BothEven,
-    /// The number of a square counts as odd if sin(x) · sin(z) is negative, where x and z are its
-    /// coordinates in units of the square's side.
+    /// The number of a square is regarded as odd if sin(x) · sin(z) is negative, where x and z are
+    /// its coordinates in units of the square's side.
     Sines,
 }
 

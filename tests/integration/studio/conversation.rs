@@ -136,7 +136,7 @@ fn pages_are_independent_and_do_not_block_each_other() {
     assert_ne!(open(&mut first, &wrong), json!([]));
     assert_eq!(open(&mut second, SCENE), json!([]));
     second.ask("studio/png", json!({ "text": SCENE }));
-    // The host does not wait for a cancelled picture.
+    // A cancelled picture ends at once, so the host is ready for the next one.
     first.notify("$/cancelRequest", json!({ "id": long + 100 }));
     first.notify("$/cancelRequest", json!({ "id": long }));
     assert_eq!(first.response(long)["error"]["code"], -32800);

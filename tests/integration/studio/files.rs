@@ -58,7 +58,8 @@ fn a_save_never_overwrites_a_change_of_another_program() {
     let (folder, studio) = studio();
     let (mut page, _) = studio.page();
     folder.write("a.scn", "// theirs");
-    // Saving notices the change even before the host has told the page about it.
+    // The host notices the other program's change when the page saves, even before it has told the
+    // page about the change.
     let theirs = json!({ "ok": false, "text": "// theirs" });
     assert_eq!(save(&mut page, "// mine", Some(SCENE))["result"], theirs);
     assert_eq!(folder.text("a.scn"), "// theirs");
