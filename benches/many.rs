@@ -1,8 +1,8 @@
-//! Measures how the times of preparation and rendering grow with the number of objects: `cargo
-//! bench --bench many`. See README.md beside this file.
+//! Measures how the times of preparation and rendering grow with the number of objects:
+//! `cargo bench --bench many`. See README.md beside this file.
 //!
-//! `-- --write COUNT` writes a scene of COUNT small spheres to standard output instead. `--
-//! --phases COUNT…` prints, for each COUNT, the CPU seconds of each phase and the memory of the
+//! `-- --write COUNT` writes a scene of COUNT small spheres to standard output instead.
+//! `-- --phases COUNT…` prints, for each COUNT, the CPU seconds of each phase and the memory of the
 //! prepared scene. With `--cube`, the spheres lie in a cube instead of all over the picture.
 #![allow(
     clippy::disallowed_methods,

@@ -1,6 +1,6 @@
 //! Measures each sampling method: the times for generating sample points, for rendering on one or
-//! more threads, for writing files, and for tracing each sample alone. Run it with `cargo bench
-//! --bench render`. See README.md beside this file.
+//! more threads, for writing files, and for tracing each sample alone. Run it with
+//! `cargo bench --bench render`. See README.md beside this file.
 
 use std::{env, hint::black_box, io::Cursor, num::NonZero, thread, time::Instant};
 

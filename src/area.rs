@@ -146,8 +146,8 @@ impl Area {
         Self::pixel(self.x + self.width / 2, self.y + self.height / 2)
     }
 
-    // The ends of the range are `u64`, because their sum may exceed `u32` for an area that a user
-    // has typed.
+    // The end of the range, the sum of a column and a width, may exceed `u32` for an area that a
+    // user has typed. The range is therefore in `u64`.
     fn columns(self) -> std::ops::Range<u64> {
         u64::from(self.x)..u64::from(self.x) + u64::from(self.width)
     }

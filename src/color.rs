@@ -112,8 +112,7 @@ fn is_below_half_exactly(light: f64, k: u8) -> bool {
     let significand = UBig::from(light.to_bits() & ((1 << 52) - 1) | 1 << 52);
     // Here, light = significand / 2^shift.
     let shift = 1075 - exponent;
-    // The sRGB value as a whole number from 0 (black) to 510 (white): twice the 8-bit value `k` +
-    // 1/2.
+    // Twice the 8-bit value `k` + 1/2: the sRGB value on a scale from 0 (black) to 510 (white).
     let halves = 2 * u32::from(k) + 1;
     // The straight piece of the curve ends at 0.04045 (of 1), i.e. at 20.6 of 510. A whole number
     // `halves` therefore lies on the straight piece if it is at most 20.

@@ -202,10 +202,10 @@ proptest! {
         let message = format!("{changed}\n{handle} {word} {to}: {found}");
         match (handle, after.objects[0].shape) {
             ("radius", _) => {
-                // Of two rays that pass 3/4 pixel inside and outside of the silhouette, only the
-                // first hits the sphere. If the centre is behind the eye, the rays that hit the
-                // sphere lie on the silhouette's other side, away from the centre's projection;
-                // `side` is then −1.
+                // Two rays pass 3/4 pixel inside and outside of the silhouette. Only the ray inside
+                // hits the sphere. The inside lies towards the projection of the sphere's centre.
+                // If the centre is behind the eye, the inside lies in the opposite direction, and
+                // `side` is −1.
                 let CameraFacts { eye, w, .. } = camera_of(&after);
                 let side = (eye - place).dot(w).signum();
                 let inwards = (found - to).normalize_or_zero() * (0.75 * side);

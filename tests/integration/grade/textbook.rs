@@ -113,7 +113,8 @@ pub enum Squares {
     /// The board is turned by 45 degrees. The number of a square is the sum of its coordinates on
     /// the turned board, each rounded down.
     Turned,
-    /// The number of a square is odd if at least one of the two coordinates, rounded down, is odd.
+    /// The number of a square is regarded as odd if at least one of the two coordinates, rounded
+    /// down, is odd.
     BothEven,
     /// The number of a square is regarded as odd if sin(x) · sin(z) is negative, where x and z are
     /// its coordinates in units of the square's side.

@@ -128,7 +128,8 @@ fn pages_are_independent_and_do_not_block_each_other() {
     let (_folder, studio) = studio();
     let (mut first, _) = studio.page();
     let (mut second, _) = studio.page();
-    // The picture takes more than a minute to render, so the next request meets a busy host.
+    // The picture takes more than a minute to render. A second picture for this page is refused
+    // meanwhile.
     let long = first.request("studio/png", json!({ "text": long_pixel() }));
     let refused = first.respond("studio/png", json!({ "text": SCENE }));
     assert_eq!(refused["error"]["message"], "another picture is being made");
