@@ -132,9 +132,9 @@ fn cases(
         let names: Vec<_> = set.iter().map(|one| one.title()).collect();
         let whole = case(scene, &names);
         let picture = whole.picture();
-        // Smallest difference of a byte that is not visible, in 8-bit steps: normally 1, which
-        // rounding may explain. It is 0 if the mistake `cut_off` is present: `cut_off` truncates
-        // bytes instead of rounding them, so it changes bytes by only a single step.
+        // Largest difference of a byte that is regarded as invisible, in 8-bit steps: normally 1,
+        // which rounding may explain. It is 0 if the mistake `cut_off` is present: `cut_off`
+        // truncates bytes instead of rounding them, so it changes bytes by only a single step.
         let least = u8::from(!names.contains(&"cut_off"));
         let is_seen = |left_out: usize| {
             let mut others = names.clone();

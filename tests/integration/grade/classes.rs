@@ -163,7 +163,8 @@ fn clones_of_github_classroom_are_a_class() {
             put(&folder, &[(&path, content)]);
         }
     }
-    // The files of a clone have arbitrary times, so an older file is not worse than a newer one.
+    // Cloning a repository gives its files arbitrary times, so an older file is not worse than a
+    // newer one.
     age(&folder, "hw1-submissions/hw1-anna/render.png", 5);
     put(
         &folder,

@@ -51,8 +51,8 @@ fn the_mistakes_of_a_class_are_named(effort: Effort) {
     assert!(judged.is_empty(), "{}", judged.join("\n"));
 }
 
-/// The benchmark of grading puts every mistake into scenes that may lack the object of the mistake.
-/// This must not panic, so each mistake is made in each scene here.
+/// Makes each mistake in each scene. This must not panic, even if the scene lacks the object that
+/// the mistake is about.
 #[test]
 fn every_mistake_can_be_made_in_every_scene() {
     for name in [
