@@ -24,7 +24,7 @@ use glam::DVec2;
 const MAX_WORK: u64 = 100_000_000;
 
 /// Minimum visible area, in pixels, for which an object is reported as seen. Areas are printed to
-/// this precision, so a smaller area would be printed as 0.
+/// this precision, so a smaller area could be printed as 0.
 pub const MIN_AREA: f64 = 1e-6;
 
 /// What is seen of an object.
