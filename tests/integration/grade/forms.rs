@@ -232,8 +232,9 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         ]
     );
     assert!(new[1][6].contains("<br>- the image has a wrong colour"));
-    // Without a scheme of points, the grades in the worksheet stay as they are. In other languages,
-    // the columns have other names.
+    // Without a scheme of points, the grades in the worksheet stay as they are. This is tested with
+    // a German worksheet: its columns have German names, so `--columns` must say which column is
+    // which.
     let german = WORKSHEET
         .replace("Grade,", "Bewertung,")
         .replace("Feedback comments", "Feedback als Kommentar");
@@ -257,7 +258,8 @@ fn a_worksheet_of_moodle_keeps_everything_but_grades_and_comments() {
         told.contains("its grades go up to 10, and the points to 20"),
         "{told}"
     );
-    // Spreadsheet programs save a worksheet with semicolons or in UTF-16.
+    // Spreadsheet programs may save a worksheet with semicolons or in UTF-16. Such a worksheet is
+    // rejected with a hint.
     for bytes in [
         WORKSHEET.replace(',', ";").into_bytes(),
         WORKSHEET
@@ -310,8 +312,8 @@ fn a_crop_is_compared_with_the_part_that_is_named() {
         "render a.scn -o part.png --crop 4,3,10,12 --set sampler.method=exact",
         0,
     );
-    // A PNG file can state which crop of the picture it is. Saving it again removes this
-    // information.
+    // A PNG file can state which crop of the picture it is. This picture is saved again, so that it
+    // contains no such statement.
     let path = folder.path("part.png");
     image::open(&path).unwrap().to_rgb8().save(&path).unwrap();
     for command in ["grade a.scn part.png", "diff part.png a.scn"] {
