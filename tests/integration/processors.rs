@@ -29,8 +29,8 @@ const SCENES: [&str; 5] = [
     "inside_the_sphere",
 ];
 
-/// Environment variable that contains the path of a folder. If it is set, the test only writes
-/// pictures into the folder. The test sets it for its own copy that runs in QEMU.
+/// Environment variable for the copy of the test that runs in QEMU. It contains the path of the
+/// folder into which the copy writes pictures. The copy does nothing else.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
 /// Runs the test's own binary in QEMU, only once for each processor, since QEMU translates most of

@@ -151,8 +151,8 @@ impl Folder {
         let mut command = self.command(line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        // Writing fails if the command has ended without reading its input. This is no error of the
-        // command, so it is ignored.
+        // Writing fails if the command ends without reading its input. A command may do so, so the
+        // failure is ignored.
         let _ = child.stdin.take().unwrap().write_all(input.as_ref());
         child.wait_with_output().unwrap().into()
     }

@@ -203,8 +203,9 @@ fn default_and_folder_outputs_never_follow_links_or_special_files() {
                 "link to a folder outside" => symlink(outside.path("deep"), &path).unwrap(),
                 _ => create_special_file(what, name, &folder),
             }
-            // In two cases, there is nothing in the way of the command: nothing exists at the path,
-            // or the path is `out/b`, where `report` needs a folder, and there is one.
+            // Two cases are skipped, because the command succeeds in them. In one, nothing exists
+            // at the path. In the other, the path is `out/b`, where `report` needs a folder, and
+            // there is one.
             if what == "nothing" || (what, name) == ("folder", "out/b") {
                 continue;
             }

@@ -49,8 +49,8 @@ fn a_concurrent_save_of_another_program_is_never_overwritten() {
     }
 }
 
-/// Id of a user and of a group without special rights (`nobody`), as which a command runs if root
-/// runs the tests.
+/// User id and group id of `nobody`, a user without special rights. If root runs the tests,
+/// commands run as this user, because root may write everywhere.
 const USER: u32 = 65534;
 
 fn is_root() -> bool {
@@ -233,7 +233,9 @@ fn rewriting_a_file_grants_no_rights_to_another_group() {
     if !is_root() {
         return;
     }
-    // A user may give a file to a supplementary group of the user, but to no other group.
+    // A user may give a file only to a group to which the user belongs. So the rewritten file keeps
+    // its group in the first case; in the second, it gets the user's group, and the permissions of
+    // the group are removed.
     for (owner, groups, after) in [
         (1234, "--groups=1235", (USER, 1235, 0o660)),
         (USER, "--clear-groups", (USER, USER, 0o600)),

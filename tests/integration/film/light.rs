@@ -50,8 +50,8 @@ fn a_mean_is_rounded_once() {
     // double is the same as that of 0.24, because neighbouring doubles are 28e-18 apart.
     let found = mean([(3, [0.1; 3]), (7, [0.3; 3])].into_iter());
     assert_eq!(found, [0.24; 3]);
-    // One of 2^53 samples is black, so the mean is exactly 1 − 2^−53. If the samples were added one
-    // by one, rounding would lose the black one.
+    // All of the 2^53 samples are white except one, which is black. So the mean is exactly 1 −
+    // 2^−53, the largest double below 1.
     let found = mean([((1 << 53) - 1, [1.0; 3]), (1, [0.0; 3])].into_iter());
     assert_eq!(found, [1.0 - f64::EPSILON / 2.0; 3]);
 }
