@@ -217,10 +217,11 @@ fn inspect_reports_what_is_visible_of_each_object() {
         (5, r#""outside":"nearer than `near`""#),
         (6, r#""outside":"beyond `far`""#),
         // The silhouette of the sphere is an ellipse that extends from 41.5 to 29.2 pixels left of
-        // the picture's centre. Let r be the radius of a sphere, c the distance of its centre from
-        // the eye, and z the depth of the centre. In a view plane at 1 m, where 1 m is 50 pixels,
-        // the silhouette has the area
-        //     π·r²·√(c² − r²) / (z² − r²)^1.5.
+        // the picture's centre. The sphere has the radius r = 1. Its centre is at the depth z = 10
+        // and at the distance c = √149 from the eye. At a distance of 1 m, 1 m² covers 2500 pixels,
+        // so the silhouette covers
+        //     2500·π·r²·√(c² − r²) / (z² − r²)^1.5 = 96.999154
+        // pixels.
         (7, r#""box":[8,44,13,12],"pixels":96.999154}"#),
         (8, r#""outside":"right of the window""#),
     ] {

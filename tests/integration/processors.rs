@@ -33,8 +33,8 @@ const SCENES: [&str; 5] = [
 /// folder into which the copy writes pictures. The copy does nothing else.
 const FOLDER: &str = "PINHOLE_TEST_PICTURES";
 
-/// Runs the test's own binary in QEMU, only once for each processor, since QEMU translates most of
-/// the code anew in each process.
+/// Compares the pictures with those that the same test binary draws in QEMU. One process draws all
+/// pictures for a processor, because QEMU translates most of the code anew in each process.
 #[test]
 #[ignore = "needs QEMU"]
 fn all_processors_make_the_same_pictures() {
@@ -62,7 +62,8 @@ fn all_processors_make_the_same_pictures() {
     }
 }
 
-/// Writes small pictures of all scenes, by all methods and as PNG and EXR files, into a folder.
+/// Writes small pictures of the scenes in [`SCENES`] into a folder: by each method, as PNG and EXR
+/// files.
 fn draw(folder: &Path) {
     for name in SCENES {
         let scene = example(name, 32, 24);

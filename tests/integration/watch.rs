@@ -247,7 +247,7 @@ fn a_burst_of_saves_ends_with_the_last_ones_picture() {
         watch.save(&scene(["navy", "teal", "gold", "plum"][round % 4]));
     }
     watch.becomes("lime");
-    // After the picture of the last save, no picture of an older save is written.
+    // No picture of an older save may be written after the picture of the last save.
     let said = watch.count("wrote");
     watch.becomes("blue");
     watch.wait("it is written", || watch.count("wrote") > said);
@@ -280,8 +280,8 @@ fn other_files_permissions_and_reads_trigger_no_picture() {
     let watch = Watch::of_red();
     watch.says("wrote", 1);
     watch.folder.write("other.txt", "not a scene");
-    // Editors set permissions after a save, and other programs read the file. Neither counts as a
-    // change.
+    // Editors set permissions after a save, and other programs read the file. Neither causes a new
+    // picture.
     let permissions = fs::metadata(watch.path("a.scn")).unwrap().permissions();
     fs::set_permissions(watch.path("a.scn"), permissions).unwrap();
     watch.folder.read("a.scn");

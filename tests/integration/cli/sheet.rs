@@ -2,8 +2,8 @@
 
 use super::*;
 
-/// Returns the folder of [`folder`] with two more scenes: `b.scn` has another size, and `wrong.scn`
-/// has errors.
+/// Returns a folder with three scenes: `a.scn`; `b.scn`, which has another size; and `wrong.scn`,
+/// which has errors.
 fn folder_with_more_scenes() -> Folder {
     let folder = folder();
     folder.write(

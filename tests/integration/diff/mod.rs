@@ -46,7 +46,8 @@ fn save(folder: &Folder, name: &str, picture: impl Into<DynamicImage>) {
 }
 
 /// Runs `diff` for each row of `table`: the arguments, the exit status, and the expected start of
-/// the output. If the last cell begins with `…`, the output must contain it anywhere.
+/// the output. If the last cell begins with `…`, the output must contain the rest of the cell
+/// anywhere.
 #[track_caller]
 fn compare(folder: &Folder, table: &'static str) {
     for [compared, status, words] in rows(table) {

@@ -80,7 +80,7 @@ pub(super) fn run_with_deadline(folder: &Folder, arguments: &[&str]) -> Outcome 
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // On an idle machine, the command takes at most a second. The limit allows for a busy one.
+    // The command takes at most a second on an idle machine. A busy machine may need more time.
     let end = Instant::now() + Duration::from_secs(10);
     while child.try_wait().unwrap().is_none() {
         if Instant::now() > end {

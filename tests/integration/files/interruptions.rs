@@ -1,5 +1,5 @@
-//! Tests of interrupted writing: another program saves the same file, the folder is read-only, or
-//! the process is killed.
+//! Tests of saving a file in difficult cases: another program saves the same file, the folder is
+//! read-only, or the process is killed.
 
 use std::{
     fs,
@@ -58,8 +58,8 @@ fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|found| found.uid() == 0)
 }
 
-/// Makes the subfolder `closed` read-only. If root runs the tests, makes [`USER`] the owner of the
-/// scene in it and of the home folder.
+/// Makes the subfolder `closed` read-only. If root runs the tests, also makes [`USER`] the owner of
+/// the folder, of both subfolders and of the scene.
 fn give_to_user(folder: &Folder) {
     for (name, mode) in [
         ("", 0o755),

@@ -15,8 +15,8 @@ pub fn gaps() -> impl Strategy<Value = Vec<&'static str>> {
     vec(one_of(gaps, '|'), 200)
 }
 
-/// Joins the tokens in `tokens`, which spaces separate, with the gaps `gaps`. Adds a space where
-/// two tokens would otherwise merge or begin a comment.
+/// Joins the space-separated tokens in `tokens` with the gaps `gaps`. Adds a space where two tokens
+/// would otherwise merge or begin a comment.
 pub fn spaced(tokens: &str, gaps: &[&str]) -> String {
     let mut text = String::new();
     let is_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '#');

@@ -145,7 +145,8 @@ fn a_mistake_in_a_repeated_object_is_reported_once() {
     }
 }
 
-/// If a fix replaces a value that contains an index, the new value must contain the index, too.
+/// If a fix replaces a value that contains the index `i` of a repeated block, the new value must
+/// contain `i`, too.
 #[test]
 fn fixes_in_repeated_objects_keep_their_index() {
     let fields = "

@@ -116,8 +116,8 @@ fn numbers(text: &str) -> Vec<f64> {
 }
 
 /// Each row has measured points: samples, CPU time and error. After the arrow follow an error and
-/// the expected cost of reaching it: the samples, the CPU time, and 1 if these are extrapolated or
-/// 0 if not. No cost is given if it cannot be estimated.
+/// the expected cost of reaching it: the number of samples, the CPU time, and 1 if these are
+/// extrapolated or 0 if not. If the cost cannot be estimated, only the error follows.
 #[test]
 fn cost_estimates_interpolate_between_points_and_extrapolate_beyond_the_last() {
     for [points, expected] in rows("
