@@ -1,5 +1,5 @@
-//! Simplifies fitted numbers. They become the scene's own numbers, or results of a slip of the hand,
-//! if these explain the picture as well, and otherwise get fewer digits.
+//! Simplifies fitted numbers. They become the scene's own numbers, or results of a slip of the
+//! hand, if these explain the picture as well, and otherwise get fewer digits.
 //!
 //! Somebody who mistypes a scene usually changes one number of a vector, and writes a short number.
 //! So the fit with the most numbers of the scene is chosen among equally good ones, and then the
