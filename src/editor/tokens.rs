@@ -28,7 +28,7 @@ pub struct RoleToken {
 pub enum Role {
     /// The keyword `let`.
     Let,
-    /// The keyword `for` of a repeated block.
+    /// A name in its own definition: the name of a `let` or a `for` index.
     Repeat,
     /// A name that is defined: the name of a `let` or an index in its definition.
     Defined,
@@ -36,7 +36,8 @@ pub enum Role {
     Kind,
     /// The name of an object.
     ObjectName,
-    /// The name of a field.
+    /// A name that is used as a value, e.g. the name of a `let`, a `for` index, a colour or a
+    /// constant.
     Field,
     /// A name that is used as a value: of a `let`, an index, a colour, or a constant.
     Name,
@@ -87,8 +88,8 @@ fn scanned(text: &str, comments: &[Span]) -> Vec<RoleToken> {
     let mut lexer = Lexer::new(text, 0);
     loop {
         let token = lexer.token();
-        // Error recovery may have taken a text such as `# …` for a comment, which may start with
-        // any token.
+        // Comments are skipped. The parser also recognizes comments of other languages, such as `#
+        // …`, so a comment may start with any token.
         if let Some(comment) = comments.next_if(|comment| comment.start <= token.start)
             && comment.end > token.start
         {

@@ -41,8 +41,8 @@ impl Plane {
     /// Returns whether two planes are exactly equal: their normals are parallel, and the vector
     /// between their points is perpendicular to both normals.
     pub fn equals(&self, other: &Self) -> bool {
-        // Axial planes are compared first, which is fast. If a box stands on a floor, or boxes
-        // stand side by side, they are compared for many samples.
+        // Axial planes are compared first, because this is fast. It is needed for many samples if a
+        // box stands on a floor, or if boxes stand side by side.
         if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
             return a == b && p == q;
         }
@@ -112,9 +112,10 @@ pub fn box_corners(center: DVec3, size: DVec3) -> (DVec3, DVec3) {
     (corner(-1.0), corner(1.0))
 }
 
-/// Returns `a` + `b`/2, rounded once. Half of a subnormal number need not be an `f64`; therefore
-/// (2a + b)/2 is computed. If 2a + b is rounded, it is not subnormal, and halving it is exact. If
-/// it overflows, a + b/2 is computed; `b`/2 is then exact or too small to matter.
+/// Returns `a` + `b`/2, rounded once. Half of a subnormal number may itself need rounding, so the
+/// formula (2a + b)/2 is used. Only the sum is rounded, because a sum that needs rounding is not
+/// subnormal, and halving it is exact. If the sum overflows, `a` is so large that rounding `b`/2
+/// does not affect a + b/2.
 fn offset_by_half(a: f64, b: f64) -> f64 {
     let twice = 2.0 * a + b;
     if twice.is_finite() {

@@ -4,8 +4,9 @@
 
 use std::ops::{Add, Div, Mul};
 
-/// A non-negative number that bounds an error. Its operations round to nearest. If a bound must not
-/// be too small, callers multiply it by a factor above 1.
+/// A non-negative number that bounds an error. Operations round to the nearest number, so a
+/// computed bound can be slightly too small. Where this matters, callers multiply it by a factor
+/// above 1.
 pub trait Radius:
     Copy
     + std::fmt::Debug

@@ -68,6 +68,8 @@ impl Projection {
         // The ray through the pixel (x, y) of a picture of w × h pixels has, at depth 1, the height
         //
         //   ahead.y + pitch · (right.y · (x − w/2) − top.y · (y − h/2)).
+        //
+        // On the returned line, this height is `height`.
         let normal = DVec2::new(self.right.y, -self.top.y) * self.pitch;
         let middle = self.size / 2.0;
         // `foot` is the line's point nearest to the middle of the picture, and `along` is the
