@@ -49,8 +49,9 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
     let reciprocals: [Ball<Double>; 2 * TERMS] = array::from_fn(|n| {
         factorial = factorial.times(&Big::from_f64(n.max(1) as f64));
         let reciprocal = Ball::from_big(&Big::from_f64(1.0).over(&factorial));
-        // The coefficients have the signs +, +, −, −, and so on: the cosine has those of even n,
-        // and the sine those of odd n.
+        // The list holds the coefficients of both series: those of the cosine at even n, and those
+        // of the sine at odd n. Their signs alternate within each series, so they are +, +, −, −,
+        // and so on.
         if n % 4 < 2 { reciprocal } else { -reciprocal }
     });
     Constants {
@@ -73,8 +74,9 @@ pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     (Ball::from_big(&sin), Ball::from_big(&cos))
 }
 
-/// Converts a ball of [`Double`] to a ball of `T`, which must be [`Double`], too. The sum of the
-/// two parts is rounded to the same parts, so that the conversion changes nothing.
+/// Converts a ball of [`Double`] to a ball of `T`, which must be [`Double`], too. The conversion
+/// changes nothing: the two `f64` of a double-double number are already its rounded sum and the
+/// rounding error.
 fn from_double<T: Real>(x: &Ball<Double>) -> Ball<T> {
     let [hi, lo, rad] = [x.mid.hi, x.mid.lo, x.rad].map(T::from_f64);
     Ball {
@@ -174,12 +176,13 @@ mod tests {
     use super::*;
 
     /// Maximum radius of the ball of a sine or cosine, in units of double-double: for angles in
-    /// degrees, for angles in radians, and for angles with both parts. It follows from the rules of
-    /// [`Ball`]. The reduced angle r has an error of 8 units of r after its product with a rounded
-    /// constant (degrees), and of at most 12·π/4 units after three differences (radians). At |r| =
-    /// π/4, the series then give 19.9 units of the sine and 19.6 of the cosine for degrees, and
-    /// 23.4 and 22.1 for radians. For angles with both parts, two products of numbers that are √½
-    /// are added: 2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1.
+    /// degrees, in radians, and with both parts. The values are upper bounds that follow from the
+    /// error rules of [`Ball`]:
+    ///
+    /// - Reduced angle r: at most 8 units of r for degrees, and 12·π/4 units for radians.
+    /// - Sine and cosine at |r| = π/4: 19.9 and 19.6 units for degrees, 23.4 and 22.1 for radians.
+    /// - Angles with both parts, where two products of numbers about √½ are added:
+    ///   2 + 2 + 4 + √½·(19.9 + 19.6 + 23.4 + 22.1) = 68.1 units.
     const WIDEST: [f64; 3] = [20.0, 24.0, 69.0];
 
     /// Returns whether the balls of the sine and the cosine contain the true numbers and are no

@@ -42,15 +42,15 @@ pub struct Ranking {
 
 impl Measurement {
     /// Estimates the samples and the time that a method needs to reach an error. Returns `None` if
-    /// more samples do not reduce the method's error. Also returns `None` if `error` is too small
-    /// to be measured, i.e. not above the error bound of the exact picture (as a root mean square).
+    /// more samples do not reduce the method's error. Also returns `None` if `error` is at most the
+    /// root mean square error bound of the exact picture, since such small errors cannot be
+    /// measured.
     pub fn estimate(&self, series: &MethodSeries, error: f64) -> Option<Estimate> {
         self.tells(error).then(|| series.estimate(error)).flatten()
     }
 
-    /// Estimates the time that the exact method needs. Returns `None` if it was not measured. Also
-    /// returns `None` if `error` is not above the error bound of the exact picture (as a root mean
-    /// square).
+    /// Estimates the time that the exact method needs. Returns `None` if it was not measured, or if
+    /// `error` is at most the root mean square error bound of the exact picture.
     pub fn exact_estimate(&self, error: f64) -> Option<Estimate> {
         let runs = self.exact.as_ref().filter(|_| self.tells(error))?;
         let Run { cpu, wall, .. } = Run::typical(runs);
@@ -119,7 +119,7 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // Index of the first number of samples from which on all measured errors are small enough.
+        // Index of the first number of samples that suffices, as all larger ones do.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
@@ -162,10 +162,10 @@ impl MethodSeries {
     }
 }
 
-/// Returns the least number n·n or n·(n + 1) that is at least `per_pixel`, for an integer n.
-/// Multi-jittered sampling divides the pixel into a grid of as many cells as samples. For such a
-/// number, the grid is nearly square; for others, it may be far from square (for a prime number, it
-/// is one row), and the error may then exceed the interpolated one.
+/// Returns the least number of samples that is at least `per_pixel` and equals n·n or n·(n + 1) for
+/// an integer n. Multi-jittered sampling divides the pixel into a grid with a cell for each sample.
+/// For these numbers, the grid is nearly square. For others, it may be a long strip (for a prime
+/// number, a single row), so that the error may exceed the interpolated one.
 fn oblong(per_pixel: f64) -> f64 {
     let root = per_pixel.sqrt().floor();
     let next = root + 1.0;
@@ -174,9 +174,9 @@ fn oblong(per_pixel: f64) -> f64 {
     enough.unwrap_or(per_pixel)
 }
 
-/// Returns the time that `per_pixel` samples take. It is interpolated linearly between the
-/// neighbouring measured numbers of samples in `steps`. Above the last one, the line through the
-/// first and the last is extended.
+/// Returns the time that `per_pixel` samples take. Between two measured numbers of samples in
+/// `steps`, the time is interpolated linearly. Above the largest one, it is extrapolated along the
+/// line through the first and the last measurement.
 fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let times = steps.iter().map(|(per_pixel, run)| (*per_pixel, time(run)));
     let times: Vec<_> = times.collect();
