@@ -193,9 +193,9 @@ impl MethodSeries {
         })
     }
 
-    /// Returns the number of samples per pixel that takes the CPU time `cpu`. It is interpolated
-    /// linearly between the measured numbers. Below the least measured number, that number is
-    /// returned; above the greatest, the greatest. Returns `None` if nothing was measured.
+    /// Returns the number of samples per pixel that takes the CPU time `cpu`, interpolated linearly
+    /// between the measured numbers. The result is at least the smallest and at most the greatest
+    /// measured number. Returns `None` if nothing was measured.
     pub fn samples_in(&self, cpu: f64) -> Option<u64> {
         let (first, last) = (self.points.first()?, self.points.last()?);
         let slower = |pair: &&[SeriesPoint]| pair[1].typical().cpu > cpu;
