@@ -11,8 +11,8 @@ use crate::{
     syntax::tree::{self, Block, Definition, Field, Index, Item},
 };
 
-/// A text with its syntax tree, its meaning and its tokens. To analyze a scene with a thousand
-/// objects takes a few milliseconds, so each request makes a new analysis and does not keep it.
+/// A text with its syntax tree, its meaning and its tokens. Analyzing a scene of a thousand objects
+/// takes only a few milliseconds, so every request analyzes the text again.
 #[derive(Debug)]
 pub struct Analysis<'s> {
     /// The syntax tree, and the meaning: the scene, the values of definitions, and the problems.

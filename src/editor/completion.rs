@@ -41,9 +41,9 @@ pub enum CompletionKind {
     Keyword,
     /// A whole block, such as `sphere { … }`.
     Block,
-    /// The name of a definition (`let`) or of an index (`for`).
+    /// A field of a block.
     Field,
-    /// The name of a `let` or an index.
+    /// The name of a definition (`let`) or of an index (`for`).
     Definition,
     /// A function.
     Function,

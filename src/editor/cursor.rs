@@ -191,7 +191,8 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = matches!(last.kind, ValueKind::Call(_));
     } else if let Some(field) = path.field {
         situation.expected = Expected::Field;
-        // If the value of a field is missing, the parser takes the next field's name for the value.
+        // If the value of a field is missing, the parser reads the next field's name as this value.
+        // The next field is then counted among the given ones.
         let next = match &field.value.kind {
             ValueKind::Name(name) => Some(*name),
             ValueKind::Call(call) => Some(call.function.text),
@@ -203,8 +204,8 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
         situation.goes_on = !is_empty && next.is_none();
     } else if let Some(block) = path.block {
         situation.expected = expected_in(block, word.start)?;
-        // If another block follows, the parser takes the keyword of that block for the name of this
-        // one.
+        // If another block follows, the parser reads its keyword as the name of this block, and its
+        // braces as those of this block.
         let is_own =
             |block: &Block<'_>| block.name.is_none_or(|it| schema::block(it.text).is_none());
         situation.goes_on = block.open.is_some() && is_own(block);

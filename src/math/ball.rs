@@ -86,8 +86,8 @@ impl<T: Real> Ball<T> {
     }
 
     /// Compares the number with zero. Returns a [`Doubt`] if the sign is uncertain. The highest
-    /// precision never returns a doubt: a number that cannot be distinguished from zero counts as
-    /// zero.
+    /// precision never returns a doubt: a number that cannot be distinguished from zero is treated
+    /// as zero.
     #[inline]
     pub fn sign(&self) -> Result<Ordering, Doubt> {
         if self.is_clear() {
@@ -151,8 +151,8 @@ impl<T: Real> Ball<T> {
 
     /// Returns the floor, the greatest integer that is not greater than the number, and whether the
     /// floor is odd. Returns a [`Doubt`] if an integer lies within the ball. The highest precision
-    /// never returns a doubt: a number that cannot be distinguished from an integer counts as this
-    /// integer.
+    /// never returns a doubt: a number that cannot be distinguished from an integer is treated as
+    /// this integer.
     pub fn floor(&self) -> Result<(Self, bool), Doubt> {
         let (floor, odd) = self.mid.floor();
         let ceiling = floor.plus(&T::from_f64(1.0));
@@ -206,7 +206,7 @@ impl<T: Real> Ball<T> {
         //
         //   |a'/b' − a/b| ≤ (|a' − a| + |a/b|·|b' − b|)/|b'|.
         //
-        // b'| is at least `least`: |b| minus the radius of b.
+        // Here, |b'| is at least `least`: |b| minus the radius of b.
         let least = other.size().without(other.rad * UP);
         let lost = underflow_loss::<T>(self.mid.is_zero());
         let inherited = (self.rad + mid.magnitude() * other.rad) / least * UP + lost;

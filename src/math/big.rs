@@ -15,9 +15,9 @@ pub struct Big(pub(super) Float);
 /// precision 0 means that all operations except divisions are exact.
 pub(super) type Float = FBig<HalfEven, 2>;
 
-/// Number of bits of a [`Big`]. It is far more than needed: about 90 bits were not enough to decide
-/// in [`Double`](super::Double), and the formulas lose only some of the additional bits in their
-/// intermediate steps. A difference that 320 bits do not resolve is treated as 0.
+/// Number of bits of a [`Big`]. If a decision is uncertain in [`Double`](super::Double), the
+/// compared numbers agree in about 90 bits. The other 230 bits are far more than the formulas lose
+/// in their intermediate steps. A difference that 320 bits do not resolve is treated as 0.
 pub(super) const PRECISION: usize = 320;
 
 /// Number of additional bits, beyond [`PRECISION`], in the few steps that subtract nearly equal

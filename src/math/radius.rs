@@ -1,6 +1,6 @@
-//! Error bounds, which are non-negative numbers. Those of big numbers have a wider range than
-//! `f64`. Operations round to nearest. If an error bound must not be too small, callers multiply it
-//! by [`UP`](super::UP).
+//! Error bounds, which are non-negative numbers. Error bounds of big numbers have a wider range
+//! than `f64`. Operations round to the nearest number, so callers multiply a bound by
+//! [`UP`](super::UP) where it must not be too small.
 
 use std::ops::{Add, Div, Mul};
 

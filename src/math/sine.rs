@@ -10,9 +10,9 @@ use super::{Angle, Ball, Big, Double, Real, double::two_product};
 
 /// Maximum absolute value of an angle, in radians, at which its sine and cosine are computed by
 /// series in double-double. For larger angles, [`Big`] computes them, because its π has enough
-/// digits for any angle. The limit is less than 2^20 quarter turns. Up to it, the truncation of π/2
-/// amounts to at most 2^20·2^−163 = 2^−143, which is negligible beside the unit roundoff of
-/// double-double, 2^−102.
+/// digits for any angle. The limit is less than 2^20 quarter turns. So the error from the
+/// truncation of π/2 is at most 2^20·2^−163 = 2^−143, which is negligible beside the unit roundoff
+/// of double-double, 2^−102.
 const MAX_RADIANS: f64 = (1u64 << 20) as f64;
 
 /// Number of terms of the series of the sine, and of the series of the cosine. The argument r is at
@@ -63,8 +63,8 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
 });
 
 /// Returns the sine and the cosine of an angle. For a multiple of 90°, they are exactly 0 and ±1.
-/// In double-double, series compute them for angles up to 2^20 radians. Otherwise, they are rounded
-/// from a [`Big`].
+/// In double-double, they are computed by series if the angle is at most 2^20 radians. Otherwise,
+/// they are rounded from a [`Big`].
 pub fn sin_cos<T: Real>(angle: Angle) -> (Ball<T>, Ball<T>) {
     if T::UNIT == Double::UNIT && angle.radians.abs() <= MAX_RADIANS {
         let (sin, cos) = by_series(angle);
@@ -105,7 +105,7 @@ fn sin_cos_degrees(degrees: f64) -> (Ball<Double>, Ball<Double>) {
 }
 
 /// Returns the sine and the cosine of an angle in radians. The angle is reduced modulo π/2 in three
-/// steps (Cody and Waite), of which the first two subtract exact products.
+/// steps (Cody and Waite). The first two steps subtract exact products.
 fn sin_cos_radians(radians: f64) -> (Ball<Double>, Ball<Double>) {
     let [first, second, third] = CONSTANTS.quarter_turn;
     let quarters = (radians / first).round();

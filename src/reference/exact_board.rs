@@ -10,8 +10,8 @@ use crate::math::Real;
 /// Arithmetic of the computations with a checkerboard: every result is rounded to 256 bits.
 pub const NUMBER: Number = Number { bits: 256 };
 
-/// A checkerboard seen by a camera. Each linear form a·x + b·y + c is given by its three
-/// coefficients.
+/// A checkerboard seen by a camera, as linear forms a·x + b·y + c that map a point (x, y) of the
+/// picture to the board. Each form is given by its three coefficients.
 pub struct ExactBoard {
     /// The linear forms N_a and N_b. The point (x, y) of the picture shows the point (N_a/L, N_b/L)
     /// of the board, in squares, where L is the form `below`.

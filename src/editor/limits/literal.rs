@@ -68,9 +68,9 @@ impl Literal {
         self.unit.is_none() && self.value.fract() == 0.0 && self.last_digit >= 0
     }
 
-    /// Returns the step of the literal's slider, a power of ten. The number is 10 to 100 steps
-    /// large, but the step is at least 0.01. If the number has decimals, the step is at most one
-    /// unit in its last decimal.
+    /// Returns the step of the literal's slider, a power of ten. It is a hundredth to a tenth of
+    /// the number, but at least 0.01. If the last written decimal is smaller, the step is one unit
+    /// in this decimal.
     pub fn step(&self) -> f64 {
         let size = match self.value.abs() {
             0.0 => 0,

@@ -145,9 +145,9 @@ fn within(
 }
 
 /// Returns the limits of a number whose comment gives no range. The slider extends to both sides by
-/// the number's absolute value, or by [`STEPS`] or [`STEPS_OF_COUNT`] steps if those reach farther,
-/// but not beyond `bounds`. If the text would have more errors than now with the number at an end,
-/// that end is moved towards the current number.
+/// the number's absolute value or by [`STEPS`] steps ([`STEPS_OF_COUNT`] for whole numbers),
+/// whichever is more, but not beyond `bounds`. If an end would cause a new error in the text, it is
+/// moved towards the current number.
 fn tried(literal: &Literal, mut bounds: Bounds, trials: &mut Trials<'_, '_>) -> Limits {
     let is_count = trials.is_count(literal);
     if is_count {

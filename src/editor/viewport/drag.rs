@@ -97,7 +97,7 @@ fn other_blocks(scene: &Scene, object: Option<usize>) -> impl Iterator<Item = Sp
 ///
 /// # Errors
 ///
-/// Returns a sentence that says why the handle cannot be dragged there.
+/// Returns a sentence that says why the handle cannot be moved in this way.
 pub fn drag(
     sources: &Sources,
     alone: &Sources,
@@ -168,8 +168,8 @@ pub fn drag(
     let tolerance = snapped.map_or(TOLERANCE, |(_, step)| step);
     let first = snapped.map_or(first, |(decimals, _)| decimals);
     // Returns whether all fields keep their exact values, except the fields that the drag changes.
-    // Needed only for a drag on a grid: its tolerance is a whole step of the grid. It would hide a
-    // small change of another field whose value uses the same number.
+    // This is required only for a drag on a grid, whose tolerance is a whole step of the grid. Such
+    // a tolerance would hide a small change of another field whose value uses the same number.
     let keeps_others = |found: FieldOwner| {
         let mut fields = block.fields.iter().map(|field| field.name.text);
         let is_meant = |field: &str| changes.iter().any(|change| change.name == field);
@@ -437,8 +437,8 @@ impl DragView<'_> {
                 let projection = Projection::new(&camera, self.image);
                 points.map(|at| (true, projection.point(*at))).collect()
             }
-            // The handle of a checkerboard is always where the view axis hits the board, so it says
-            // little about the board's height. Fixed points of the board are compared instead.
+            // The handle of a checkerboard always appears in the middle of the picture, so it does
+            // not show the board's height. Fixed points of the board are compared instead.
             FieldOwner::Shape(Shape::Checkerboard(board)) => {
                 let seen = |at: &DVec3| self.projection.point(at.with_y(board.y));
                 points.map(|at| (true, seen(at))).collect()

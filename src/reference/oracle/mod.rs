@@ -30,7 +30,7 @@ pub const ALL_SIZES: usize = 1400;
 pub const ALL_VIEWS: usize = 3000;
 
 /// Number of bits that suffices for the oracle's arithmetic if a scene's numbers differ by factors
-/// of at most about 2^100. It takes less time than the larger numbers of bits.
+/// of at most about 2^100. More bits would take more time.
 pub const USUAL_SIZES: usize = 512;
 
 /// A scene prepared for the oracle, a reference tracer that computes with 512 to 3000 bits.
@@ -254,8 +254,8 @@ impl Oracle {
 
     /// Intersects the ray with the direction `r` from the eye with a box. A box is the intersection
     /// of three slabs, each between two parallel planes. The ray is inside of the box from the last
-    /// t at which it enters a slab to the first t at which it leaves one. Returns these two t,
-    /// except negative ones. Returns an empty list if the ray misses the box.
+    /// t at which it enters a slab to the first t at which it leaves one. Returns the positive ones
+    /// of these two t, or an empty list if the ray misses the box.
     fn cuboid(&self, lo: &V, hi: &V, r: &V) -> Vec<N> {
         let is_parallel = |axis: &usize| self.sign(&r[*axis], &size(r)) == Ordering::Equal;
         let (parallel, across): (Vec<_>, Vec<_>) = (0..3).partition(is_parallel);
@@ -273,8 +273,8 @@ impl Oracle {
         ends.filter(|t| *t > N::ZERO).collect()
     }
 
-    /// Compares two numbers. They count as equal if their difference is negligible, compared with
-    /// the numbers themselves.
+    /// Compares two numbers. They are treated as equal if their difference is negligible compared
+    /// with the numbers themselves.
     fn order(&self, a: &N, b: &N) -> Ordering {
         self.sign(&(a - b), &(abs(a) + abs(b)))
     }

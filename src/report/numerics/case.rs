@@ -68,11 +68,10 @@ pub(super) struct CaseScene {
     /// Precision of the arithmetic of the oracle, the reference that Pinhole is compared with, in
     /// bits.
     bits: usize,
+    /// Generator of random points of the picture. By default, all points are equally likely.
+    points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
     /// Number of halves of the tests (0, 1 or 2) whose points come from the generator `points`. The
     /// other tests use points close to boundaries between colours.
-    points: Box<dyn Fn(&mut CaseRng) -> SamplePoint>,
-    /// How many halves of the inputs (0, 1 or 2) are points from the generator `points`. The other
-    /// inputs lie close to boundaries between colours.
     halves: u64,
 }
 

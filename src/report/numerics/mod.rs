@@ -58,8 +58,9 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
 /// scenes.
 const BLOCK: u64 = 100;
 
-/// Tests `inputs_per_case` inputs of every case. Reports the progress as a number of inputs. If it
-/// is cancelled, returns the results so far, which cover about equally many inputs of every case.
+/// Tests `inputs_per_case` inputs of every case. Reports the progress as a number of inputs. If the
+/// run is cancelled, returns the results so far, which cover about equally many inputs of every
+/// case.
 ///
 /// # Errors
 ///

@@ -190,8 +190,8 @@ impl Trial {
 
     /// Tests `count` inputs close to boundaries between colours: the neighbouring `f64`s on both
     /// sides, and points at distances that are uniform on a logarithmic scale. The boundaries are
-    /// searched in random rows and columns, mostly by Pinhole's answers. Some are searched by the
-    /// oracle's, in case Pinhole does not see a boundary.
+    /// searched in random rows and columns. Most searches use Pinhole's answers. Some use the
+    /// oracle's answers, since Pinhole may fail to see a boundary.
     pub fn boundaries(&self, random: &mut CaseRng, count: u64, tally: &mut CaseTally) {
         let end = tally.inputs + count;
         // A scene may have few boundaries. After four searches per input, the remaining inputs are

@@ -10,7 +10,7 @@ use crate::scene::Method;
 /// Estimate of what a method needs to reach an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// Samples per pixel; `None` for the exact method, which takes none.
+    /// Samples per pixel; `None` for the exact method, which uses no samples.
     pub per_pixel: Option<f64>,
     /// Estimated CPU time, in seconds.
     pub cpu: f64,
@@ -24,8 +24,8 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns whether this method may be as fast as the `fastest` one, since the measurements do
-    /// not distinguish them: the time of one lies within the range of the other's single runs.
+    /// Returns whether this method may be as fast as the `fastest` one. This is assumed if the CPU
+    /// time of one method lies within the range of the other method's single runs.
     fn is_as_fast_as(&self, fastest: &Self) -> bool {
         self.cpu <= fastest.cpu_runs[1] || self.cpu_runs[0] <= fastest.cpu
     }
@@ -98,10 +98,11 @@ impl MethodSeries {
     /// smallest measured number of samples if it suffices. Returns `None` if more samples do not
     /// reduce the error.
     ///
-    /// The error is assumed to fall as a power of the number of samples, i.e. along a straight line
-    /// in logarithms. Between two measured numbers of samples, it is the line through both points.
-    /// Beyond the last one, the line starts at the last point, with the slope fitted to the last
-    /// three. Times are assumed to grow linearly with the samples.
+    /// The error is assumed to be proportional to a power of the number of samples, which is a
+    /// straight line on logarithmic axes. Between two measured numbers of samples, the line goes
+    /// through both points. Beyond the last measured number, it starts at the last point, and its
+    /// slope is fitted to the last three points. Times are assumed to grow linearly with the
+    /// samples.
     pub fn estimate(&self, error: f64) -> Option<Estimate> {
         let estimate = |run: &dyn Fn(&SeriesPoint) -> Run| {
             let step = |point: &SeriesPoint| (point.per_pixel as f64, run(point));

@@ -37,10 +37,10 @@ use crate::{
 /// samples per pixel, but the time limit usually ends the series earlier.
 const RUNGS: (usize, usize) = (4, 10);
 
-/// Usual and maximum number of runs of each render, if the user does not choose it. The series of
-/// samples is continued only if there is time for the usual number. With three runs, the median
-/// ignores one that other load on the machine delayed. With more than nine, the report would take
-/// longer for hardly better medians.
+/// Usual and maximum number of runs of each render, if the user does not choose the number. The
+/// series of samples is continued only if there is time for the usual number. With three runs, the
+/// median ignores a run that other load on the machine delayed. With more than nine, the report
+/// would take longer for hardly better medians.
 const RUNS: (u64, u64) = (3, 9);
 
 /// Number of samples per pixel of the slowest method in the pictures by which the page compares
@@ -228,8 +228,8 @@ impl Benchmark<'_> {
     }
 
     /// Renders the pictures by which the page compares the sampling methods. All take about the
-    /// same CPU time, which is that of the slowest method with about [`SHOWN`] samples per pixel.
-    /// Of each picture, the same small area is stored.
+    /// same CPU time: the time of the slowest method with about [`SHOWN`] samples per pixel. Only
+    /// one small area is stored, the same for all pictures.
     fn pictures(&mut self) -> Result<(), RenderError> {
         let measured = &mut self.measured;
         let Some(last) = measured.rungs.len().checked_sub(1) else {
