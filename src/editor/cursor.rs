@@ -192,7 +192,7 @@ fn of_path(path: Path<'_, '_>, word: Span) -> Option<Situation> {
     } else if let Some(field) = path.field {
         situation.expected = Expected::Field;
         // If the value of a field is missing, the parser reads the next field's name as this value.
-        // The next field is then counted among the given ones.
+        // The next field is then treated as given, too.
         let next = match &field.value.kind {
             ValueKind::Name(name) => Some(*name),
             ValueKind::Call(call) => Some(call.function.text),

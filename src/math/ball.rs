@@ -231,7 +231,7 @@ impl<T: Real> std::ops::Neg for Ball<T> {
     }
 }
 
-/// Implements an operator for all combinations of values and references.
+/// Implements an arithmetic operator of balls for all combinations of values and references.
 macro_rules! operator {
     ($trait:ident, $method:ident) => {
         operator!($trait, $method, &Ball<T>, &Ball<T>);

@@ -41,8 +41,8 @@ impl Plane {
     /// Returns whether two planes are exactly equal: their normals are parallel, and the vector
     /// between their points is perpendicular to both normals.
     pub fn equals(&self, other: &Self) -> bool {
-        // Axial planes are compared first, because this is fast. It is needed for many samples if a
-        // box stands on a floor, or if boxes stand side by side.
+        // Axial planes are compared first, because this is fast. Many samples need this comparison
+        // if a box stands on a floor, or if boxes stand side by side.
         if let (Self::Axial { axis: a, at: p }, Self::Axial { axis: b, at: q }) = (self, other) {
             return a == b && p == q;
         }
@@ -93,8 +93,8 @@ pub fn forms_triangle([a, b, c]: [f64; 3]) -> bool {
 fn exceeds(one: f64, other: f64, bound: f64) -> bool {
     let sum = one + other;
     if sum != bound {
-        // Rounding is monotonic, so that the exact sum lies on the same side of `bound` as the
-        // rounded one.
+        // Rounding is monotonic. So if the rounded sum is not equal to `bound`, the exact sum lies
+        // on the same side of `bound`.
         return sum > bound;
     }
     let error = two_sum(one, other).lo;

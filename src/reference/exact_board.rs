@@ -99,7 +99,7 @@ impl ExactBoard {
     }
 }
 
-/// Converts a point.
+/// Converts a point of the picture to 256-bit numbers.
 pub fn point(at: DVec2) -> Point {
     [at.x, at.y].map(|x| NUMBER.exact(x))
 }

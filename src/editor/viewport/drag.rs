@@ -223,8 +223,8 @@ pub fn drag(
                 });
             }
             Ok(_) => refusal = refused(),
-            // The rounded numbers are already within the tolerance, but the text has errors. More
-            // digits would not change the picture visibly, so the search ends.
+            // If the rounded numbers are already within the tolerance, but the text has errors, the
+            // search ends: more digits would not change the picture visibly.
             Err(why) => match rounded(current, changes, &rounding) {
                 Some(rounded) if view.agree(ideal, rounded, tolerance) => return Err(why),
                 _ => refusal = why,

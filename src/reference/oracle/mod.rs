@@ -221,8 +221,8 @@ impl Oracle {
         }
         let root = discriminant.sqrt();
         let roots = [(-&b - &root) / &a, (-&b + &root) / &a];
-        // The eye is on the sphere's surface, so the true t of one root is 0. Because of rounding
-        // errors its computed value may differ from 0, so this root is left out.
+        // If the eye is on the sphere's surface, the true t of one root is 0. Because of rounding
+        // errors, its computed value may differ from 0, so this root is left out.
         if self.sign(c, square) == Ordering::Equal {
             let is_ahead = self.sign(&-&b, &square.sqrt()) == Ordering::Greater;
             return roots.into_iter().skip(1).filter(|_| is_ahead).collect();

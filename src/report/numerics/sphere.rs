@@ -81,8 +81,8 @@ fn inside(random: &mut CaseRng) -> CaseScene {
 }
 
 fn at_the_surface(random: &mut CaseRng) -> CaseScene {
-    // These three points are exactly 5 from the origin, so the eye is exactly on the surface if
-    // `above` is 0.
+    // These points lie at a distance of exactly 5 from the origin, so the eye is exactly on the
+    // surface if `above` is 0.
     let on = random.pick(&[
         dvec3(3.0, 4.0, 0.0),
         dvec3(0.0, 4.0, -3.0),

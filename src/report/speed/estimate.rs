@@ -74,7 +74,8 @@ impl Measurement {
         let sampled = self.series.iter().filter_map(estimate);
         let exact = self.exact_estimate(error).map(|it| (Method::Exact, it));
         let mut all: Vec<_> = sampled.chain(exact).collect();
-        // If the system does not report CPU times, there is nothing to rank.
+        // If the system does not report CPU times, the estimates are NaN, and there is nothing to
+        // rank.
         all.retain(|(_, estimate)| estimate.cpu.is_finite());
         all.sort_by(|(_, a), (_, b)| {
             let measured_first = a.is_extrapolated.cmp(&b.is_extrapolated);
@@ -120,7 +121,8 @@ impl MethodSeries {
 
     fn estimate_by(&self, steps: &[Measured], error: f64) -> Option<Estimate> {
         let (&(first, _), &(last, last_run)) = (steps.first()?, steps.last()?);
-        // Index of the first number of samples that suffices, as all larger ones do.
+        // Index of the smallest number of samples that, like all larger ones, has a small enough
+        // error.
         let enough = steps.iter().rposition(|(_, run)| run.error > error);
         let enough = enough.map_or(0, |last| last + 1);
         let per_pixel = match steps.get(enough) {
@@ -149,8 +151,7 @@ impl MethodSeries {
     /// two measured numbers: with `few` samples the error is too large, and with `many` it is not.
     fn between(&self, (few, of_few): &Measured, (many, of_many): &Measured, error: f64) -> f64 {
         let share = if of_many.error == 0.0 {
-            // An error of 0 has no logarithm. In this case, `many` samples are returned, which
-            // suffice.
+            // An error of 0 has no logarithm, so `many` samples are returned.
             1.0
         } else {
             libm::log(of_few.error / error) / libm::log(of_few.error / of_many.error)
@@ -188,7 +189,8 @@ fn time_at(steps: &[Measured], per_pixel: f64, time: fn(&Run) -> f64) -> f64 {
     let slope = |a: &(f64, f64), b: &(f64, f64)| (b.1 - a.1) / (b.0 - a.0);
     match times.windows(2).find(around) {
         Some([a, b]) => a.1 + slope(a, b) * (per_pixel - a.0),
-        // Measured times may fall by chance, but more samples never take less time.
+        // Measured times may fall by chance, but more samples never take less time. So a negative
+        // slope is replaced by 0.
         _ => last.1 + slope(first, last).max(0.0) * (per_pixel - last.0),
     }
 }
