@@ -21,6 +21,10 @@ use crate::{
 /// mistakes that explain almost nothing.
 const NOTHING: f64 = 1e-5;
 
+/// Number of fields of one object with wrong numbers from which on they are not believed. Few
+/// students mistype two fields of an object, and hardly any three.
+const MADE_UP: usize = 3;
+
 /// Identifier of the mistake that the rays are parallel. Such a program has no distance of the view
 /// plane and no angle, so a wrong number for one of them only means another size of the window.
 const PARALLEL: &str = "parallel_rays";
@@ -165,7 +169,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     if !is_explained || mistakes.iter().any(explains) {
         mistakes.retain(explains);
     }
-    let is_named = !mistakes.is_empty() && is_explained;
+    let is_named = !mistakes.is_empty() && is_explained && !is_made_up(last);
     let (kind, mistakes, guesses) = if is_named {
         (Kind::Wrong, mistakes, Vec::new())
     } else {
@@ -183,6 +187,16 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
         is_background_right,
         ..Verdict::without_mistakes(kind, scene)
     }
+}
+
+/// Returns whether the hypothesis has wrong numbers in so many fields of one object that they more
+/// likely imitate a wrong formula for this object.
+fn is_made_up(candidate: &Candidate) -> bool {
+    let mistakes = candidate.mistakes.iter();
+    let numbers = mistakes.filter(|mistake| matches!(mistake, Mistake::Numbers(..)));
+    let objects: Vec<usize> = numbers.filter_map(Mistake::object).collect();
+    let count = |object: &usize| objects.iter().filter(|other| *other == object).count();
+    objects.iter().any(|object| count(object) >= MADE_UP)
 }
 
 /// Returns the variants of a mistake that explain the picture, too. The picture alone cannot tell
