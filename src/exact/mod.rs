@@ -76,8 +76,9 @@ const DEFAULT_TOLERANCE: f64 = 9e-10;
 const MAX_CURVES: usize = 12;
 /// Number by which the maximum number of curves in a square part of a pixel grows with each
 /// quartering. Curves that still pass through the same small part are unlikely to be separated in
-/// smaller ones, so further quartering hardly helps. Measured on a heap of objects: with 1 instead
-/// of 4, the time is two thirds; with 16, it is four times as long.
+/// smaller ones, so further quartering hardly helps. Measured on a heap of objects: with 1, a
+/// picture takes two thirds of the time that it takes with 4; with 16, it takes four times as long
+/// as with 4.
 const MAX_CURVES_PER_QUARTERING: usize = 4;
 /// Maximum number of times per pixel that an already computed part of the pixel is quartered to
 /// reduce its error bound. While the pixel's bound exceeds the tolerance, the part with the largest

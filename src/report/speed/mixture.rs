@@ -13,14 +13,14 @@ use crate::{
 /// one, a report, which usually takes 45 s, would take noticeably longer.
 const MAX_WORK: u64 = 40_000_000;
 
-/// Shares, from 0 to 1, of the pixels that show more than one colour. Only in these pixels can a
-/// sampling method err.
+/// Fractions, from 0 to 1, of a picture's pixels that show more than one colour. Only in these
+/// pixels can a sampling method err.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
-    /// Share of the pixels that show an edge, i.e. several objects, or an object and the
-    /// background.
+    /// Fraction of the picture's pixels that show an edge, i.e. several objects, or an object and
+    /// the background.
     pub edges: f64,
-    /// Share of the pixels that show only a checkerboard, in both of its colours.
+    /// Fraction of the picture's pixels that show only a checkerboard, in both of its colours.
     pub board: f64,
 }
 

@@ -316,8 +316,8 @@ fn rendered(
 /// areas, magnified, must fit beside each other on the page; a smaller area would show fewer edges.
 const PART: (u32, u32) = (48, 27);
 
-/// Minimum share of an area's pixels that show another object than the most frequent one. If the
-/// share is smaller, the area is treated as having no edge, and another area is preferred for
+/// Minimum fraction of an area's pixels that show another object than the most frequent one. If the
+/// fraction is smaller, the area is treated as having no edge, and another area is preferred for
 /// comparing the methods. The value is a guess at how much of an edge must be visible.
 const OTHER_OBJECT: f64 = 0.1;
 
