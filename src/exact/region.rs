@@ -44,7 +44,8 @@ pub struct Shares {
     pub bound: f64,
 }
 
-/// Sum of the shares of the colours over the regions of a sub-pixel.
+/// Sum, over the regions of a sub-pixel, of the fractions of the sub-pixel's area that show each
+/// colour.
 pub struct Regions<'a> {
     world: &'a World,
     sub_pixel: SubPixel,
@@ -99,8 +100,8 @@ impl<'a> Regions<'a> {
         }
     }
 
-    /// Adds a region, which no boundary may cross, to the share of the colour or colours seen in
-    /// it.
+    /// Adds the area of a region, which no boundary may cross, to that of the colour or colours
+    /// seen in it.
     pub fn add(&mut self, region: &Region) {
         let Some(object) = self.seen(region) else {
             return self.shares.add(self.world.background(), region.area);

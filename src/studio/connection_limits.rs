@@ -2,7 +2,8 @@
 //! it may send, and how many there may be.
 //!
 //! Any program on this machine can connect and keep a connection open without sending anything. If
-//! there are too many of them, the oldest is closed, so that a new connection is always accepted.
+//! there are too many such connections, the oldest is closed, so that a new connection is always
+//! accepted.
 
 use std::{
     collections::VecDeque,

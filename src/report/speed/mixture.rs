@@ -38,15 +38,16 @@ impl Mixture {
     }
 }
 
-/// Returns the share of the pixels that show several entries of the world's palette. An entry is a
-/// colour or, in a world made by [`World::by_object`], an object.
+/// Returns the fraction of the picture's pixels that show several entries of the world's palette.
+/// An entry is a colour or, in a world made by [`World::by_object`], an object.
 fn share_of_mixed(world: &World) -> f64 {
     let whole = world.picture();
     let integrator = Integrator::for_values(world, |_| []).with_work_limit(MAX_WORK);
     let mut mixed: u64 = 0;
     for tile in whole.tiles(2 * GRID) {
         integrator.shares(tile, |_, shares| {
-            // Shares of at most 1e-9 may be rounding errors, so they are ignored.
+            // Fractions of a pixel's area of at most 1e-9 may be rounding errors, so they are
+            // ignored.
             let seen = shares.iter().filter(|(_, share)| *share > 1e-9);
             mixed += u64::from(seen.count() > 1);
         });

@@ -179,8 +179,9 @@ impl SeriesPoint {
 }
 
 impl MethodSeries {
-    /// Returns the slope of the error for the last three numbers of samples. Returns `None` if
-    /// fewer than two were measured, or an error is 0.
+    /// Returns the slope of the logarithm of the error over the logarithm of the number of samples,
+    /// for the last three numbers of samples. Returns `None` if fewer than two were measured, or an
+    /// error is 0.
     pub fn slope(&self) -> Option<EndSlope> {
         let slope = |error: &dyn Fn(&SeriesPoint) -> f64| {
             let points = end(&self.points).iter();

@@ -20,7 +20,8 @@ struct Found {
     ellipse: Tightness,
 }
 
-/// Returns the share of the pixel's points at which the form of a conic is within its error.
+/// Returns the fraction of the pixel's grid points at which the absolute value of a conic's form is
+/// at most the form's error.
 fn share(conic: &Conic) -> f64 {
     let [a, b, c, d, e, f] = conic.factors.map(|factor| factor.hi);
     let place = |i: i32| (f64::from(i) + 0.5) / f64::from(POINTS) - 0.5;
