@@ -54,7 +54,8 @@ const MAX_STEPS: usize = 60;
 /// unit roundoffs. Products and sums contribute at most another eight.
 const ROUNDING: f64 = 16.0 * f64::UNIT;
 
-/// Returns the share of each colour in the sub-pixel of `regions`, which `curves` cut.
+/// Returns the fraction of a sub-pixel's area that shows each colour. The sub-pixel is that of
+/// `regions`, and `curves` cut it.
 pub fn shares(curves: &[Boundary], mut regions: Regions) -> Shares {
     let (mut lines, mut graphs) = (Vec::new(), Vec::new());
     let mut cuts = vec![-0.5, 0.5];
