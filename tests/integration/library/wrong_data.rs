@@ -134,7 +134,7 @@ fn films_of_different_sizes_are_not_compared_or_written_as_parts() {
         (Area::whole(4, 2), Area::whole(2, 4)),
     ] {
         let mut file = Cursor::new(Vec::new());
-        let error = write_exr(&a, part, whole, &mut file).unwrap_err();
+        let error = write_exr(&a, part, whole, None, &mut file).unwrap_err();
         assert!(error.to_string().contains("4 × 2 pixels"), "{error}");
         assert!(file.into_inner().is_empty());
     }
