@@ -28,6 +28,11 @@ use crate::{
 /// band's end.
 const BAND_PIXELS: u32 = 1 << 22;
 
+/// Number of pixels above which a picture must fit into memory, although it is rendered in bands. It
+/// is that of a poster with sides of 2^18 pixels, which takes hours to render. More pixels are
+/// probably a mistyped size.
+const MISTYPED: u64 = 1 << 36;
+
 /// Returns the bands of rows in which a part of a picture is rendered, from the top.
 fn bands(part: Area) -> impl Iterator<Item = Area> {
     let rows = (BAND_PIXELS / part.width.max(1)).max(1);
@@ -264,6 +269,10 @@ impl PictureOutput {
         cancel: &AtomicBool,
         write: impl FnOnce(&mut dyn Sink, &mut Bands<P>) -> io::Result<()>,
     ) -> Result<String, Trouble> {
+        if part.pixels() > MISTYPED {
+            let reserved = film::reserve_memory(part.width, part.height, size_of::<P>() as u64);
+            reserved.map_err(RenderError::from)?;
+        }
         let mut certificate = Certificate::default();
         let mut failed = None;
         let written = with_progress(scene, part, cancel, |sampling, control| {

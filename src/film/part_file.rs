@@ -153,14 +153,23 @@ fn invalid(message: &str) -> io::Error {
 
 fn png_error(error: png::DecodingError) -> io::Error {
     match error {
-        png::DecodingError::IoError(error) => error,
-        _ => invalid("it is damaged or cut off"),
+        png::DecodingError::IoError(error) => of_reading(error),
+        _ => invalid(DAMAGED),
     }
 }
 
 fn io_error(error: Error) -> io::Error {
     match error {
-        Error::Io(error) => error,
-        _ => invalid("it is damaged or cut off"),
+        Error::Io(error) => of_reading(error),
+        _ => invalid(DAMAGED),
+    }
+}
+
+const DAMAGED: &str = "it is damaged or cut off";
+
+fn of_reading(error: io::Error) -> io::Error {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => invalid(DAMAGED),
+        _ => error,
     }
 }

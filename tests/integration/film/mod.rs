@@ -43,7 +43,7 @@ fn recipe() -> Recipe {
         scene: "\u{feff}// Grüße\r\nsphere { center (0, 1, 0) }\n\0\r".to_owned(),
         overrides: vec!["Ball.center=(0, 2, 0)".to_owned(), "h = 1.5 ".to_owned()],
         crop: Some("3,4,10,20".parse().unwrap()),
-        size: None,
+        size: Some([40, 50]),
     }
 }
 
@@ -107,7 +107,7 @@ fn a_png_carries_its_recipe_unchanged() {
 
 #[test]
 fn a_recipe_beyond_the_text_limit_is_left_out() {
-    for (length, fits) in [(TEXT_LIMIT - 38, true), (TEXT_LIMIT - 37, false)] {
+    for (length, fits) in [(TEXT_LIMIT - 29, true), (TEXT_LIMIT - 28, false)] {
         let long = Recipe {
             scene: "/".repeat(length),
             ..recipe()
