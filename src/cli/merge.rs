@@ -51,7 +51,7 @@ pub fn run(args: &MergeArgs, interrupt: &Interrupt) -> Result<Status, Trouble> {
             "{part} is one of the parts: say with `-o FILE` where the whole picture goes"
         )));
     }
-    output.check(path)?;
+    args.parts.iter().try_for_each(|part| output.check(part))?;
     let mut parts = Vec::new();
     for part in &args.parts {
         parts.push(PartFile::read(part).map_err(|error| unreadable(part, &error))?);
