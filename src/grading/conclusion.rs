@@ -25,6 +25,13 @@ const NOTHING: f64 = 1e-5;
 /// students mistype two fields of an object, and hardly any three.
 const MADE_UP: usize = 3;
 
+/// Displacement of an object, in pixels, below which a wrong number is not believed. It is about the
+/// mean of four random samples that all pixels share, in its unlikeliest case.
+const SLIGHT: f64 = 0.3;
+
+/// Place in a row's message for a factor of light, which is estimated from the picture.
+const GAIN: &str = "{gain}";
+
 /// Identifier of the mistake that the rays are parallel. Such a program has no distance of the view
 /// plane and no angle, so a wrong number for one of them only means another size of the window.
 const PARALLEL: &str = "parallel_rays";
@@ -142,6 +149,11 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
         {
             message = format!("{message}: {is} instead of {should}");
         }
+        if message.contains(GAIN) && gain == "1" {
+            // A factor that is 1 as far as it can be known is no mistake.
+            (left, before) = (now, after);
+            continue;
+        }
         let equivalent =
             (is_explained && !has_own_size).then(|| equivalent_rows(judge, last, mistake));
         for other in equivalent.iter().flatten() {
@@ -151,7 +163,7 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
         mistakes.push(NamedMistake {
             id: mistake.id(),
             object: mistake.object(),
-            message: message.replace("{gain}", &gain),
+            message: message.replace(GAIN, &gain),
             help: mistake.help(scene),
             set,
             explains: ((left - now) / all).clamp(0.0, 1.0),
@@ -169,15 +181,21 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
     if !is_explained || mistakes.iter().any(explains) {
         mistakes.retain(explains);
     }
-    let is_named = !mistakes.is_empty() && is_explained && !is_made_up(last);
+    let is_named =
+        !mistakes.is_empty() && is_explained && !is_made_up(last) && !is_slight(scene, last);
     let (kind, mistakes, guesses) = if is_named {
         (Kind::Wrong, mistakes, Vec::new())
+    } else if is_explained && mistakes.is_empty() {
+        (Kind::Noise, mistakes, Vec::new())
     } else {
         (Kind::Unknown, Vec::new(), mistakes)
     };
     // Guesses do not explain the picture, so the objects are then judged by the correct scene.
     let known = if is_named { last } else { &correct };
-    let (objects, is_background_right) = objects::judged(judge, known);
+    let (mut objects, is_background_right) = objects::judged(judge, known);
+    for object in mistakes.iter().filter_map(|mistake| mistake.object) {
+        objects[object].is_right = false;
+    }
     Verdict {
         samples: found.score.samples,
         rest,
@@ -187,6 +205,18 @@ fn wrong(judge: &Judge, found: &Judged, is_explained: bool) -> Verdict {
         is_background_right,
         ..Verdict::without_mistakes(kind, scene)
     }
+}
+
+/// Returns whether a hypothesis has only wrong numbers that hardly move anything in the picture. Nobody
+/// types such numbers; they more likely imitate samples that lie beside the middle of their pixels.
+fn is_slight(scene: &Scene, candidate: &Candidate) -> bool {
+    let is_place = |mistake: &Mistake| match mistake {
+        Mistake::Numbers(parameter, _) => !parameter.is_color(),
+        _ => false,
+    };
+    let mut objects = 0..scene.objects.len();
+    candidate.mistakes.iter().all(is_place)
+        && objects.all(|object| objects::off(scene, &candidate.scene, object) < SLIGHT)
 }
 
 /// Returns whether the hypothesis has wrong numbers in so many fields of one object that they more

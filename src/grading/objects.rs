@@ -88,7 +88,7 @@ pub fn judged(judge: &Judge, candidate: &Candidate) -> (Vec<ObjectVerdict>, bool
 
 /// Returns how far an object moves in the picture between two scenes, in pixels: the maximum over
 /// some of its points.
-fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
+pub fn off(from: &Scene, to: &Scene, object: usize) -> f64 {
     let projections = [from, to].map(|scene| Projection::quick(&scene.camera, &scene.image));
     let size = projections[0].size;
     let own = &from.objects[object].shape;

@@ -9,6 +9,8 @@ use crate::{
 
 const FILTER: &str = "a pixel is the mean of light over its own square: its samples lie evenly in it, and nowhere else";
 
+const SHIFT: &str = "if all pixels have the same few random samples, edges move by the mean of these: make new ones for each pixel, or spread them evenly";
+
 impl Mistake {
     /// Returns the mistake's identifier, for programs.
     pub fn id(&self) -> &'static str {
@@ -21,6 +23,7 @@ impl Mistake {
             Self::Patch(..) => "object_extra",
             Self::Filter(width) if *width < 1.0 => "samples_narrow",
             Self::Filter(_) => "wider_pixel",
+            Self::Shift(_) => "samples_shifted",
             Self::ColorsExchanged(..) => "colors_exchanged",
         }
     }
@@ -38,6 +41,7 @@ impl Mistake {
             },
             Self::Patch(..) => "the scene has nothing of the kind there".to_owned(),
             Self::Filter(_) => FILTER.to_owned(),
+            Self::Shift(_) => SHIFT.to_owned(),
             Self::ColorsExchanged(..) => {
                 "an object keeps its own colour beside its shape".to_owned()
             }
@@ -54,6 +58,12 @@ impl Mistake {
             Self::ColorsExchanged(one, other) => {
                 let [one, other] = [*one, *other].map(|at| Owner::Object(at).name(scene));
                 return format!("{one} and {other} have each other's colours");
+            }
+            Self::Shift(by) => {
+                return format!(
+                    "samples lie on average {} of a pixel's middle",
+                    direction(*by)
+                );
             }
             Self::Filter(width) if *width < 1.0 => {
                 return format!(
@@ -112,4 +122,16 @@ impl Mistake {
         };
         format!("{name} has a {kind}: its {field} {verb} {is} instead of {should}")
     }
+}
+
+/// Returns a shift to the right and down, in pixels, in words.
+fn direction(by: [f64; 2]) -> String {
+    let words = [["left", "right"], ["above", "below"]];
+    let one = |i: usize| {
+        let word = words[i][usize::from(by[i] > 0.0)];
+        (by[i] != 0.0).then(|| format!("{} pixels {word}", short(by[i].abs())))
+    };
+    let [x, y] = [one(0), one(1)];
+    let both = [x, y].into_iter().flatten();
+    both.collect::<Vec<_>>().join(" and ")
 }

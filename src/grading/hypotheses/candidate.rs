@@ -28,6 +28,9 @@ pub enum Mistake {
     ColorsExchanged(usize, usize),
     /// The pixel filter is too wide or too narrow. The number is its width, in pixels.
     Filter(f64),
+    /// All samples are shifted by less than half a pixel. The numbers are the shift to the right
+    /// and down, in pixels of the picture's file.
+    Shift([f64; 2]),
 }
 
 /// A row of the table of mistakes (module `mistakes`).
@@ -70,7 +73,9 @@ impl Mistake {
     pub fn is_same_kind(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Numbers(one, _), Self::Numbers(other, _)) => one == other,
-            (Self::Patch(..), Self::Patch(..)) | (Self::Filter(_), Self::Filter(_)) => true,
+            (Self::Patch(..), Self::Patch(..))
+            | (Self::Filter(_), Self::Filter(_))
+            | (Self::Shift(_), Self::Shift(_)) => true,
             _ => self == other,
         }
     }
@@ -85,7 +90,7 @@ impl Mistake {
                 Owner::Object(index) => Some(index),
                 Owner::Image | Owner::Camera => None,
             },
-            Self::Patch(..) | Self::Filter(_) | Self::ColorsExchanged(..) => None,
+            Self::Patch(..) | Self::Filter(_) | Self::Shift(_) | Self::ColorsExchanged(..) => None,
         }
     }
 
@@ -106,7 +111,7 @@ impl Mistake {
             // One parameter for the choice of the mistake, three for a colour, and four for a
             // rectangle.
             Self::Patch(..) => 8,
-            Self::Filter(_) => 2,
+            Self::Filter(_) | Self::Shift(_) => 2,
         }
     }
 }
@@ -185,6 +190,9 @@ impl Candidate {
             }
             Mistake::Filter(width) if *width > 1.0 => candidate.effects.push(Effect::Blur(*width)),
             Mistake::Filter(width) => candidate.behaviour.pixel = *width,
+            Mistake::Shift(by) => {
+                candidate.behaviour.offset = candidate.layout.source_direction(*by);
+            }
             Mistake::ColorsExchanged(one, other) => {
                 let shapes =
                     [*one, *other].map(|at| Part::Shape(candidate.scene.objects[at].shape));

@@ -64,6 +64,11 @@ const MUCH_WRONG: usize = 50;
 /// a shift of more than a pixel, the difference is relative to the shift.
 const MAX_SHIFT_ERROR: f64 = 0.5;
 
+/// Limit of a shift of all samples, in pixels, below which it need not be one of the table. The mean
+/// of four random samples, if they are the same in all pixels, lies within it with a probability of
+/// more than 95 % for each direction.
+const MAX_SLIGHT_SHIFT: f64 = 0.35;
+
 /// Maximum number of mistakes that are tried to explain a shift of all edges, those with the most
 /// similar shift first. More would take longer, and explain the shift less well.
 const SHIFTS: usize = 4;
@@ -116,6 +121,12 @@ pub fn explained_with(judge: &Judge, candidate: &Candidate) -> Option<Candidate>
     let is_shifted = candidate.behaviour.is_shifted();
     let by = residual.displacement.filter(|_| !is_shifted);
     let rows = rows.chain(by.into_iter().flat_map(|off| shifts(candidate, off.by)));
+    // A number of the scene that is off so little as to move all edges by a part of a pixel is less
+    // likely than samples that lie beside the middle of their pixels.
+    let is_slight = |by: &[f64; 2]| by[0].abs().max(by[1].abs()) < MAX_SLIGHT_SHIFT;
+    let slight = by.map(|off| off.by.map(|length| (100.0 * length).round() / 100.0));
+    let slight = slight.filter(is_slight).map(Mistake::Shift);
+    let rows = rows.chain(slight);
     let hinted = if residual.is_noise() && may && candidate.mistakes.is_empty() {
         hinted(judge, candidate)
     } else {

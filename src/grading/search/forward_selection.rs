@@ -371,7 +371,7 @@ fn fewest(judge: &Judge, all: &Candidate) -> Candidate {
 fn shows_at_edges(mistake: &Mistake) -> bool {
     match mistake {
         Mistake::Row(row, _) => row.shows != Shows::InAreas,
-        Mistake::Filter(_) => true,
+        Mistake::Filter(_) | Mistake::Shift(_) => true,
         _ => false,
     }
 }

@@ -100,7 +100,7 @@ fn a_difference_is_told_to_three_digits_below_a_tenth_of_a_step_and_else_to_hund
     let write = |name: &str, steps: f64| {
         let film = Film::from_fn(1, 1, |_, _| [srgb_to_linear(steps / 255.0); 3]).unwrap();
         let mut bytes = Cursor::new(Vec::new());
-        write_exr(&film, whole, whole, &mut bytes).unwrap();
+        write_exr(&film, whole, whole, None, &mut bytes).unwrap();
         folder.write(name, bytes.into_inner());
     };
     write("black.exr", 0.0);

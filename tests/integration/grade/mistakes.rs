@@ -251,6 +251,7 @@ const OTHERS: &[Mistake] = &[
     }),
     row("wider_pixel", |p| p.pixel = 2.0),
     row("samples_narrow", |p| p.pixel = 0.5),
+    row("samples_shifted right", |p| p.offset = 0.16),
     row("not_divided light is multiplied by about 1.3", |p| {
         p.gain = 1.3
     }),

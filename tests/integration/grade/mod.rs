@@ -111,6 +111,35 @@ fn wrongly_judged(case: &Case) -> Option<String> {
     (!is_right).then(|| format!("{}: with {sets:?}: {}", case.title, told["line"]))
 }
 
+sampled_and_exhaustive!(random_samples_that_all_pixels_share_are_no_other_mistake);
+
+/// If all pixels have the same few random samples, these lie on average beside the middle of a
+/// pixel. All edges move by that, but nothing in the scene is wrong.
+fn random_samples_that_all_pixels_share_are_no_other_mistake(effort: Effort) {
+    let names = ["figure", "street", "lens"].into_iter();
+    let cases = names.flat_map(|name| [4, 8, 16].map(|samples| (name, samples)));
+    let cases: Vec<_> = cases
+        .flat_map(|(name, samples)| (1..=6).map(move |seed| (name, samples, seed)))
+        .collect();
+    let cases: Vec<_> = effort.first(6, &cases).copied().collect();
+    let accused = |(name, samples, seed)| {
+        let (mut program, text) = scenes::scene(name);
+        (program.size, program.samples) = ([160, 90], samples);
+        program.sampling = textbook::Sampling::SharedRandom(seed);
+        let picture = program.render();
+        let size = picture.dimensions().into();
+        let file = images::png(size, ColorType::Rgb, BitDepth::Eight, picture.as_raw());
+        let text = text.replace("WIDTH", "160").replace("HEIGHT", "90");
+        let answer = answer(&text, &[], &file);
+        let mut mistakes = answer["mistakes"].as_array().unwrap().iter();
+        let is_shift = |one: &Value| one["id"] == "samples_shifted" || one["id"] == "half_pixel";
+        let is_accused = !mistakes.all(is_shift);
+        is_accused.then(|| format!("{name} {samples} {seed}: {}", answer["line"]))
+    };
+    let accused: Vec<String> = cases.into_par_iter().filter_map(accused).collect();
+    assert!(accused.is_empty(), "{}", accused.join("\n"));
+}
+
 /// Judges the picture `file` against the scene `text` with the `--set` arguments `sets`. Returns
 /// the verdict as JSON.
 fn answer(text: &str, sets: &[&str], file: &[u8]) -> Value {

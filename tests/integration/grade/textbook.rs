@@ -174,6 +174,9 @@ pub enum Sampling {
     /// Sample i of n is at the point (i/n, φ₂(i)), where φ₂ is the radical inverse in base 2. The
     /// points are equal in every pixel.
     Hammersley,
+    /// The samples of a pixel are at independent, uniformly distributed points, which are equal in
+    /// every pixel. The number is the seed of the random numbers.
+    SharedRandom(u64),
 }
 
 pub const SAMPLINGS: [Sampling; 4] = [
@@ -388,6 +391,11 @@ impl Program {
             Sampling::Regular => [(i + 0.5) / cells, (j + 0.5) / cells],
             Sampling::Random => [random.random(), random.random()],
             Sampling::Jittered => [i, j].map(|cell| (cell + random.random::<f64>()) / cells),
+            Sampling::SharedRandom(seed) => {
+                let mut shared = SmallRng::seed_from_u64(seed);
+                let mut places = std::iter::repeat_with(|| [shared.random(), shared.random()]);
+                places.nth(index as usize).unwrap_or_default()
+            }
             Sampling::Hammersley => {
                 let inverse = f64::from(index.reverse_bits()) / 4_294_967_296.0;
                 [(f64::from(index) + 0.5) / n, inverse]
