@@ -25,9 +25,9 @@ const NOTHING: f64 = 1e-5;
 /// students mistype two fields of an object, and hardly any three.
 const MADE_UP: usize = 3;
 
-/// Displacement of an object, in pixels, below which a wrong number is not believed. It is about the
-/// mean of four random samples that all pixels share, in its unlikeliest case.
-const SLIGHT: f64 = 0.3;
+/// Displacement of an object, in pixels, below which a wrong number is not believed. It exceeds the
+/// distance of the mean of four random samples, shared by all pixels, from a pixel's middle.
+const SLIGHT: f64 = 0.4;
 
 /// Place in a row's message for a factor of light, which is estimated from the picture.
 const GAIN: &str = "{gain}";
