@@ -116,11 +116,10 @@ impl PartFile {
         file.rewind()?;
         let place = film::read_exr_place(BufReader::new(file))
             .map_err(|_| io::Error::other("it is neither a PNG nor an EXR file of a part"))?;
-        let is_part = place.crop().is_some();
-        let (Some(digest), true) = (place.digest, is_part) else {
-            return Err(io::Error::other(
-                "it is no part of a picture that Pinhole rendered",
-            ));
+        // A single shard of one is the whole picture.
+        let Some(digest) = place.digest else {
+            let message = "it is no part of a picture that Pinhole rendered";
+            return Err(io::Error::other(message));
         };
         Ok(Self {
             path: path.to_owned(),

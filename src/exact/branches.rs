@@ -176,7 +176,6 @@ impl ConicGraph {
         };
         let root = if side < 0.0 { root.negated() } else { root };
         let minus = b.times(&at).plus(e).negated();
-        // As in `y`, the first formula is used if Δ is 0.
         let y = if minus.hi * side >= 0.0 || root.hi == 0.0 {
             minus.plus(&root).over(c)
         } else {
