@@ -19,7 +19,7 @@ const INTERVAL: Duration = Duration::from_millis(20);
 
 /// Time that cancelled work gets to end, and to remove a temporary file. Work that takes longer is
 /// left to end on its own, and its result is dropped.
-const GRACE: Duration = Duration::from_millis(60);
+const GRACE: Duration = Duration::from_millis(40);
 
 /// Runs `work` without the interpreter's lock, and returns its result. If the handler of a signal
 /// raises an exception, as that of Ctrl-C does, sets the flag that `work` was given and raises the

@@ -214,9 +214,11 @@ impl Scene {
 
     /// Judges a picture of another program. The part of the scene that it shows must have its size.
     fn grade(&self, py: Python<'_>, picture: Pixels<'_>, crop: Crop) -> PyResult<String> {
-        let picture = picture.picture()?;
+        let numbers = picture.copied()?;
         self.run(py, move |inner, cancel| {
-            let (part, rounding) = (inner.part(crop), picture.rounding);
+            let part = inner.part(crop);
+            let picture = numbers.picture(part)?;
+            let rounding = picture.rounding;
             let reference = inner.reference(part, rounding, cancel)?;
             let comparison = reference
                 .compare(&picture.film, rounding.steps())

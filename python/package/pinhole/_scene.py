@@ -153,7 +153,7 @@ class Scene:
         """
         import numpy as np
 
-        array = np.asarray(picture)
+        array = np.ascontiguousarray(picture)
         if array.dtype.kind == "f":
             array = array.astype(np.float64, copy=False)
         if array.dtype not in (np.uint8, np.uint16, np.float64):
